@@ -54,7 +54,7 @@ def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
         return []
     season, units = choices.season, choices.units.in_sentences(choices.on)
     closed = season.closed(choices.on, choices.who or "", plan.scene.seconds_left)
-    said = left_off_in_words(closed, (choices.plot.grid, season.label), units)
+    said = left_off_in_words(closed, choices.plot.grid, units)
     to_kept = season.closed_to_kept(choices.on, choices.who or "")
     plants = closed_plants(to_kept, len(choices.plot.grid))
     kept = np.count_nonzero(plants[chosen_day.given_out(choices)])

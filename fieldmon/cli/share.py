@@ -214,7 +214,7 @@ def _planned(
     names = [_name(season) for season in seasons]
     shared = share_estate(plots, members, starts, move_s)
     said = [
-        [*map(str, left_off_in_words(closed, (season.plot.grid, season.label), Units()))]
+        [*map(str, left_off_in_words(closed, season.plot.grid, Units()))]
         for season, closed in zip(seasons, shared.closed, strict=True)
     ]
     routes, worked = [], set()

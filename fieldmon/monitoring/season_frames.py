@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _DEGREES = "EPSG:4326"
 # of the table of inspections: where each was, its plant says
-_OF_PLANT = {"plot", "date", "row", "number", "lon", "lat", "face"}
+_OF_PLANT = {"plot", "date", "row", "row_name", "number", "lon", "lat", "face"}
 
 
 @checked

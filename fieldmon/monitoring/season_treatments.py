@@ -30,6 +30,7 @@ from fieldmon.monitoring.open_season import OpenSeason, settings_of
 from fieldmon.monitoring.people import written_in
 from fieldmon.monitoring.treatments import TreatedPlace
 from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.named_rows import place_in_words
 
 if TYPE_CHECKING:
     import sqlite3
@@ -108,9 +109,10 @@ class SeasonTreatments(OpenSeason):
             )
             batches.end(db, batch, new)
             if new:
+                where = place_in_words(self.plot.grid, place.plants)
                 season_log.append(
                     db, "treated", said.operator, states=season_log.states(db, [batch]),
-                    batch=batch, date=str(on), said=treatments.in_words(place, said),
+                    batch=batch, date=str(on), said=treatments.in_words(place, said, where),
                     efficacy=works, **said.said(),
                 )  # fmt: skip
                 self._refresh(db, day, before)

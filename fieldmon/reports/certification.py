@@ -19,6 +19,7 @@ from fieldmon.compute.wording import counted, figure, joined, worded
 from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.cautions import groups, label_of, waits
+from fieldmon.plot.named_rows import place_in_words
 from fieldmon.reports import words
 from fieldmon.reports.content import (
     Block,
@@ -350,6 +351,7 @@ def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]
         (_F["water"], "" if said.water_l_ha is None else worded(words.RATE, rate=said.water_l_ha)),
         (_F["area"], "" if place.area_ha is None else one.units.square(place.area_ha * 1e4)),
         (_F["plants"], figure(int(np.count_nonzero(place.plants)))),
+        (_F["where"], place_in_words(one.season.plot.grid, place.plants)),
         (_F["time"], "" if times == ["?", "?"] else f"{times[0]}–{times[1]}"),
         (_F["zone"], treatment.clock.zone),
         (_F["crop"], _plain(said.crop)),

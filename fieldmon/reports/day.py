@@ -233,7 +233,7 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
         said.append(worded(words.DAY_OF_NOBODY))
     if not facts.worked:
         grid = facts.route.aisles.grid
-        said += left_off_in_words(facts.closed, (grid, row_label(grid)), units)
+        said += left_off_in_words(facts.closed, grid, units)
     return said
 
 

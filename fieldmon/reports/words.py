@@ -207,6 +207,7 @@ CERT_FIELDS = {
     "water": "Water",
     "area": "Area",
     "plants": "Plants",
+    "where": "Where",
     "time": "Began and ended",
     "zone": "Time zone",
     "crop": "Crop",

@@ -37,10 +37,9 @@ def hours_of(day):
     return {turn.plot: round(turn.scene.robot.day_s / 3600, 2) for turn in day.turns}
 
 
-def test_due_is_what_was_not_seen_for_three_days_or_else_not_today():
+def test_due_is_what_was_not_seen_for_three_days_or_never_and_nothing_else():
     assert due([0, 2, 3, None]) == [2, 3]
-    assert due([0, 2]) == [1]
-    assert due([0]) == []
+    assert due([0, 2]) == due([0]) == due([]) == []
 
 
 def test_a_plot_that_nobody_may_enter_gets_no_hours_and_no_way_to_it(seasons):

@@ -5,6 +5,7 @@ import io
 import json
 import zipfile
 from contextlib import nullcontext
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -75,6 +76,22 @@ def test_a_few_plots_that_wait_are_named_and_very_many_are_counted(said):
         assert told.startswith(words)
         assert len(told) < 120
         said.clear()
+
+
+def test_where_no_plot_is_due_none_is_planned_until_those_seen_are_asked_for(app, monkeypatch):
+    every = estate.plots
+    monkeypatch.setattr(
+        estate, "plots", lambda: ([replace(one, days_since=1) for one in every()[0][:3]], [])
+    )
+    go(app, "plots")
+    press(app, texts.PLAN_ALL)
+    assert not app.exception
+    assert texts.PLAN_ALL_NONE in texts_of(app)
+    assert layer(app, "route") is None
+    app.checkbox(key="crew_also").check().run()
+    assert not app.exception
+    assert texts.PLAN_ALL_NONE not in texts_of(app)
+    assert "plots; expect" in texts_of(app)
 
 
 def test_who_has_no_plot_is_said_to_be_free(said):

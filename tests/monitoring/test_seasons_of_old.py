@@ -43,7 +43,8 @@ def test_a_season_says_what_it_said(season, capsys):
     done = capsys.readouterr()
     # and besides, what none could know otherwise then or was not foretold
     said = done.out.splitlines(keepends=True)
-    for new in ("  finds are traced       to neighbours", "  forecast "):
+    unsaid = "  harvest                From when", "  warning                How long to wait"
+    for new in ("  finds are traced       to neighbours", "  forecast ", *unsaid):
         since = [line for line in said if line.startswith(new)]
         assert len(since) == 1
         said.remove(since[0])

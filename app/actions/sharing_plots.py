@@ -48,7 +48,8 @@ def show_button(plots: list[PlotState]) -> None:
 def show(plots: list[PlotState]) -> SharedPlots:
     """Show who works and what comes of it; return the plan."""
     crew = _crew()
-    wanted = shared_plots.due(plots)
+    also = widget_memory.show(st.checkbox, texts.PLAN_ALL_ALSO, key="crew_also", default=False)
+    wanted = plots if also else shared_plots.due(plots)
     if not wanted:
         st.info(texts.PLAN_ALL_NONE)
         return SharedPlots(())

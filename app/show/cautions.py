@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.monitoring.cautions import harvest_unsaid
 from fieldmon.monitoring.closures import closed_plants, is_all_closed, left_off_in_words
 from fieldmon.planning.skips import left_out_in_words
 
@@ -57,7 +58,7 @@ def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
         return []
     season, units = choices.season, choices.units.in_sentences(choices.on)
     closed = season.closed(choices.on, choices.who or "", plan.scene.seconds_left)
-    said = left_off_in_words(closed, (choices.plot.grid, season.label), units)
+    said = left_off_in_words(closed, choices.plot.grid, units)
     to_kept = season.closed_to_kept(choices.on, choices.who or "")
     plants = closed_plants(to_kept, len(choices.plot.grid))
     kept = np.count_nonzero(plants[chosen_day.given_out(choices)])
@@ -69,7 +70,9 @@ def show_treatments(choices: Choices) -> None:
     """Show when harvest may begin, and what inspections tell of each treatment."""
     season, units = choices.season, choices.units.in_sentences(choices.on)
     first = season.harvest_from(choices.on)
-    if first is not None:
+    if first is not None and first[0] is None:
+        st.markdown(in_words(harvest_unsaid(first[1], units)))
+    elif first is not None:
         st.markdown(texts.HARVEST_FROM.format(day=choices.units.said_day(first[0], choices.on)))
     effects = season.effects(choices.on, units)
     if effects:

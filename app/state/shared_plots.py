@@ -102,12 +102,11 @@ class _Ready:
 
     def closed_in_words(self, closed: tuple[Closure, ...]) -> tuple[str, ...]:
         """Return what is left off as people may not be there yet, and until when."""
-        season = self.known.season
-        if season is None:
+        if self.known.season is None:
             return ()
         units = chosen_units.units().in_sentences(self.known.on)
-        of = self.known.scene.grid, season.label
-        return tuple(map(in_words, left_off_in_words(closed, of, units)))
+        grid = self.known.scene.grid
+        return tuple(map(in_words, left_off_in_words(closed, grid, units)))
 
 
 def due(plots: Iterable[PlotState]) -> list[PlotState]:

@@ -410,7 +410,11 @@ PLAN_ALL_LEAD = Plural(
     "{plants} plants on {n} plot; expect {finds} finds.",
     "{plants} plants on {n} plots; expect {finds} finds.",
 )
-PLAN_ALL_NONE = "Nothing is due today: every plot was seen today."
+PLAN_ALL_ALSO = "Also plots seen in the last 2 days"
+PLAN_ALL_NONE = (
+    "No plot is due today: every one was seen in the last 2 days. Tick the box above to plan them "
+    "all the same."
+)
 PLAN_ALL_RULE = (
     "Plots come in the order of the infested plants expected there. Each goes to whoever then has "
     "most time for it, and everybody shares his hours among his plots by what is expected. A plot "

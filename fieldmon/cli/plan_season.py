@@ -111,15 +111,17 @@ class _LeftOff(NamedTuple):
         from fieldmon.compute.units import Units
         from fieldmon.monitoring.closures import closed_plants, is_all_closed, left_off_in_words
 
-        plot, n = (season.plot.grid, season.label), len(season.plot.grid)
+        grid = season.plot.grid
         each = [(season.closed(on, who, today.scene.seconds_left), today) for who, today in days]
-        said = (said for closed, _ in each for said in left_off_in_words(closed, plot, Units()))
+        said = (said for closed, _ in each for said in left_off_in_words(closed, grid, Units()))
         timely = [one for one in each if one[1].scene.seconds_left > 0]
         return cls(
             tuple(dict.fromkeys(said)),
             bool(timely) and all(is_all_closed(today.scene, closed) for closed, today in timely),
             any(one.opens for closed, _ in each for one in closed),
-            any(closed_plants(closed, n)[today.route.plant].any() for closed, today in each),
+            any(
+                closed_plants(closed, len(grid))[today.route.plant].any() for closed, today in each
+            ),
         )
 
 

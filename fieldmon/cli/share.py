@@ -49,7 +49,7 @@ Formats = Annotated[
     ),
 ]
 Also = Annotated[
-    bool, typer.Option("--all", help="Also plots that were inspected in the last three days.")
+    bool, typer.Option("--all", help="Also plots that were inspected less than three days ago.")
 ]
 
 
@@ -80,7 +80,8 @@ class _SharedDay(NamedTuple):
 def share(options: ShareOptions) -> None:
     """Share one day between the seasons that are due: who inspects which plot, when and where.
 
-    A plot is due three days after it was inspected, and where it never was. The plot with the most
+    A plot is due three days after it was inspected, and where it never was; where none is due, none
+    is planned without --all. The plot with the most
     infested plants expected comes first; hours are shared by what is expected. A plot that would
     get less than a quarter of an hour waits. The seasons are not changed.
 
@@ -94,8 +95,8 @@ def share(options: ShareOptions) -> None:
     due = [*_due(seasons, day(options.on), every=options.not_due)]
     if not due:
         raise SettingError(
-            "At least one season must have begun and be due, but none has and is. Plan those seen "
-            "in the last three days with --all, or another day with --date."
+            "At least one season must have begun and be due, so inspected three days ago or never, "
+            "but none is. Plan those seen since with --all, or another day with --date."
         )
     folder = options.output or Path(f"day-{min(plot.on for _, plot in due)}")
     _require_empty(folder)
@@ -251,7 +252,7 @@ def _planned(
     names = [_name(season) for season in seasons]
     shared = share_estate(plots, members, starts, move_s)
     said = [
-        [*map(str, left_off_in_words(closed, (season.plot.grid, season.label), Units()))]
+        [*map(str, left_off_in_words(closed, season.plot.grid, Units()))]
         for season, closed in zip(seasons, shared.closed, strict=True)
     ]
     routes, worked = [], set()

@@ -215,9 +215,11 @@ def _planned_only(season: Season, until: date) -> Iterator[str]:
 
 def of_treatments(season: Season, now: Status) -> Iterator[str]:
     """Yield what treatments ask for, and whether they worked, line by line."""
-    first = season.harvest_from(now.on)
-    if first is not None:
-        yield f"  harvest                from {first[0]} on, after the treatment of {first[1].on}"
+    from fieldmon.monitoring.cautions import harvest_unsaid
+
+    if (first := season.harvest_from(now.on)) is not None:
+        from_when = f"from {first[0]} on, after the treatment of {first[1].on}"
+        yield f"  {'harvest':22} {from_when if first[0] else harvest_unsaid(first[1])}"
     for number, effect in enumerate(one for one in season.effects(now.on) if one.before.inspected):
         yield f"  {'' if number else 'as treatments worked':22} {effect.sentence()}"
     for caution in dict.fromkeys(one.sentence for one in season.cautions(now.on)):

@@ -163,7 +163,7 @@ def treat(options: TreatOptions) -> None:
 
 def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
     """Print what a treatment asks for: waiting periods and warnings."""
-    from fieldmon.monitoring.cautions import label_of, waits
+    from fieldmon.monitoring.cautions import harvest_unsaid, label_of, waits
 
     (one,) = (treatment for treatment in kept.treatments() if treatment.batch == batch)
     if learnt:
@@ -178,7 +178,10 @@ def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
     period = waits(one, label_of(one, kept.labels()))
     if period.entry_from is not None:
         typer.echo(f"Enter there from {period.entry_from:%Y-%m-%d %H:%M} on ({one.clock.zone}).")
-    if period.harvest_from is not None:
+    first = kept.harvest_from(one.on)
+    if first is not None and first[0] is None and first[1].batch != batch:
+        typer.echo(harvest_unsaid(first[1]))
+    elif period.harvest_from is not None:
         typer.echo(f"Harvest there from {period.harvest_from} on.")
     for caution in kept.cautions_because_of(one.batch, one.on):
         typer.echo(f"warning: {caution.sentence}", err=True)

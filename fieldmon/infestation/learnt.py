@@ -149,7 +149,8 @@ def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:
             return at_start, belief.ancestry.arrivals
     n, estimate = len(belief.chance), belief.counts.estimate
     suspected, elsewhere = map(float, belief.at_start)
-    if belief.counts.expected.any():
+    # an earlier season tells of other origins, but never of those at the start
+    if belief.counts.expected[[AT_START, AT_START_ELSEWHERE]].any():
         at_start = estimate(AT_START, suspected) + estimate(AT_START_ELSEWHERE, elsewhere)
     else:
         # nothing was inspected yet: in as much doubt as what is there now

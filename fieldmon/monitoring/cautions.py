@@ -157,14 +157,25 @@ def closed_until(
 
 def harvest_from(
     treatments: Iterable[KeptTreatment], labels: Sequence[ProductLabel]
-) -> tuple[date, KeptTreatment] | None:
+) -> tuple[date | None, KeptTreatment] | None:
     """Return the first day on which harvest is allowed everywhere, and after which treatment.
 
-    None: no treatment is known to need a wait.
+    The day is None where nobody said how long to wait from a treatment: that one, or the last of
+    them. None: there was no treatment.
     """
-    known = [(waits(one, label_of(one, labels)).harvest_from, one) for one in treatments]
-    days = [(day, one) for day, one in known if day is not None]
-    return max(days, key=lambda item: item[0], default=None)
+    days = [(waits(one, label_of(one, labels)).harvest_from, one) for one in treatments]
+    unsaid = [(day, one) for day, one in days if day is None]
+    if unsaid:
+        return max(unsaid, key=lambda item: item[1].on)
+    return max(days, key=lambda item: item[0] or date.min, default=None)
+
+
+def harvest_unsaid(one: KeptTreatment, units: Units | None = None) -> str:
+    """Return that no day of harvest can be named, as nobody said how long to wait from `one`."""
+    return worded(
+        "From when on harvest is allowed is not known: how long to wait from {product} on {day} "
+        "was not said.", **_named(one, units or Units()),
+    )  # fmt: skip
 
 
 def counts_no_more(one: KeptTreatment, label: ProductLabel | None, why: str) -> str:
@@ -190,14 +201,19 @@ def _named(one: KeptTreatment, units: Units) -> dict[str, str]:
 def _unsaid_wait(
     one: KeptTreatment, label: ProductLabel | None, rules: RulesToKeep
 ) -> Iterator[Caution]:
-    known = waits(one, label).harvest_from is not None
-    if rules.harvest is not None and one.on <= rules.harvest and not known:
+    if waits(one, label).harvest_from is not None:
+        return
+    said = worded(
+        "How long to wait from {product} on {day} until harvest was not said. Look at its label.",
+        **_named(one, rules.units),
+    )
+    if rules.harvest is not None and one.on <= rules.harvest:
         said = worded(
             "How long to wait from {product} on {day} until the harvest on {harvest} was not "
             "said. Look at its label.",
             harvest=rules.units.day(rules.harvest), **_named(one, rules.units),
         )  # fmt: skip
-        yield Caution("harvest", said, one.batch)
+    yield Caution("harvest", said, one.batch)
 
 
 def _of_waits(

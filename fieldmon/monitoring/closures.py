@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import worded
 from fieldmon.monitoring.cautions import label_of, waits
-from fieldmon.plot.grid import rows_listed
+from fieldmon.plot.named_rows import plants_in_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fieldmon.compute.wording import Worded
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.monitoring.treatments import KeptTreatment
-    from fieldmon.plot.grid import PlantGrid, RowLabel
+    from fieldmon.plot.grid import PlantGrid
     from fieldmon.samplers.base import Scene
 
 
@@ -128,31 +128,22 @@ def is_all_closed(scene: Scene, closed: Sequence[Closure]) -> bool:
 
 
 def left_off_in_words(
-    closed: Sequence[Closure], plot: tuple[PlantGrid, RowLabel], units: Units
+    closed: Sequence[Closure], grid: PlantGrid, units: Units
 ) -> tuple[Worded, ...]:
     """Return which plants are left off a plan, and until when: the last to open first.
 
     A plant that several treatments close is said once, with the last time.
     """
-    grid, label = plot
     said, told = [], np.zeros(len(grid), np.bool_)
     for one in sorted(closed, key=lambda one: one.until, reverse=True):
         plants = one.plants & ~told
         told |= plants
         if plants.any():
-            said.append(_in_words(one, grid, label.line[plants], units))  # fmt: skip
+            said.append(_in_words(one, plants_in_words(grid, plants), units))
     return tuple(said)
 
 
-def _in_words(one: Closure, grid: PlantGrid, line: NDArray[np.integer], units: Units) -> Worded:
-    which = counted(len(line), "plant")
-    if grid.in_rows:
-        said = rows_listed(grid, line)
-        which = (
-            worded("{plants} in row {row}", plants=which, row=said)
-            if len(np.unique(line)) == 1
-            else worded("{plants} in rows {rows}", plants=which, rows=said)
-        )
+def _in_words(one: Closure, which: Worded, units: Units) -> Worded:
     values = {
         "time": f"{one.until:%H:%M}",
         "date": units.day(one.until.date()),

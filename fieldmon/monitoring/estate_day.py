@@ -155,15 +155,12 @@ def read_otherwise(season: Season, members: Iterable[TeamMember]) -> list[tuple[
 def due(days_since: Sequence[int | None]) -> list[int]:
     """Return the numbers of the plots that are due, from how long ago each was seen; None: never.
 
-    If none is, those not seen today.
-
     Examples
     --------
     >>> due([0, 2, 3, None]), due([0, 2])
-    ([2, 3], [1])
+    ([2, 3], [])
     """
-    wanted = [k for k, days in enumerate(days_since) if days is None or days >= DUE_DAYS]
-    return wanted or [k for k, days in enumerate(days_since) if days]
+    return [k for k, days in enumerate(days_since) if days is None or days >= DUE_DAYS]
 
 
 def share_estate(

@@ -14,6 +14,7 @@ from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring.cautions import groups, label_of, waits
 from fieldmon.monitoring.inspection_table import time_text
+from fieldmon.plot.named_rows import place_in_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -63,6 +64,7 @@ def _treatments(season: SeasonTreatments) -> Iterator[dict[str, object]]:
             "water_l_ha": said.water_l_ha,
             "area_ha": one.place.area_ha,
             "plants": int(one.place.plants.sum()),
+            "where": str(place_in_words(season.plot.grid, one.place.plants)),
             "reason": said.reason,
             "pest": said.pest,
             "operator": said.operator,
@@ -87,6 +89,7 @@ def inspections_table(season: SeasonRecords) -> Table:
     lon, lat = np.round(grid.lonlat(plants), 7).T
     blank = [""] * len(done)
     results = [RESULT_NAMES[result] for result in done.result.tolist()]
+    lines = label.line[done.plant].tolist()
     dates = np.datetime_as_string(done.date).tolist()
     counts = _each(done.count, float)
     which = zip(done.plant.tolist(), dates, results, counts, strict=True)
@@ -94,7 +97,9 @@ def inspections_table(season: SeasonRecords) -> Table:
         "plot": [plot] * len(done),
         "date": dates,
         "time": _each(done.second, time_text),
-        "row": label.line[done.plant].tolist(),
+        "row": lines,
+        # of all seasons, as they share columns: empty where the number says all
+        "row_name": [grid.row_names.get(line, "") for line in lines],
         # no column "plant": in route files that is the number on the plot, from 0
         "number": label.number[done.plant].tolist(),
         "lon": lon[of].tolist(),

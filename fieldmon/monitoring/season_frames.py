@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _DEGREES = "EPSG:4326"
 # of the table of inspections: where each was, its plant says
-_OF_PLANT = {"plot", "date", "row", "number", "lon", "lat", "face"}
+_OF_PLANT = {"plot", "date", "row", "row_name", "number", "lon", "lat", "face"}
 
 
 @checked
@@ -45,7 +45,7 @@ class SeasonFrames(SeasonRecords, SeasonTreatments, SeasonEstimates):
             ``"treatments"``: the outline of each that counts, with the columns of
             ``fieldmon export --of treatments``; without treatments there are no columns.
             ``"plants"``: a point for each plant, with its chance on the ``morning`` and after what
-            was recorded, ``evening``.
+            was recorded, ``evening``: of all infestations, a `DayPlan` of those that can be seen.
         on
             The day of the chances; None: the last on which anything was planned or recorded, but
             today at most. The others are of all days.

@@ -30,6 +30,7 @@ from fieldmon.monitoring.open_season import OpenSeason, settings_of
 from fieldmon.monitoring.people import written_in
 from fieldmon.monitoring.treatments import TreatedPlace
 from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.named_rows import place_in_words
 
 if TYPE_CHECKING:
     import sqlite3
@@ -108,9 +109,10 @@ class SeasonTreatments(OpenSeason):
             )
             batches.end(db, batch, new)
             if new:
+                where = place_in_words(self.plot.grid, place.plants)
                 season_log.append(
                     db, "treated", said.operator, states=season_log.states(db, [batch]),
-                    batch=batch, date=str(on), said=treatments.in_words(place, said),
+                    batch=batch, date=str(on), said=treatments.in_words(place, said, where),
                     efficacy=works, **said.said(),
                 )  # fmt: skip
                 self._refresh(db, day, before)
@@ -217,10 +219,11 @@ class SeasonTreatments(OpenSeason):
         rules = RulesToKeep(labels, settings.harvest, settings.starts)
         return done, rules if units is None else replace(rules, units=units)
 
-    def harvest_from(self, on: date) -> tuple[date, KeptTreatment] | None:
+    def harvest_from(self, on: date) -> tuple[date | None, KeptTreatment] | None:
         """Return the first day of harvest that treatments until `on` allow, and which one waits.
 
-        None: no treatment is known to need a wait.
+        The day is None where nobody said how long to wait from a treatment: that one, or the last
+        of them. None: there was no treatment.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             done = [one for one in self._treatments(db) if one.on <= on]

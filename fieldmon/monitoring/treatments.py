@@ -264,14 +264,16 @@ def _rows(db: sqlite3.Connection, which: str, order: str = "fid") -> list[Row]:
     return [dict(zip(names, row, strict=True)) for row in db.execute(wanted)]
 
 
-def in_words(place: TreatedPlace, application: Application) -> str:
-    """Return what the season's log says of a treatment."""
+def in_words(place: TreatedPlace, application: Application, where: str) -> str:
+    """Return what the season's log says of a treatment; `where` names its rows."""
     parts = [application.product or "a product that nobody named"]
     if application.dose is not None:
         parts.append(str(application.dose))
     if place.area_ha is not None:
         parts.append(f"on {Units().square(place.area_ha * 1e4)}")
-    return f"{' '.join(parts)}, {counted(int(np.count_nonzero(place.plants)), 'plant')}"
+    plants = counted(int(np.count_nonzero(place.plants)), "plant")
+    # of a part of a row, how many plants they are stands in `where`
+    return ", ".join([" ".join(parts), *([] if where.startswith(plants) else [plants]), where])
 
 
 def not_what_they_say(db: sqlite3.Connection) -> list[int]:

@@ -94,15 +94,19 @@ class DayPlan:
 
     @property
     def chance(self) -> NDArray[np.float64]:
-        """Return the believed chance of infestation of every plant, ``(n,)``."""
+        """Return the chance of every plant by which the day was planned, ``(n,)``.
+
+        It is of infestations that an inspection can see. In a season that takes some to hide yet,
+        `Season.morning` and the column ``morning`` of `Season.to_geopandas` are of all, so more.
+        """
         return self.scene.chance
 
     @property
     def plants(self) -> GeoDataFrame:
         """Return every plant as a point, EPSG:4326, with its chance and its place on the route.
 
-        Columns ``plant``, ``row``, ``number``, ``chance``, ``order`` (from 1; missing where the
-        plant is not on the route) and ``arrive_s``.
+        Columns ``plant``, ``row``, ``number``, ``chance`` (that of the day: see there), ``order``
+        (from 1; missing where the plant is not on the route) and ``arrive_s``.
 
         Examples
         --------

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import first_few, runs, worded
+from fieldmon.compute.wording import counted, first_few, runs, worded
 from fieldmon.errors import SettingError
-from fieldmon.plot.grid import block_label, plant_at, row_label
+from fieldmon.plot.grid import block_label, plant_at, row_label, rows_listed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.plot.grid import PlantGrid
 
 
@@ -64,6 +65,30 @@ def _ends(called: CalledRows, part: str, rows: str) -> list[int]:
             some=called.listed(),
         )
     )
+
+
+def place_in_words(grid: PlantGrid, plants: NDArray[np.bool_]) -> Worded:
+    """Return where plants ``(n,)`` stand: the rows that they fill, or how many of which rows."""
+    if plants.all():
+        return worded("the whole plot")
+    line = grid.row_number[grid.row]
+    if not grid.in_rows or np.isin(line[~plants], line[plants]).any():
+        return plants_in_words(grid, plants)
+    rows = rows_listed(grid, line[plants])
+    one = len(np.unique(line[plants])) == 1
+    return worded("row {row}", row=rows) if one else worded("rows {rows}", rows=rows)
+
+
+def plants_in_words(grid: PlantGrid, plants: NDArray[np.bool_]) -> Worded:
+    """Return how many plants ``(n,)`` these are, and of which rows."""
+    which = counted(int(np.count_nonzero(plants)), "plant")
+    if not grid.in_rows:
+        return which
+    line = grid.row_number[grid.row[plants]]
+    rows = rows_listed(grid, line)
+    if len(np.unique(line)) == 1:
+        return worded("{plants} in row {row}", plants=which, row=rows)
+    return worded("{plants} in rows {rows}", plants=which, rows=rows)
 
 
 def plant_meant(grid: PlantGrid, row: str, plant: int) -> int:

@@ -19,6 +19,7 @@ from fieldmon.compute.wording import counted, figure, joined, worded
 from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.cautions import groups, label_of, waits
+from fieldmon.plot.named_rows import place_in_words
 from fieldmon.reports import words
 from fieldmon.reports.content import (
     Block,
@@ -55,6 +56,7 @@ class _PlotRecord:
     on: date
     units: Units
     treatments: tuple[KeptTreatment, ...]
+    harvest_unsaid: date | None
     cautions: tuple[Caution, ...]
     effects: tuple[TreatmentEffect, ...]
     log: tuple[LogEntry, ...]
@@ -71,16 +73,27 @@ class _PlotRecord:
             log, wrong = season.log(), " ".join(season.held_to_log())
         except FieldmonError as changed:
             log, wrong = (), str(changed)
+        first = season.harvest_from(on)
+        unsaid = None if first is None or first[0] is not None else first[1].on
         seen = season.inspections
         seen = seen.take(seen.date <= np.datetime64(on, "D")).inspected
         corrected: dict[str, set[str]] = {}
         for (_, day, *_), who in season.corrected_by().items():
             corrected.setdefault(str(day), set()).add(who)
-        return cls(season, on, units, done, beware, told, log, wrong, seen, corrected)
+        return cls(season, on, units, done, unsaid, beware, told, log, wrong, seen, corrected)
 
     @property
     def name(self) -> str:
         return self.season.plot.field.name
+
+    def harvest_from(self, first: date | None) -> str:
+        """Return from when on harvest is allowed after a treatment; empty: nobody said.
+
+        While nobody said how long another one waits, no day is named.
+        """
+        if first is None or self.harvest_unsaid is None:
+            return "" if first is None else self.units.day(first)
+        return worded(words.CERT_HARVEST_UNSAID, day=self.units.day(self.harvest_unsaid))
 
     def inspected(self) -> tuple[int, int]:
         """Return how many inspections there were, and finds among them."""
@@ -338,6 +351,7 @@ def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]
         (_F["water"], "" if said.water_l_ha is None else worded(words.RATE, rate=said.water_l_ha)),
         (_F["area"], "" if place.area_ha is None else one.units.square(place.area_ha * 1e4)),
         (_F["plants"], figure(int(np.count_nonzero(place.plants)))),
+        (_F["where"], place_in_words(one.season.plot.grid, place.plants)),
         (_F["time"], "" if times == ["?", "?"] else f"{times[0]}–{times[1]}"),
         (_F["zone"], treatment.clock.zone),
         (_F["crop"], _plain(said.crop)),
@@ -347,7 +361,7 @@ def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]
         (_F["machinery"], _plain(said.machinery)),
         (_F["weather"], _plain(said.weather)),
         (_F["waiting"], days),
-        (_F["harvest"], "" if first is None else one.units.day(first)),
+        (_F["harvest"], one.harvest_from(first)),
         (
             _F["entry"],
             ""

@@ -239,7 +239,7 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
         said.append(worded(words.DAY_OF_NOBODY))
     if not facts.worked:
         grid = facts.route.aisles.grid
-        said += left_off_in_words(facts.closed, (grid, row_label(grid)), units)
+        said += left_off_in_words(facts.closed, grid, units)
         said += facts.skipped
     return said
 
@@ -359,7 +359,7 @@ def treatment_table(
                 one.application.product,
                 figure(int(np.count_nonzero(one.place.plants))),
                 figure(one.efficacy, ".0%"),
-                "" if first is None else units.day(first),
+                words.CERT_NOT_SAID if first is None else units.day(first),
             )
         )
     table = Table(

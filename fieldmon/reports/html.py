@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
     from fieldmon.reports.content import Block, Illustration, Report
 
-_WIDE_MM, _HIGH_MM = 186.0, 130.0
+# so high that a warning still fits on the page of a map
+_WIDE_MM, _HIGH_MM = 186.0, 112.0
 _STOPS_A_TABLE = 60
 
 

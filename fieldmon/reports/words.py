@@ -207,6 +207,7 @@ CERT_FIELDS = {
     "water": "Water",
     "area": "Area",
     "plants": "Plants",
+    "where": "Where",
     "time": "Began and ended",
     "zone": "Time zone",
     "crop": "Crop",
@@ -221,6 +222,8 @@ CERT_FIELDS = {
     "reason": "Reason",
     "advised": "Advised",
 }
+# the day is of the treatment of which nobody said how long to wait
+CERT_HARVEST_UNSAID = "not known, see {day}"
 CERT_CORRECTED = "corrected by {who}"
 CERT_OF_PLOT, CERT_NONE = "Inspections on {plot}", "none"
 CERT_DAY_COLUMNS = ("day", "inspected", "found", "by")

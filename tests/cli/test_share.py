@@ -71,6 +71,21 @@ def test_what_was_just_seen_is_not_due(run, seasons, tmp_path):
     assert len(table(tmp_path / "both" / "plan.csv")) == 2
 
 
+def test_where_no_plot_is_due_none_is_planned_and_the_way_out_is_said(run, seasons, tmp_path):
+    (tmp_path / "finds.csv").write_text("row,plant,result\n1,1,clean\n")
+    for season in seasons:
+        assert run("record", season, "finds.csv", "--date", BEGINS)[0] == 0
+    words = ("share", *seasons, "--hours", 1, "--date", NEXT)
+    code, out, err, made = run(*words)
+    assert code == 2
+    for name in ("nursery", "bend"):
+        assert f"{name} was inspected 1 day ago and is not due." in out
+    assert "Plan those seen since with --all, or another day with --date." in err
+    assert not made
+    assert run(*words, "--all", "-o", "both")[0] == 0
+    assert {row["plot"] for row in table(tmp_path / "both" / "plan.csv")} == {"nursery", "bend"}
+
+
 def test_nothing_that_is_in_the_folder_is_touched(run, seasons, tmp_path):
     (tmp_path / "plan.csv").write_text("file\nnursery.gpkg\n")
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}

@@ -164,3 +164,20 @@ def test_a_treatment_that_ends_before_it_begins_is_said_to_end_the_day_after(run
         code, out, err, _ = run(*words, "--began", "10:00", "--ended", ended)
         assert code == 0, err
         assert "midnight" not in out
+
+
+def test_no_day_of_harvest_is_named_while_nobody_said_how_long_a_later_treatment_waits(run, season):
+    first = ["--product", "Acarol", "--waiting-days", "3", "--ended", "09:30", "--date", BEGINS]
+    _, out, _, _ = run("treat", season, "--efficacy", "0.8", *first)
+    assert "Harvest there from 2026-11-06 on." in out
+    later = ["--efficacy", "0.8", "--product", "Oil", "--date", "2026-11-03"]
+    _, out, err, _ = run("treat", season, *later)
+    asked = "warning: How long to wait from Oil on 2026-11-03 until harvest was not said."
+    assert asked in err
+    _, out, _, _ = run("status", season)
+    assert "harvest                From when on harvest is allowed is not known: how long" in out
+    assert asked.replace(": ", "                ", 1) in out
+    assert "2026-11-06" not in out
+    _, out, _, _ = run("treat", season, *first[:-1], "2026-11-04", "--efficacy", "0.7")
+    assert "Harvest there from" not in out
+    assert "how long to wait from Oil on 2026-11-03 was not said." in out

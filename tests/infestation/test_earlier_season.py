@@ -18,7 +18,9 @@ from fieldmon.infestation.origins import (
     OVERLOOKED,
     OriginCounts,
 )
+from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.pests.pest import Pest
 from fieldmon.plot.layout import rectangle
 from tests.infestation.test_traced_pairs import mid_season
 
@@ -77,6 +79,21 @@ def test_of_another_pest_nothing_counts_and_that_is_said():
     mites = replace(BELIEVED, pest="spider-mite")
     assert earlier().begin(FIRST, mites) is FIRST
     assert earlier().sentence(mites).endswith("it was of another pest.")
+
+
+@pytest.mark.parametrize("pest", ["", "mite"])
+def test_before_anything_is_inspected_those_at_the_start_are_those_there_now(pest):
+    """Whatever another season taught: they are the same plants, with the same interval."""
+    first = FIRST.of_pest(Pest(pest)) if pest else FIRST
+    for begun in (first, earlier(believed=replace(BELIEVED, pest=pest)).begin(
+        first, replace(BELIEVED, pest=pest)
+    )):  # fmt: skip
+        now = estimate_of(GRID, begun)
+        start = {one.name: one for one in learnt_from(begun, 0.84)}["infested at the start"]
+        assert (start.value, start.low, start.high) == pytest.approx(
+            (now.expected, now.low, now.high)
+        )
+    assert begun.counts.expected.any()
 
 
 def test_where_seasons_are_alike_the_sentence_has_no_but():

@@ -14,8 +14,10 @@ from fieldmon.monitoring import MonitoringSettings, Season, season_log
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot import local_clock
 from fieldmon.plot.field import Field
+from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
+from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 
 BEGINS = date(2026, 4, 6)
@@ -49,6 +51,14 @@ def a_plot(width=0.0008, height=0.0007, **planting):
     boundary = MultiPolygon([box(35.15, 30.36, 35.15 + width, 30.36 + height).difference(hole)])
     field = Field("מטע Paran", boundary, gate=(35.15, 30.36))
     return Plot.of(field, Planting(**planting))
+
+
+def a_plot_with_named_rows():
+    """Return a plot of 4 rows of 20 plants, which its file calls 1, 5A, 2 and Top."""
+    row, plant = np.divmod(np.arange(80), 20)
+    lonlat = Frame(35.0, 30.0, 90.0).lonlat(np.stack([2.0 * plant, 3.0 * row], axis=1))
+    names = PlantNames(np.array(["1", "5A", "2", "Top"])[row], None, (plant + 1).astype(np.str_))
+    return Plot.around("own", lonlat, names=names)
 
 
 def some_records(plot):

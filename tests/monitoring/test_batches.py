@@ -8,10 +8,7 @@ from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import batches
 from fieldmon.monitoring.batches import Batch
 from fieldmon.plot.grid import row_label
-from fieldmon.plot.plant_names import PlantNames
-from fieldmon.plot.plot import Plot
-from fieldmon.plot.projection import Frame
-from tests.monitoring.seasons import a_season
+from tests.monitoring.seasons import a_plot_with_named_rows, a_season
 
 
 def recorded(db, rows, source="x", who="", kind="findings"):
@@ -72,12 +69,8 @@ def test_a_batch_says_how_many_of_its_plants_were_found_and_of_which_days(season
 
 
 def test_what_was_undone_calls_a_row_by_the_name_that_says_more_than_its_number(tmp_path):
-    row, plant = np.divmod(np.arange(80), 20)
-    lonlat = Frame(35.0, 30.0, 90.0).lonlat(np.stack([2.0 * plant, 3.0 * row], axis=1))
-    names = PlantNames(np.array(["1", "5A", "2", "Top"])[row], None, (plant + 1).astype(np.str_))
-    plot = Plot.around("own", lonlat, names=names)
-    season = a_season(tmp_path / "s.gpkg", plot)
-    label = row_label(plot.grid, np.arange(80))
+    season = a_season(tmp_path / "s.gpkg", a_plot_with_named_rows())
+    label = row_label(season.plot.grid, np.arange(80))
     for line in (101, 102):
         here = np.flatnonzero((label.line == line) & (label.number == 2))
         one = here, np.array([FOUND]), np.datetime64("2026-11-17")

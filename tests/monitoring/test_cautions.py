@@ -10,7 +10,7 @@ from fieldmon.compute.wording import counted
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.cautions import RulesToKeep, cautions, groups, harvest_from
+from fieldmon.monitoring.cautions import RulesToKeep, cautions, groups, harvest_from, harvest_unsaid
 from fieldmon.monitoring.treatments import KeptTreatment, TreatedPlace
 from fieldmon.monitoring.waiting_periods import end_of
 from fieldmon.plot.local_clock import LocalClock
@@ -30,9 +30,15 @@ def treated(day, plants=ALL, **said):
     )  # fmt: skip
 
 
-def found(treatments, labels=(), harvest=None, on=30):
+def every(treatments, labels=(), harvest=None, on=30):
     rules = RulesToKeep(tuple(labels), harvest, time(6))
     return cautions(treatments, rules, BEGINS + timedelta(on))
+
+
+def found(treatments, labels=(), harvest=None, on=30):
+    """Return what is warned of; waits that nobody said only where a day of harvest is given."""
+    said = every(treatments, labels, harvest, on)
+    return tuple(one for one in said if harvest or one.kind != "harvest")
 
 
 def kinds(*args, **more):
@@ -48,11 +54,31 @@ def test_a_harvest_is_too_soon_until_the_first_day_after_the_wait(days, warned):
     assert (day, one.batch) == (date(2026, 4, 7 + days), 1)
 
 
-def test_a_wait_that_nobody_said_is_asked_for_before_a_harvest_and_after_it_nothing_is():
-    late = treated(20)
-    assert kinds([treated(0), late], harvest=date(2026, 4, 14)) == [("harvest", 1)]
-    assert kinds([treated(0)]) == []
-    assert harvest_from([treated(0)], ()) is None
+def test_a_wait_that_nobody_said_is_asked_for_whether_or_not_a_day_of_harvest_is_known():
+    late, wanted = treated(20), date(2026, 4, 14)
+    assert kinds([treated(0), late], harvest=wanted) == [("harvest", 21), ("harvest", 1)]
+    after, before = (one.sentence for one in found([treated(0), late], harvest=wanted))
+    how_long = "How long to wait from Acarol on"
+    assert before.startswith(f"{how_long} 2026-04-06 until the harvest on 2026-04-14 was not said.")
+    assert after.startswith(f"{how_long} 2026-04-26 until harvest was not said.")
+    (said,) = every([treated(0)])
+    assert (said.kind, said.batch) == ("harvest", 1)
+    assert said.sentence == f"{how_long} 2026-04-06 until harvest was not said. Look at its label."
+    assert every([treated(0, waiting_days=0)]) == every([treated(0)], [LABEL]) == ()
+
+
+@pytest.mark.parametrize("unsaid", [0, 4, 20])
+def test_no_day_of_harvest_is_named_where_a_wait_was_not_said_whenever_that_was(unsaid):
+    known, other = treated(4, waiting_days=3), treated(unsaid, product="soap")
+    first, one = harvest_from([known, other], ())
+    assert (first, one) == (None, other)
+    first, one = harvest_from([known, replace(other, application=Application("Acarol"))], [LABEL])
+    assert first is not None
+    assert harvest_from([], ()) is None
+    assert harvest_unsaid(other) == (
+        "From when on harvest is allowed is not known: how long to wait from soap on "
+        f"{other.on} was not said."
+    )
 
 
 @pytest.mark.parametrize(("on", "warned"), [(0, True), (1, True), (2, False)])

@@ -53,11 +53,11 @@ def test_a_label_counts_and_what_begins_after_the_hours_closes_nothing():
 
 
 def test_what_is_left_off_is_said_once_with_its_last_time(season):
-    n, rows = len(season.plot.grid), (season.plot.grid, season.label)
+    grid, n = season.plot.grid, len(season.plot.grid)
     assert not closed_plants((), n).any()
     for wait, lines in ((24, [1, 2, 3, 7]), (72, [3, 4])):
         sprayed(season, lines, wait, product="Acarol" if wait == 24 else "")
-    first, second = left_off_in_words(season.closed(ON), rows, Units())
+    first, second = left_off_in_words(season.closed(ON), grid, Units())
     low, high = (np.count_nonzero(np.isin(season.label.line, some)) for some in ([1, 2, 7], [3, 4]))
     assert first == (
         "Closed until 09:00 on 2026-04-09 after a product that nobody named, so not on the route: "
@@ -168,5 +168,5 @@ def test_east_and_west_are_closed_each_until_their_time():
 
 def test_one_row_is_a_row(season):
     sprayed(season, [3], 24)
-    (said,) = left_off_in_words(season.closed(ON), (season.plot.grid, season.label), Units())
+    (said,) = left_off_in_words(season.closed(ON), season.plot.grid, Units())
     assert "plants in row 3." in said

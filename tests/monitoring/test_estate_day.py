@@ -47,10 +47,9 @@ def test_whose_results_a_season_reads_otherwise_goes_by_its_own_member_or_its_ro
     ]  # fmt: skip
 
 
-def test_due_is_what_was_not_seen_for_three_days_or_else_not_today():
+def test_due_is_what_was_not_seen_for_three_days_or_never_and_nothing_else():
     assert due([0, 2, 3, None]) == [2, 3]
-    assert due([0, 2]) == [1]
-    assert due([0]) == []
+    assert due([0, 2]) == due([0]) == due([]) == []
 
 
 def test_a_plot_that_nobody_may_enter_gets_no_hours_and_no_way_to_it(seasons):

@@ -20,8 +20,15 @@ from fieldmon.monitoring.record_tables import (
     log_table,
     treatments_table,
 )
-from fieldmon.reports.certification import _inspections, _PlotRecord
-from tests.monitoring.seasons import BEGINS, a_plot, a_season, some_results
+from fieldmon.plot.named_rows import plants_in_rows
+from fieldmon.reports.certification import _inspections, _PlotRecord, certification_report
+from tests.monitoring.seasons import (
+    BEGINS,
+    a_plot,
+    a_plot_with_named_rows,
+    a_season,
+    some_results,
+)
 from tests.monitoring.test_outside_changes import outside
 
 FULL = Application("Acarol", Dose(0.4, "l/ha"), 800.0, "Ann", '=1+1 "mites"\nseen', ended=time(9))
@@ -51,6 +58,28 @@ def test_a_treatment_has_what_a_certifier_asks_and_the_labels_wait(season):
     assert int(one["plants"]) == len(season.plot.grid)
     assert one["irac_group"] == "6"  # of a table that came later
     assert one["machinery"] == ""
+
+
+def test_a_treatment_says_where_it_was_in_words_as_do_log_and_the_certifiers_report(tmp_path):
+    made = a_season(tmp_path / "season.gpkg", a_plot_with_named_rows())
+    grid, zone = made.plot.grid, np.zeros(len(made.plot.grid), bool)
+    zone[np.flatnonzero(grid.row == 1)[:3]] = zone[np.flatnonzero(grid.row == 3)[2]] = True
+    parts = [plants_in_rows(grid, rows) for rows in ("1-2", "1-2,Top", "5a,top", "2")]
+    for plants in (*parts, zone, grid.row == 1, np.ones(len(grid), bool)):
+        made.treat(BEGINS, 0.5, plants=plants)
+    wanted = [
+        "rows 1–2", "rows 1–2, 102 · Top", "rows 101 · 5A, 102 · Top", "row 2",
+        "4 plants in rows 101 · 5A, 102 · Top", "row 101 · 5A", "the whole plot",
+    ]  # fmt: skip
+    table = treatments_table(made)
+    assert [str(one) for one in table["where"]] == wanted
+    assert [line["where"] for line in read(table)] == wanted
+    assert [*made.to_geopandas("treatments")["where"]] == wanted
+    logged = [one.sentence() for one in made.log() if one.kind == "treated"]
+    assert logged[0].endswith(", 40 plants, rows 1–2, batch 1")
+    assert logged[4].endswith("ha, 4 plants in rows 101 · 5A, 102 · Top, batch 5")
+    said = " ".join(certification_report([made], Units()).words())
+    assert all(one in said for one in wanted)
 
 
 def test_words_that_a_spreadsheet_would_run_stay_words(season):
@@ -97,6 +126,19 @@ def test_inspections_read_back_are_those_that_the_season_holds(tmp_path, faces):
     assert "its count is 0: taken as found" in " ".join(str(one) for one in back.messages)
     told = made.record(back.value, file.name, "Dan")
     assert (told.new, told.known) == (0, 3)
+
+
+def test_inspections_say_what_the_plots_file_calls_their_rows(tmp_path):
+    made = a_season(tmp_path / "season.gpkg", a_plot_with_named_rows())
+    made.record(Inspections.of([0, 20, 60], [0, 1, 0], BEGINS), "taps")
+    lines = read(inspections_table(made))
+    wanted = [("1", ""), ("101", "5A"), ("102", "Top")]
+    assert [(line["row"], line["row_name"]) for line in lines] == wanted
+    frame = made.to_geopandas("inspections")
+    assert [*zip(frame.row.astype(str), frame.row_name, strict=True)] == wanted
+    (tmp_path / "e.csv").write_bytes(csv_bytes([inspections_table(made)]))
+    back = read_inspections(tmp_path / "e.csv", made.plot.grid)
+    assert back.value.plant.tolist() == [0, 20, 60]
 
 
 def test_a_correction_names_who_inspected_and_who_corrected(tmp_path):

@@ -10,6 +10,7 @@ import shapely
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Application
 from fieldmon.monitoring.record_tables import inspections_table, treatments_table
 from tests.monitoring.seasons import BEGINS, a_season, some_results
@@ -88,3 +89,12 @@ def test_what_is_no_frame_and_a_day_before_the_season_are_refused(season):
         season.to_geopandas("labels")
     with pytest.raises(SettingError):
         season.to_geopandas("plants", BEGINS - timedelta(1))
+
+
+def test_a_days_chances_are_of_what_can_be_seen_and_a_seasons_of_all(tmp_path):
+    made = a_season(tmp_path / "season.gpkg", pest=shipped_pest("spider-mite"))
+    on = BEGINS + timedelta(3)
+    of_day = made.plan(on).plants.chance
+    of_all = made.to_geopandas("plants", on).morning
+    assert of_day.tolist() == made.morning_in_sight(on).tolist()
+    assert of_day.sum() < of_all.sum()

@@ -212,6 +212,10 @@ def test_cautions_and_harvest_are_of_treatments_up_to_the_day(season):
     assert (first, one.day) == (on(10), 2)
     first, one = season.harvest_from(on(6))
     assert (first, one.day) == (on(14), 6)
+    season.treat(on(15), 0.9, product="Oil")
+    first, one = season.harvest_from(on(15))
+    assert (first, one.day) == (None, 15)
+    assert season.harvest_from(on(14))[0] == on(14)
 
 
 def test_a_group_that_the_label_filled_in_follows_the_newest_table(season):

@@ -107,9 +107,12 @@ def test_a_row_that_says_otherwise_than_its_digest_is_named(db, column, other):
 
 
 def test_the_log_says_what_where_and_how_much():
-    assert treatments.in_words(PLACE, FULL) == "Acarol 0.5 l/ha on 0.5 ha, 17 plants"
-    assert treatments.in_words(PLACE, Application()) == (
-        "a product that nobody named on 0.5 ha, 17 plants"
+    assert treatments.in_words(PLACE, FULL, "row 3") == (
+        "Acarol 0.5 l/ha on 0.5 ha, 17 plants, row 3"
+    )
+    assert treatments.in_words(PLACE, Application(), "the whole plot") == (
+        "a product that nobody named on 0.5 ha, 17 plants, the whole plot"
     )
     single = TreatedPlace(None, np.arange(20) == 3, 0.00025)
-    assert treatments.in_words(single, Application("Solo")) == "Solo on 0.00025 ha, 1 plant"
+    said = treatments.in_words(single, Application("Solo"), "1 plant in row 3")
+    assert said == "Solo on 0.00025 ha, 1 plant in row 3"

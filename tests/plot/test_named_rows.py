@@ -9,7 +9,7 @@ import pytest
 from fieldmon.errors import SettingError
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.layout import rectangle
-from fieldmon.plot.named_rows import plants_in_rows
+from fieldmon.plot.named_rows import place_in_words, plants_in_rows
 from tests.app.chosen import a_plot
 
 
@@ -82,3 +82,13 @@ def test_whoever_names_no_row_hears_what_rows_are_called():
         plants_in_rows(odd, "Malbec")
     with pytest.raises(SettingError, match=r"Rows of this plot are 1–5\."):
         plants_in_rows(rectangle(5, 4), "Malbec")
+
+
+def test_a_place_is_called_by_the_rows_that_it_fills_else_by_how_many_plants_of_which():
+    grid = rectangle(3, 4)
+    row, n = grid.row, len(grid)
+    said = {
+        "the whole plot": np.ones(n, bool), "row 2": row == 1, "rows 2–3": row > 0,
+        "1 plant in row 1": np.arange(n) == 2, "5 plants in rows 1–2": np.arange(n) < 5,
+    }  # fmt: skip
+    assert [place_in_words(grid, plants) for plants in said.values()] == [*said]

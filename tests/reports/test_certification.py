@@ -64,13 +64,28 @@ def test_every_field_that_globalgap_asks_for_stands_there(made):
     assert (first["Operator"], first["Authorised by"]) == ("Ann Cohen", "Dr Levi")
     assert (first["Began and ended"], first["Time zone"]) == ("07:00–09:30", "Asia/Jerusalem")
     assert (first["Machinery"], first["Crop"]) == ("boom sprayer 12 m", "tomato")
-    assert (first["Waiting period"], first["Harvest from"]) == ("7 days", "2026-04-14")
+    assert (first["Waiting period"], first["Harvest from"]) == (
+        "7 days",
+        "not known, see 2026-04-11",
+    )
     assert first["Entry from"] == "2026-04-06 21:30"
+    assert last["Harvest from"] == "not said"
     assert last["Operator"] == last["Dose"] == last["Waiting period"] == "not said"
     assert (first["Mode of action (IRAC)"], last["Mode of action (IRAC)"]) == ("6", "28")
     said = " ".join(made.words())
     assert f"Reason: {REASON}" in said
     assert "Advised: Treat: 6 % of the plants are believed infested. (2026-04-06)" in said
+
+
+def test_no_card_names_a_day_of_harvest_while_nobody_said_how_long_a_treatment_waits(made, season):
+    assert {card["Harvest from"] for card in cards(made)} == {
+        "not known, see 2026-04-11",
+        "not said",
+    }
+    asked = "How long to wait from soap on 2026-04-11 until harvest was not said."
+    assert " ".join(made.words()).count(asked) == 2  # in the summary, and on its card
+    before = certification_report([season], Units(), BEGINS + timedelta(4))
+    assert cards(before)[0]["Harvest from"] == "2026-04-14"
 
 
 def test_it_says_what_to_beware_of_what_is_missing_and_the_last_digest(made, season):

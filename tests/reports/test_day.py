@@ -99,7 +99,7 @@ def test_a_day_tells_what_was_treated(worked, last, done):
     day = BEGINS + timedelta(days=2)
     treated = day_report(DayFacts.of_season(worked, day, last), Units())
     n = f"{len(worked.plot.grid):,}"
-    assert table(treated, "Treatments").rows == ((f"{day}", "Oil", n, "70 %", ""),)
+    assert table(treated, "Treatments").rows == ((f"{day}", "Oil", n, "70 %", "not said"),)
     assert not done.treatments
 
 

@@ -106,7 +106,7 @@ def test_records_treatments_and_what_is_assumed_stand_on_the_last_page(of_season
     assert table(dotted, "What was recorded").rows[0][0] == f"{at:%d.%m.%Y %H:%M}"
     (treated,) = table(of_season, "Treatments").rows
     on = str(BEGINS + timedelta(days=2))
-    assert treated == (on, "Oil", f"{len(worked.plot.grid):,}", "70 %", "")
+    assert treated == (on, "Oil", f"{len(worked.plot.grid):,}", "70 %", "not said")
     settings = {row[0]: row[1:] for row in table(of_season, "Settings").rows}
     assert settings["Spread to a neighbour, a night"] == ("2 %", "assumed")
     assert settings["Working hours"] == ("1.5", "chosen")

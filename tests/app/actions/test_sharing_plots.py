@@ -100,6 +100,22 @@ def test_whose_results_a_season_would_read_otherwise_is_said(said, tmp_path):
     assert said[-1].endswith("in 40 seasons.")
 
 
+def test_where_no_plot_is_due_none_is_planned_until_those_seen_are_asked_for(app, monkeypatch):
+    every = estate.plots
+    monkeypatch.setattr(
+        estate, "plots", lambda: ([replace(one, days_since=1) for one in every()[0][:3]], [])
+    )
+    go(app, "plots")
+    press(app, texts.PLAN_ALL)
+    assert not app.exception
+    assert texts.PLAN_ALL_NONE in texts_of(app)
+    assert layer(app, "route") is None
+    app.checkbox(key="crew_also").check().run()
+    assert not app.exception
+    assert texts.PLAN_ALL_NONE not in texts_of(app)
+    assert "plots; expect" in texts_of(app)
+
+
 def test_who_has_no_plot_is_said_to_be_free(said):
     free = shared_plots.planned([], EstateCrew(robots=2), lambda *_: None).free
     sharing_plots._say(

@@ -49,6 +49,23 @@ def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):
     assert shown[-1] == ("caption", texts.EFFECTS_TREATED)
 
 
+def test_no_day_of_harvest_is_shown_where_the_wait_of_a_later_treatment_was_not_said(
+    shown, tmp_path
+):
+    season = a_season(tmp_path / "season.gpkg")
+    season.treat(BEGINS, 0.5, application=Application("Oil", waiting_days=3))
+    cautions.show_treatments(choices(season))
+    assert shown[0][1].startswith("After the treatments so far, harvest is allowed from **")
+    season.treat(BEGINS, 0.5, product="soap")
+    shown.clear()
+    cautions.show(choices(season))
+    cautions.show_treatments(choices(season))
+    (_, warned), (_, said), *_ = shown
+    assert warned.startswith("- How long to wait from soap on ")
+    assert said.startswith("From when on harvest is allowed is not known: how long to wait from ")
+    assert not [words for _, words in shown if "harvest is allowed from" in words]
+
+
 def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(
     shown, tmp_path, monkeypatch
 ):

@@ -206,6 +206,8 @@ def _sum_up(infestations: Infestations, weights: Weights, worked: Worked, drawn:
             drawn.roots[in_season, plant] += 1.0
             continue
         y, x = squares.across[i] - squares.across[parent], squares.along[i] - squares.along[parent]
-        drawn.jumps[in_season, y + half, x + half] += 1.0
+        # of one that stays as it is, the wind may have been stronger than it is now
+        if max(abs(y), abs(x)) <= half:
+            drawn.jumps[in_season, y + half, x + half] += 1.0
     drawn.at_start[0] += at_start
     drawn.at_start[1] += at_start**2

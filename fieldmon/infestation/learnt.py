@@ -131,7 +131,7 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
         Learnt("infested at the start", *astuple(at_start)),
         Learnt("arrivals a night", *astuple(arrivals)),
         Learnt("jumps beyond neighbours", jumps, jumps, jumps),
-        _length(belief),
+        *_length(belief),
         *_hiding(belief),
     )
 
@@ -171,11 +171,16 @@ def _hiding(belief: TracedPairs) -> tuple[Learnt, ...]:
     return (Learnt("hiding", hides, hides, hides),)
 
 
-def _length(belief: TracedPairs) -> Learnt:
-    """Return how far jumps go on average, to first order in what is not known of the kernels."""
+def _length(belief: TracedPairs) -> tuple[Learnt, ...]:
+    """Return how far jumps go on average, to first order in what is not known of the kernels.
+
+    Nothing where all land anywhere.
+    """
+    if not belief.beyond.any():
+        return ()
     share = belief.beyond / belief.beyond.sum()
     means = kernel_means(belief.reach.cells.size_m, belief.reach.kernels)
     mean = float(share @ means)
     doubt = share * (means - mean) * belief.counts.doubt[JUMPED:]
     off = SIGMAS * float(np.sqrt((doubt**2).sum()))
-    return Learnt("length of jumps", mean, max(mean - off, 1.0), mean + off)
+    return (Learnt("length of jumps", mean, max(mean - off, 1.0), mean + off),)

@@ -385,7 +385,8 @@ class History:
 
     def remember(self, morning: Belief, day: int, estimate: PlotEstimate) -> None:
         """Take this for what is estimated of a day: it was worked out from the same before."""
-        self._last_estimate.keep(morning, day, estimate)
+        found = 0 if self.belief.treated else np.count_nonzero(self.states(day) == PRESENT)
+        self._last_estimate.keep(morning, day, replace(estimate, found=int(found)))
 
     @cached_property
     def _last_estimate(self) -> _Last[PlotEstimate]:

@@ -26,6 +26,7 @@ class Skips:
 
     A plant that was skipped is left out of plans for the next day. Each further skip in a row
     doubles that: 1, 2, 4, 8 ... days. An inspection ends the row, at whatever time of the same day.
+    Where all plants were skipped, as of a locked gate, none is left out.
 
     Parameters
     ----------
@@ -71,7 +72,7 @@ class Skips:
         """Return ``(n,)`` the plants that are left out of the plans of a day after these skips."""
         doubled = np.clip(self.times - 1, 0, _MOST_DOUBLED)
         out: NDArray[np.bool_] = (self.times > 0) & (day - self.last <= 1 << doubled)
-        return out
+        return np.zeros_like(out) if out.all() else out
 
 
 def without_skipped(scene: Scene, skips: Skips) -> Scene:

@@ -140,6 +140,6 @@ def too_few_sentence(seeds: int, told_by: str) -> str:
     if seeds >= _ENOUGH:
         return ""
     return (
-        f"With {seeds} seasons intervals come out too narrow. Choose nothing by fewer than "
-        f"{_ENOUGH} ({told_by})."
+        f"With {seeds} season{'s' if seeds > 1 else ''} intervals come out too narrow. Choose "
+        f"nothing by fewer than {_ENOUGH} ({told_by})."
     )

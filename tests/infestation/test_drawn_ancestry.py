@@ -126,3 +126,27 @@ def test_ancestries_are_drawn_as_often_as_they_are_likely(finds, grown):
     assert drawn.jumps.sum() + drawn.roots.sum() == pytest.approx(
         kept * len(finds) + drawn.hidden.sum()
     )
+
+
+def test_a_jump_from_before_the_wind_dropped_is_counted_in_no_other_cell():
+    """It stays as it was drawn; what lay beyond the kernel was written beyond its array."""
+    row = rectangle(1, 40)
+    landing, mornings = landing_of(row), 16
+    kernel = np.einsum("k,kij->ij", np.full(8, 0.125), landing.kernels)
+    made = Infestations.room(8)
+    for place, (plant, begins, ends) in enumerate([(0, 0, 3), (30, 2, 3)]):
+        made.plant[place], made.begins[place], made.ends[place] = plant, begins, ends
+        made.found[place] = made.there[place] = True
+    made.parent[1], made.children[0] = 0, 1
+    grown = np.arange(mornings)
+    world = Weights(
+        landing.cells, kernel, np.cumsum(kernel) / kernel.sum(), np.full(mornings, 0.3),
+        np.full((40, mornings), 1e-3, np.float32), 2, mornings - 2, grown, grown,
+        np.ones((48, mornings), np.float32),
+    )  # fmt: skip
+    last_find = np.where(np.isin(np.arange(40), [0, 30]), 3, -1)
+    drawn = DrawnSums.none(mornings, 40, len(kernel))
+    kept = draw_ancestries(made, np.full(40, NOBODY), world, last_find, (1, 20, 2), drawn)
+    assert made.parent[1] == 0
+    assert drawn.jumps.sum() == 0.0
+    assert drawn.roots.sum() == kept

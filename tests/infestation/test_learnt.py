@@ -92,7 +92,7 @@ def test_jumps_that_are_all_of_one_kernel_are_as_long_as_it_without_a_doubt(k):
     belief = TracedPairs.of(GRID, FLAT).of_pest(mite)
     alone = SimpleNamespace(beyond=np.eye(6)[k], reach=belief.reach, counts=belief.counts)
     mean = kernel_means(belief.reach.cells.size_m, belief.reach.kernels)[k]
-    length = _length(alone)
+    length = _length(alone)[0]
     assert (length.value, length.low, length.high) == pytest.approx((mean, mean, mean))
 
 
@@ -145,3 +145,9 @@ def test_what_comes_from_none_is_told_by_the_ancestry_of_finds():
         evening.counts.estimate(AT_START, float(evening.at_start[0])).value
         + evening.counts.estimate(AT_START_ELSEWHERE, float(evening.at_start[1])).value
     )
+
+
+def test_of_a_pest_whose_jumps_all_land_anywhere_there_is_no_length():
+    far = Movement("exponential", 0.1, reach_m=5.0, share_of_long_jumps=1.0)
+    belief = TracedPairs.of(rectangle(9, 9), np.full(81, 0.02)).of_pest(Pest("far", movement=far))
+    assert "length of jumps" not in {one.name for one in learnt_from(belief, 0.84)}

@@ -17,7 +17,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season, day_figures
-from fieldmon.monitoring.history import Treatment
+from fieldmon.monitoring.history import BeliefSettings, Treatment
 from fieldmon.monitoring.mornings import Mornings, _arrays_in, _causes, _packed, _unpacked
 from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.layout import rectangle
@@ -338,3 +338,13 @@ def test_a_season_of_a_named_pest_keeps_its_mornings_until_its_weather_is_anothe
     season.change(replace(season.settings, weather=warmer), season.settings)
     assert not the_same(of_day(Season(path), 11), anew[11])
     assert the_same(of_day(Season(path), 11), all_over(season)[11])
+
+
+def test_an_estimate_that_the_file_keeps_tells_of_plants_found_and_left(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
+    for day in range(3):
+        season.record(found_on(day, season), f"day {day}")
+    on = BEGINS + timedelta(days=2)
+    said, again = (one.status(on).estimate for one in (season, Season(season.path)))
+    assert said.found > 0
+    assert again == said

@@ -99,3 +99,15 @@ def test_a_plan_says_how_many_plants_it_leaves_out(scene):
     assert wished.scene.are_open(np.array([300, 0])).all()
     assert any("1 nobody could inspect last time" in one
                for one in explain(wished.scene, wished.work))  # fmt: skip
+
+
+def test_where_every_plant_was_skipped_none_is_left_out():
+    """A locked gate is no reason to stay away tomorrow."""
+    every, never = np.arange(4), np.full(4, NEVER)
+    assert not Skips.of(every, np.full(4, 3), never).left_out(4).any()
+    assert Skips.of(every[1:], np.full(3, 3), never).left_out(4).tolist() == [
+        False,
+        True,
+        True,
+        True,
+    ]

@@ -204,13 +204,14 @@ def _unsaid_wait(
     if waits(one, label).harvest_from is not None:
         return
     said = worded(
-        "How long to wait from {product} on {day} until harvest was not said. Look at its label.",
+        "How long to wait from {product} on {day} until harvest was not said. Look at its label, "
+        "and give it in the label table.",
         **_named(one, rules.units),
     )
     if rules.harvest is not None and one.on <= rules.harvest:
         said = worded(
             "How long to wait from {product} on {day} until the harvest on {harvest} was not "
-            "said. Look at its label.",
+            "said. Look at its label, and give it in the label table.",
             harvest=rules.units.day(rules.harvest), **_named(one, rules.units),
         )  # fmt: skip
     yield Caution("harvest", said, one.batch)

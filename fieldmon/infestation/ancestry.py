@@ -83,11 +83,14 @@ class ToldNight(NamedTuple):
         The share of all plants that is infested from outside: anywhere, and by the edge.
     length
         How long it is with its day, in days, and how warm for each stage of the pest.
+    wind_m_s
+        Where the wind has gone of late.
     """
 
     sends: float
     arrive: tuple[float, float] = (ARRIVE, ARRIVE_BY_EDGE)
     length: tuple[float, ...] = (1.0,)
+    wind_m_s: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,9 +136,7 @@ class Ancestry:
         What lives on the plot; None: nobody named it.
     nights
         ``(t, 1 + stages)`` how long each night and its day were, and how warm for each stage of the
-        pest, as `Course.of_pest` takes them.
-    wind_m_s
-        Where the wind has gone of late.
+        pest, as `Course.of_pest` takes them; empty: nobody named it.
     """
 
     grid: PlantGrid
@@ -157,7 +158,6 @@ class Ancestry:
     taught: Floats = field(default_factory=lambda: np.zeros((2, KERNELS + 2)))
     pest: Pest | None = None
     nights: Floats = field(default_factory=lambda: np.zeros((0, 1)))
-    wind_m_s: tuple[float, float] = (0.0, 0.0)
 
     def __repr__(self) -> str:
         return f"<Ancestry of {np.count_nonzero(self.infestations.found)} finds>"
@@ -172,14 +172,13 @@ class Ancestry:
     def of_pest(self, pest: Pest) -> Ancestry:
         """Return one that has just begun, of a plot on which this pest lives."""
         of = replace(self, pest=pest, nights=np.zeros((0, 1 + len(pest.stages))))
-        return replace(of, rates=Rates.at_first(of.landing.first))
+        return replace(of, rates=Rates.at_first(of.landing().first))
 
-    @property
-    def landing(self) -> Landing:
-        """Where jumps land."""
+    def landing(self, wind_m_s: tuple[float, float] = (0.0, 0.0)) -> Landing:
+        """Return where jumps land if the wind has gone there of late."""
         if self.pest is None or self.pest.movement.kernel == "adjacent":
             return landing_of(self.grid)
-        return pest_landing_of(self.grid, kernel_of(self.pest.movement), self.wind_m_s)
+        return pest_landing_of(self.grid, kernel_of(self.pest.movement), wind_m_s)
 
     @property
     def course(self) -> Course:
@@ -212,7 +211,7 @@ class Ancestry:
         return replace(
             begun, rates=rates, at_start=self.at_start, began_anew=True, heard=self.heard,
             idle=self.idle, hiding=self.hiding, earlier=self.taught, taught=self.taught,
-            pest=self.pest, nights=self.nights[:0], wind_m_s=self.wind_m_s,
+            pest=self.pest, nights=self.nights[:0],
         )  # fmt: skip
 
     @property
@@ -276,7 +275,9 @@ class Ancestry:
                 self,
                 missed=np.concatenate([self.missed, nothing]),
                 sends=np.append(self.sends, night.sends),
-                nights=np.concatenate([self.nights, [night.length]]),
+                nights=self.nights
+                if self.pest is None
+                else np.concatenate([self.nights, [night.length]]),
                 rates=self.rates
                 if day or self.began_anew
                 else self.rates._replace(anywhere=anywhere, by_edge=by_edge),
@@ -286,9 +287,12 @@ class Ancestry:
         )
         if not hears:
             return after, None
-        many = int(np.count_nonzero(after.infestations.there))
+        many, landing = (
+            int(np.count_nonzero(after.infestations.there)),
+            self.landing(night.wind_m_s),
+        )
         for k in range(_on(after.heard - 1, _ROUNDS)):
-            after, hidden, unseen = _drawn(after, after.landing, k, night.arrive)
+            after, hidden, unseen = _drawn(after, landing, k, night.arrive)
         after = replace(after, idle=0)
         chance = np.clip(
             1.0 - np.exp(-unseen) * (1.0 - np.minimum(hidden, 1.0)), LEAST_CHANCE, _MOST
@@ -319,14 +323,8 @@ class Ancestry:
             "hiding": self.hiding,
             "earlier": self.earlier,
             "taught": self.taught,
-            **self._of_pest,
+            **({} if self.pest is None else {"nights": self.nights}),
         }
-
-    @property
-    def _of_pest(self) -> dict[str, NDArray[np.generic]]:
-        if self.pest is None:
-            return {}
-        return {"nights": self.nights, "wind_m_s": np.array(self.wind_m_s)}
 
     @classmethod
     def of_arrays(
@@ -349,11 +347,10 @@ class Ancestry:
             plant, begins, ends, found != 0, parent, children, there != 0, earliest
         )
         rates = Rates(shares, *map(float, others))
-        x, y = kept.pop("wind_m_s", np.zeros(2)).tolist()
         return cls(
             grid, new=(), infestations=infestations, rates=rates,
             arrived=arrived, began_anew=bool(anew),
-            heard=int(heard), idle=int(idle), pest=pest, wind_m_s=(float(x), float(y)), **kept,
+            heard=int(heard), idle=int(idle), pest=pest, **kept,
         )  # fmt: skip
 
 

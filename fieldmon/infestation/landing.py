@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -44,7 +44,7 @@ class Landing(KernelsOnCells):
         ``(8,)`` how jumps are shared out before anything is found, in finds.
     """
 
-    first: Floats = field(default_factory=lambda: SHARES)
+    first: Floats
 
     def met(self, sent: Floats, there: Floats, first: int) -> Floats:
         """Return how much of what was sent would meet something there, by each kernel, ``(2, 8)``.

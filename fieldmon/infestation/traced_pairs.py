@@ -424,13 +424,12 @@ class TracedPairs:
         if self.ancestry is None:
             return by_origins
         hiding = self.latency.likely if self.latency is not None else self.ancestry.hiding
-        ancestry = replace(self.ancestry, hiding=hiding, wind_m_s=by_origins.wind_m_s)
-        night = ToldNight(sends, self._told_from_outside(spread))
+        # what goes far comes from anywhere
+        sends *= 1.0 - self.reach.anywhere
+        night = ToldNight(sends, self._told_from_outside(spread), wind_m_s=by_origins.wind_m_s)
         if isinstance(spread, PestSpread):
-            # what goes far comes from anywhere
-            afar = 0.0 if spread.movement is None else spread.movement.share_of_long_jumps
-            night = ToldNight(sends * (1.0 - afar), night.arrive, (spread.days, *spread.warmth))
-        ancestry, chance = ancestry.overnight(night)
+            night = night._replace(length=(spread.days, *spread.warmth))
+        ancestry, chance = replace(self.ancestry, hiding=hiding).overnight(night)
         if chance is not None:
             # a logarithmic pool of both maps (Genest & Zidek 1986)
             odds = _BOTH * _odds(chance) ** _ANCESTRY * _odds(by_origins.chance) ** _ORIGINS

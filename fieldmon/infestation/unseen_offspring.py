@@ -67,10 +67,11 @@ def stays_unseen(
     sends, shares = jumps
     back, lost = np.conj(landing.mixed(shares)), np.zeros_like(alone[0])
     chance, offspring = np.empty((2, *alone.shape), alone.dtype)
-    sent_since = np.empty_like(offspring) if course.delays else offspring
+    delays = course.delays
+    sent_since = np.empty_like(offspring) if delays else offspring
     for night in range(len(alone) - 1, -1, -1):
         np.exp(lost, out=sent_since[night])
-        if course.delays:
+        if delays:
             offspring[night] = sent_since[course.grown[night]]
         np.multiply(alone[night], offspring[night], out=chance[night])
         if night:

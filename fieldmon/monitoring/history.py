@@ -378,35 +378,35 @@ class History:
 
         They are found and not treated (`BeliefSettings.treated`), and so not in `estimate`.
         """
-        if self.belief.treated:
+        if (flagged := self._flagged(day)) is None:
             return 0.0
-        known = self.in_hindsight(morning, day).chance
-        return float(known[self.states(day) == PRESENT].sum())
+        return float(self.in_hindsight(morning, day).chance[flagged].sum())
 
     def remember(self, morning: Belief, day: int, estimate: PlotEstimate) -> None:
         """Take this for what is estimated of a day: it was worked out from the same before."""
-        found = 0 if self.belief.treated else np.count_nonzero(self.states(day) == PRESENT)
-        self._last_estimate.keep(morning, day, replace(estimate, found=int(found)))
+        flagged = self._flagged(day)
+        found = 0 if flagged is None else int(np.count_nonzero(flagged))
+        self._last_estimate.keep(morning, day, replace(estimate, found=found))
 
     @cached_property
     def _last_estimate(self) -> _Last[PlotEstimate]:
         return _Last()
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
-        evening = self.in_hindsight(morning, day)
         # what was found is known: it is not out there any more
-        found = None if self.belief.treated else self.states(day) == PRESENT
-        return estimate_of(self.grid, evening, found=found)
+        return estimate_of(self.grid, self.in_hindsight(morning, day), found=self._flagged(day))
+
+    def _flagged(self, day: int) -> NDArray[np.bool_] | None:
+        """Return ``(n,)`` which plants were found infested until a day; None: they are treated."""
+        return None if self.belief.treated else self.states(day) == PRESENT
 
     def found_and_left(self, evening: Belief, day: int) -> NDArray[np.bool_] | None:
         """Return the plants of which it is certain that they are infested; None: all are treated.
 
         A treatment leaves some of them in doubt, as all other plants.
         """
-        if self.belief.treated:
-            return None
-        found: NDArray[np.bool_] = (self.states(day) == PRESENT) & (evening.chance > KNOWN)
-        return found
+        flagged = self._flagged(day)
+        return None if flagged is None else flagged & (evening.chance > KNOWN)
 
     def level_range(self, morning: Belief, day: int) -> LevelRange:
         """Return how far the chances of plants not found yet may be off together, after a day."""

@@ -612,21 +612,17 @@ def _chosen(name: str, ours: str, theirs: str) -> tuple[str, str]:
         return _members(ours), _members(theirs)
     if name not in ("pest", "weather"):
         return _apart(ours, theirs)
-    short = _pest if name == "pest" else _weather
-    here, there = short(ours), short(theirs)
+    short = settings_log.pest_in if name == "pest" else _weather
+    here, there = (short(one) or "none" for one in (ours, theirs))
     if here != there:
         return here, there
     return f"{here} (this copy's figures)", f"{there} (the other copy's figures)"
 
 
-def _pest(pest: str) -> str:
-    return str((json.loads(pest) or {"name": "none"})["name"])
-
-
 def _weather(weather: str) -> str:
-    """Return until when weather is, in UTC."""
+    """Return until when weather is, in UTC; "" where there is none."""
     at = (json.loads(weather) or {}).get("at", ())
-    return f"until {datetime.fromtimestamp(max(at), UTC):%Y-%m-%d}" if at else "none"
+    return f"until {datetime.fromtimestamp(max(at), UTC):%Y-%m-%d}" if at else ""
 
 
 def _differing(copies: list[dict[str, list[Row]]], merged: list[Row]) -> tuple[str, ...]:

@@ -85,7 +85,12 @@ def begun_at(db: sqlite3.Connection) -> str:
 
 def pest(db: sqlite3.Connection) -> str:
     """Return the name of the pest that is looked for now; "" where nobody said."""
-    chosen = json.loads(now(db).get("pest", "null"))
+    return pest_in(now(db).get("pest", "null"))
+
+
+def pest_in(kept: str) -> str:
+    """Return the name of the pest that a setting keeps; "" where it is none."""
+    chosen = json.loads(kept)
     return "" if chosen is None else str(chosen["name"])
 
 

@@ -134,8 +134,7 @@ class Comparison:
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A comparison's")
         days = len(self.samplers), len(self.seeds), self.left.shape[-1]
-        arrays = [name for name in vars(self) if name not in ("samplers", "seeds", "season")]
-        must_hold_shapes(self, "A comparison's", dict.fromkeys(arrays, days))
+        must_hold_shapes(self, "A comparison's", dict.fromkeys(_COLUMNS, days))
 
     def __repr__(self) -> str:
         return f"<Comparison: {', '.join(self.samplers)}, {self._seasons('season')}>"

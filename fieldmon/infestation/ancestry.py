@@ -20,7 +20,7 @@ from fieldmon.infestation.ancestry_rates import (
     DrawnEvidence,
     Rates,
 )
-from fieldmon.infestation.chance_bounds import LEAST_CHANCE
+from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.cohorts import Age
 from fieldmon.infestation.course import BEFORE, Course
 from fieldmon.infestation.drawn_ancestry import DrawnSums, draw_ancestries
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.floating[Any]]
-    _Finds = tuple[NDArray[np.int64], NDArray[np.int64]]
+    _Finds = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
 
 # In a night, rates are estimated after so many draws of few sweeps each, and after a last one of
 # many, by which chances are told: days 0, 1, 2 and later. In the first nights there are two rounds,
@@ -110,8 +110,8 @@ class Ancestry:
         ``(t,)`` what an infested plant sent out in each night, once it was grown.
     last_find
         ``(n,)`` the day of each plant's last find, or -1 minus the nights before the season.
-    new
-        Plants found since the last night.
+    new, new_left
+        Plants found since the last night, and those of them that were left infested.
     taken
         ``(m, n)`` how likely each plant was infested already by the ancestry of finds.
     infestations
@@ -158,6 +158,7 @@ class Ancestry:
     taught: Floats = field(default_factory=lambda: np.zeros((2, KERNELS + 2)))
     pest: Pest | None = None
     nights: Floats = field(default_factory=lambda: np.zeros((0, 1)))
+    new_left: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Ancestry of {np.count_nonzero(self.infestations.found)} finds>"
@@ -188,31 +189,63 @@ class Ancestry:
         return Course.of_pest(self.pest, self.nights)
 
     def learn(
-        self, plants: NDArray[np.int32], found: NDArray[np.bool_], detects: Floats
+        self,
+        plants: NDArray[np.int32],
+        found: NDArray[np.bool_],
+        detects: Floats,
+        *,
+        treated: bool = True,
     ) -> Ancestry:
-        """Return what is known after inspecting `plants` ``(k,)`` that finds are destroyed on."""
+        """Return what is known after inspecting `plants` ``(k,)``.
+
+        `treated` is whether finds are destroyed; else they stay infested.
+        """
         today = np.zeros((1, len(self.grid)))
         overlooked = np.log1p(-np.minimum(detects[~found], 1.0 - LEAST_CHANCE))
         np.add.at(today[0], plants[~found], overlooked)
-        new = tuple(dict.fromkeys((*self.new, *plants[found].tolist())))
+        finds = plants[found].tolist()
+        new = tuple(dict.fromkeys((*self.new, *finds)))
+        new_left = tuple(set(self.new_left).difference(finds)) + (() if treated else tuple(finds))
         days = len(self.sends)
         before, first = self.missed[:days], self.missed[days:].sum(axis=0)
         missed = np.concatenate([before, (today + first).astype(np.float16)])
-        return replace(self, missed=missed, new=new)
+        return replace(self, missed=missed, new=new, new_left=new_left)
 
     def anew(self, chance: Floats) -> Ancestry:
         """Return an ancestry that begins today with other chances ``(n,)``, as after a treatment.
 
-        Of how infestations come about it knows what was learnt, but for how many were at the start.
+        Of how infestations come about it knows what was learnt, but for how many were at the start,
+        and which plants were left infested, unless they may be clean by now.
         """
         start = Rates(self.rates.shares)
         rates = self.rates._replace(start=start.start, start_by_edge=start.start_by_edge)
         begun = Ancestry.of(self.grid, chance)
         return replace(
-            begun, rates=rates, at_start=self.at_start, began_anew=True, heard=self.heard,
-            idle=self.idle, hiding=self.hiding, earlier=self.taught, taught=self.taught,
-            pest=self.pest, nights=self.nights[:0],
+            begun, infestations=self._left_infested(chance), rates=rates, at_start=self.at_start,
+            began_anew=True, heard=self.heard, idle=self.idle, hiding=self.hiding,
+            earlier=self.taught, taught=self.taught, pest=self.pest, nights=self.nights[:0],
         )  # fmt: skip
+
+    @property
+    def left(self) -> NDArray[np.bool_]:
+        """Which plants were found until last night and left infested, ``(n,)``."""
+        left, infestations = np.zeros(len(self.grid), np.bool_), self.infestations
+        goes_on = infestations.goes_on(BEFORE + len(self.sends))
+        left[infestations.plant[goes_on & infestations.found]] = True
+        return left
+
+    def _left_infested(self, chance: Floats) -> Infestations:
+        """Return those left infested and still known to be, as known from the first morning on."""
+        left = self.left
+        left[list(self.new)] = False
+        left[list(self.new_left)] = True
+        plants = np.flatnonzero(left & (chance > KNOWN))
+        made = Infestations.room(max(_LEAST_ROOM, len(plants)))
+        known = slice(0, len(plants))
+        made.plant[known] = plants
+        made.begins[known] = made.ends[known] = made.earliest[known] = BEFORE
+        made.found[known] = made.there[known] = True
+        return made
 
     @property
     def waits(self) -> bool:
@@ -252,7 +285,7 @@ class Ancestry:
     def sweeps(self) -> tuple[int, ...]:
         """How many sweeps there are in each draw of a night that has begun."""
         last = BEFORE + len(self.sends)
-        settled = self.infestations.there & (self.infestations.ends <= last - _SETTLED)
+        settled = self.infestations.there & (self.infestations.seen <= last - _SETTLED)
         moving = max(int(np.count_nonzero(~settled)), 1)
         few = max(_LEAST_SWEEPS, min(_FEW_SWEEPS, _FEW_MOVES // moving))
         many = max(_LEAST_SWEEPS, min(_MANY_SWEEPS, _MANY_MOVES // moving))
@@ -264,7 +297,7 @@ class Ancestry:
         """Return what is known the next morning, and each plant's chance ``(n,)``.
 
         There are no chances (None) where nothing was inspected since the night before: what was
-        found has had its say.
+        found has had its say. Those `left` infested are certain.
         """
         day, n = len(self.sends), len(self.grid)
         hears = bool(self.new) or bool(self.missed[day:].any())
@@ -287,16 +320,15 @@ class Ancestry:
         )
         if not hears:
             return after, None
-        many, landing = (
-            int(np.count_nonzero(after.infestations.there)),
-            self.landing(night.wind_m_s),
-        )
+        infestations, landing = after.infestations, self.landing(night.wind_m_s)
+        many = int(np.count_nonzero(infestations.there & (infestations.seen > 0)))
         for k in range(_on(after.heard - 1, _ROUNDS)):
             after, hidden, unseen = _drawn(after, landing, k, night.arrive)
         after = replace(after, idle=0)
         chance = np.clip(
             1.0 - np.exp(-unseen) * (1.0 - np.minimum(hidden, 1.0)), LEAST_CHANCE, _MOST
         )
+        chance[after.left] = MOST_CHANCE
         if after.is_old or many > _MOST_INFESTATIONS:
             after = after.anew(chance)
         return after, chance
@@ -331,20 +363,17 @@ class Ancestry:
         cls, grid: PlantGrid, arrays: dict[str, NDArray[Any]], pest: Pest | None = None
     ) -> Ancestry:
         """Return what such arrays have kept; raise `ValueError` if they are none of its plants."""
-        kept = dict(arrays)
-        plant, begins, ends, found, parent, children, there, earliest = kept.pop("infestations")
+        kept: dict[str, Any] = dict(arrays)
+        plant, begins, ends, found, parent, children, there, earliest, seen = kept.pop(
+            "infestations"
+        )
         shares, others = np.split(kept.pop("rates"), [len(SHARES)])
-        # a season's file of before says no more than the first two
-        arrived, anew, *since = kept.pop("since").tolist()
-        heard, idle = since or (len(kept["sends"]), 0)
-        n, at_start = len(grid), kept["at_start"]
-        if len(at_start) == 2:  # so it was kept before: without what follows for the rates
-            number, variance = at_start
-            kept["at_start"] = np.array([number, variance + (_START_DOUBT * number) ** 2, 0.0])
+        arrived, anew, heard, idle = kept.pop("since").tolist()
+        n = len(grid)
         if any(kept[name].shape[-1:] != (n,) for name in ("start", "missed", "last_find", "taken")):
             raise ValueError(f"An ancestry of {n} plants must have arrays of so many.")
         infestations = Infestations(
-            plant, begins, ends, found != 0, parent, children, there != 0, earliest
+            plant, begins, ends, found != 0, parent, children, there != 0, earliest, seen
         )
         rates = Rates(shares, *map(float, others))
         return cls(
@@ -362,7 +391,10 @@ def _with_finds(of: Ancestry) -> Ancestry:
     used = int(np.count_nonzero(of.infestations.there)) + len(of.new)
     spare = max(_LEAST_ROOM, int(_ROOM * used))
     made = of.infestations.copied(max(0, used + spare - len(of.infestations.plant)))
-    at = _places(made, len(of.grid))
+    at, left = _places(made, len(of.grid), morning), set(of.new_left)
+    goes_on = made.goes_on(morning)
+    made.ends[goes_on] = morning + 1
+    made.seen[goes_on & ~made.found] = morning + 1
     free = np.flatnonzero(~made.there)
     for k, plant in enumerate(of.new):
         place = at[plant]
@@ -373,10 +405,11 @@ def _with_finds(of: Ancestry) -> Ancestry:
             made.begins[place] = min(max(earliest, BEFORE), morning)
             made.parent[place], made.children[place] = NOBODY, 0
             made.there[place] = True
-        made.found[place], made.ends[place] = True, morning
+        if not made.found[place]:
+            made.found[place], made.seen[place] = True, morning
+        made.ends[place] = morning + 1 if plant in left else morning
         last_find[plant] = day
-    made.ends[made.there & ~made.found] = morning + 1
-    return replace(of, infestations=made, last_find=last_find, new=())
+    return replace(of, infestations=made, last_find=last_find, new=(), new_left=())
 
 
 class _Inspected(NamedTuple):
@@ -413,6 +446,8 @@ class _Inspected(NamedTuple):
         overlooked = _overlooked(missed, course)
         alone = overlooked.copy()
         alone[np.arange(t)[:, None] <= of.last_find + BEFORE] = 0.0
+        # nor does another begin where one goes on
+        alone[:, of.left] = 0.0
         unseen = stays_unseen(alone, taken, (of.sent(of.rates), of.rates.shares), landing, course)
         return cls(missed, overlooked, unseen, course)
 
@@ -430,7 +465,7 @@ class _Draws:
     infestations, at
         The ancestry drawn last, and which infestation not found is at each plant.
     finds
-        The mornings and plants of finds, ``(k,)`` each.
+        The mornings on which finds were first seen, on which they end, and their plants, ``(k,)``.
     lasting
         As `Weights` has it.
     drawn
@@ -451,7 +486,7 @@ class _Draws:
         """Return none yet."""
         inspected, infestations = _Inspected.by(of, landing), of.infestations.copied(0)
         found = infestations.there & infestations.found
-        finds = infestations.ends[found], infestations.plant[found]
+        finds = infestations.seen[found], infestations.ends[found], infestations.plant[found]
         t, n = inspected.missed.shape
         lasting = np.ones((n + len(found), t), np.float32)
         np.multiply(inspected.overlooked.T, inspected.unseen.offspring.T, out=lasting[:n])
@@ -460,7 +495,7 @@ class _Draws:
         )
         np.maximum(lasting, _TINY, out=lasting)
         drawn = DrawnSums.none(t, n, landing.kernels.shape[1], delays=inspected.course.delays)
-        at = _places(infestations, n)
+        at = _places(infestations, n, t - 1)
         return cls(of, landing, inspected, infestations, at, finds, lasting, drawn)
 
     def weights(self, rates: Rates) -> Weights:
@@ -470,7 +505,7 @@ class _Draws:
         roots = rates.roots(self.of.start, self.landing.at_edge, t)
         return Weights(
             self.landing.cells, kernel, np.cumsum(kernel) / kernel.sum(), self.of.sent(rates),
-            np.ascontiguousarray(roots.T), BEFORE, t - 1 - _SETTLED,
+            np.ascontiguousarray(roots.T), BEFORE, max(t - 1 - _SETTLED, 0),
             self.inspected.course.grown, self.inspected.course.grown_by, self.lasting,
         )  # fmt: skip
 
@@ -493,7 +528,7 @@ class _Draws:
             active = taken.copy()
         else:
             active /= kept
-        taken[self.finds] = 1.0
+        taken[self.finds[1:]] = 1.0
         unfound = unseen_now(
             self.inspected.unseen, active, weights.roots.T, (weights.sends, shares),
             self.landing, self.inspected.course,
@@ -529,13 +564,16 @@ def _drawn(
     """
     draws, rates, day = _Draws.begun(of, landing), of.rates, len(of.sends) - 1
     drawn, seen = draws.drawn, 1.0 - draws.inspected.unseen.chance
-    sweeps = of.sweeps
+    sweeps, left = of.sweeps, of.left
     for k, many in enumerate(sweeps):
         weights = draws.weights(rates)
         kept = draws.draw(weights, int(np.ravel_multi_index((day, nth, k), _SEEDS)), many)
         # between the first draw and the last, nothing hangs on these
         if k in (0, len(sweeps) - 1):
             counted = draws.counted(kept, weights, rates.shares)
+        if k == 0:
+            # what arrives where an infestation goes on is not seen
+            seen[BEFORE + 1 :, left] *= 1.0 - counted.taken[BEFORE:-1, left]
         night = DrawnEvidence(
             of.start, weights.sends, weights.kernel, seen, counted.taken, drawn, counted.active,
             draws.inspected.course.sending(counted.unfound), arrive, of.earlier,
@@ -569,7 +607,7 @@ def _at_start(drawn: DrawnSums, infestations: Infestations, unfound: float) -> F
     found = infestations.there & infestations.found
     not_found = max(number - np.count_nonzero(found), 0.0)
     variance += (_START_DOUBT * number) ** 2 + (_UNFOUND_DOUBT * not_found) ** 2
-    return np.array([number, variance, np.count_nonzero(found & (infestations.ends == BEFORE))])
+    return np.array([number, variance, np.count_nonzero(found & (infestations.seen == BEFORE))])
 
 
 def _overlooked(missed: Floats, course: Course) -> Floats:
@@ -599,14 +637,13 @@ def _until_found(
 ) -> Floats:
     """Return how likely it is to find what was found, when it was, ``(k, t)``, by its beginning.
 
-    `finds` are mornings and plants, ``(k,)`` each; `missed` and `course` are as `_overlooked` has
-    them.
+    `finds` are as `_Draws` has them; `missed` and `course` as `_overlooked` has them.
     """
-    ends, plant = finds
+    first, ends, plant = finds
     chance = np.zeros((len(plant), len(missed)))
     for shows, likely in zip(course.shows, course.likely, strict=True):
-        seen = shows <= ends[:, None]
-        overlooked = missed[:, plant][shows].T - missed[ends, plant][:, None]
+        seen = shows <= first[:, None]
+        overlooked = missed[:, plant][shows].T - missed[first, plant][:, None]
         chance += likely * seen * np.exp(np.where(seen, overlooked, 0.0))
     sent_later = np.maximum(unseen.sent_since[ends, plant], _TINY)
     sent = unseen.offspring[:, plant].T / sent_later[:, None]
@@ -618,9 +655,9 @@ def _on(day: int, numbers: tuple[int, ...]) -> int:
     return numbers[min(day, len(numbers) - 1)]
 
 
-def _places(infestations: Infestations, n: int) -> NDArray[np.int64]:
-    """Return which infestation that was not found is at each plant, ``(n,)``, or `NOBODY`."""
+def _places(infestations: Infestations, n: int, last: int) -> NDArray[np.int64]:
+    """Return which infestation goes on at each plant on the last morning, ``(n,)``, or `NOBODY`."""
     at = np.full(n, NOBODY)
-    hidden = np.flatnonzero(infestations.there & ~infestations.found)
-    at[infestations.plant[hidden]] = hidden
+    goes_on = np.flatnonzero(infestations.goes_on(last))
+    at[infestations.plant[goes_on]] = goes_on
     return at

@@ -36,10 +36,11 @@ class Infestations(NamedTuple):
     plant
         Where each is.
     begins, ends
-        From which morning on the plant sends something out at night, and until which: that of its
-        find, or the last.
-    found
-        Whether it was found.
+        From which morning on the plant sends something out at night, and until which: that on which
+        it was found and destroyed, or the last.
+    found, seen
+        Whether it was found, and the morning on which it was first; of others the last. One found
+        long ago, of which no more is known, has 0.
     parent, children
         The infestation from which it came (`NOBODY`: none), and how many came from it.
     there
@@ -56,15 +57,16 @@ class Infestations(NamedTuple):
     children: Ints
     there: NDArray[np.bool_]
     earliest: Ints
+    seen: Ints
 
     @classmethod
     def room(cls, places: int) -> Infestations:
         """Return places for so many."""
-        ints = np.zeros((6, places), np.int64)
+        ints = np.zeros((7, places), np.int64)
         ints[3] = NOBODY
-        plant, begins, ends, parent, children, earliest = ints
+        plant, begins, ends, parent, children, earliest, seen = ints
         found, there = np.zeros((2, places), np.bool_)
-        return cls(plant, begins, ends, found, parent, children, there, earliest)
+        return cls(plant, begins, ends, found, parent, children, there, earliest, seen)
 
     def __repr__(self) -> str:
         hidden = np.count_nonzero(self.there & ~self.found)
@@ -76,6 +78,11 @@ class Infestations(NamedTuple):
         for mine, own in zip(wider, self, strict=True):
             mine[: len(own)] = own
         return wider
+
+    def goes_on(self, last: int) -> NDArray[np.bool_]:
+        """Return which are infested on the last morning: not found, or found and left, ``(m,)``."""
+        goes_on: NDArray[np.bool_] = self.there & (~self.found | (self.ends == last))
+        return goes_on
 
 
 class Weights(NamedTuple):
@@ -93,7 +100,7 @@ class Weights(NamedTuple):
         ``(n, t)`` how many infestations come to a plant from none, by the morning on which they
         begin.
     season, settled
-        The first morning of the season, and that until which infestations have ended that stay as
+        The first morning of the season, and that until which infestations were found that stay as
         they are.
     grown, grown_by
         ``(t,)`` as `fieldmon.infestation.course.Course` has them.
@@ -172,7 +179,7 @@ def begin(infestations: Infestations, weights: Weights, worked: Worked) -> int:
                 _join(worked, infestations.parent[i], i)
             hidden += 0 if infestations.found[i] else 1
         # as many are drawn in each sweep, however many infestations there are by then
-        if not infestations.there[i] or infestations.ends[i] > weights.settled:
+        if not infestations.there[i] or infestations.seen[i] > weights.settled:
             worked.open[worked.many[OPEN]] = i
             worked.many[OPEN] += 1
     return hidden
@@ -181,7 +188,7 @@ def begin(infestations: Infestations, weights: Weights, worked: Worked) -> int:
 @part
 def _children(infestations: Infestations, i: int, weights: Weights, worked: Worked) -> int:
     """List the children of an infestation; return the last morning on which it may have begun."""
-    latest, k, j = int(infestations.ends[i]), 0, worked.first_child[i]
+    latest, k, j = int(infestations.seen[i]), 0, worked.first_child[i]
     while j != NOBODY:
         worked.child[k] = j
         latest = min(latest, int(weights.grown_by[infestations.begins[j] - 1]))
@@ -253,7 +260,8 @@ def put_in(
     if place < 0:
         return
     infestations.plant[place], infestations.begins[place] = plant, since
-    infestations.ends[place], infestations.earliest[place] = last, earliest
+    infestations.ends[place] = infestations.seen[place] = last
+    infestations.earliest[place] = earliest
     infestations.found[place], infestations.there[place] = False, True
     infestations.parent[place], infestations.children[place] = NOBODY, 0
     stand(worked.squares, weights.cells, plant, place)
@@ -275,7 +283,7 @@ def take_out(
         return
     _children(infestations, place, weights, worked)
     child = worked.child[0]
-    if infestations.ends[child] <= weights.settled:
+    if infestations.seen[child] <= weights.settled:
         return
     begins, plant = infestations.begins[child], infestations.plant[place]
     latest = int(weights.grown_by[begins - 1])

@@ -30,7 +30,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
-from fieldmon.planning.skips import Skips, without_skipped
+from fieldmon.planning.skips import Skips, without_flagged, without_skipped
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import driven_s, robot_clock
@@ -495,11 +495,12 @@ class History:
         aisles, robot = shift.aisles, shift.robot
         later = self._past_midnight(shift, day, who)
         # what the day's finds say of other plants counts for the rest of it, too
-        believed = in_sight(
+        now = (
             in_hindsight(self._evening(morning, day, later), self.night(day))
             if len(later)
             else self.in_hindsight(morning, day)
         )
+        believed = in_sight(now)
         last = self.last_inspected(day)
         # nobody is sent to a plant twice a day, not even a closed one
         last[self.on(day).plant] = last[self.inspections.plant[later]] = day
@@ -520,7 +521,8 @@ class History:
             trail=trail,
             key=shift.streams.key("sampler", day),
         )
-        return without_skipped(scene, self.skips(day - 1))
+        known = without_flagged(scene, self.found_and_left(now, day))
+        return without_skipped(known, self.skips(day - 1))
 
     def begun_s(self, shift: Shift, day: int, who: str | Besides | None = None) -> float:
         """Return the second of a day at which somebody's work began; `who` is that of `scene`.

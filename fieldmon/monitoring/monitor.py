@@ -26,6 +26,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.ranges import DAYS
 from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.chance_bounds import KNOWN
 from fieldmon.infestation.forecast import NIGHTS, forecast
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.plot_estimate import estimate_of
@@ -33,7 +34,7 @@ from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.monitoring.history import BeliefSettings, in_hindsight, in_sight
 from fieldmon.planning.plan import plan_in
-from fieldmon.planning.skips import Skips, without_skipped
+from fieldmon.planning.skips import Skips, without_flagged, without_skipped
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import must_be_plot
@@ -323,17 +324,24 @@ class Monitor:
         return None if self.belief_settings.treated else self._found
 
     @property
+    def _known(self) -> NDArray[np.bool_] | None:
+        """Those of which it is certain, as nobody treated the plot since; None: there are none."""
+        return None if self._left is None else self._left & (self._belief.chance > KNOWN)
+
+    @property
     def last_inspected(self) -> NDArray[np.int32]:
         """Day of each plant's last inspection, from 0; -1: never, ``(n,)``; read-only."""
         return as_seen(self._last_inspected)
 
     @property
     def left_out(self) -> NDArray[np.bool_]:
-        """Plants left out of this day's plan because nobody could inspect them, ``(n,)``.
+        """Plants left out of this day's plan, ``(n,)``: skipped, or found and only flagged.
 
-        Each is asked for again after 1 day, and after 2, 4, 8 ... if it was told None again.
+        Those that nobody could inspect are asked for again after 1 day, and after 2, 4, 8 ... if
+        they were told None again.
         """
-        return as_seen(self._skips.left_out(self.day_number))
+        skipped = self._skips.left_out(self.day_number)
+        return as_seen(skipped if self._known is None else skipped | self._known)
 
     @property
     def _skips(self) -> Skips:
@@ -400,7 +408,7 @@ class Monitor:
             trail=self._trail,
             key=self._streams.key("sampler", self.day_number),
         )
-        return without_skipped(scene, self._skips)
+        return without_skipped(without_flagged(scene, self._known), self._skips)
 
     def _learn(self, day: MonitorDay) -> None:
         """Take in what was told on a day."""

@@ -257,15 +257,15 @@ def _unpacked(first: Belief, chances: bytes) -> Belief | None:
         return None
     if wanted is None:
         return None
-    # one that ends with a find that is left where it is holds no ancestry
     ancestry, aged = _taken_out(arrays, _ANCESTRY), _taken_out(arrays, _COHORTS)
-    _taken_out(wanted, _ANCESTRY)
+    of_ancestry = _taken_out(wanted, _ANCESTRY).keys()
     ages = _taken_out(wanted, _COHORTS).keys()
     # a day without inspections has more of it
     unwatched = arrays.pop(_UNWATCHED, None)
     if (unwatched is None) != (wanted.pop(_UNWATCHED, None) is None):
         return None
-    if wanted.keys() != arrays.keys() or ages != aged.keys():
+    names = wanted.keys(), of_ancestry, ages
+    if names != (arrays.keys(), ancestry.keys(), aged.keys()):
         return None
     if any(wanted[name].shape != values.shape for name, values in arrays.items()):
         return None

@@ -129,16 +129,20 @@ def _block(
         where = worded("in row {row}", row=low)
     last = scene.last_inspected[plants]
     # they seem inspected today, but somebody wishes for them
-    skipped = np.zeros(len(plants), bool) if scene.skipped is None else scene.skipped[plants]
+    skipped, flagged = (
+        np.zeros(len(plants), np.bool_) if left_out is None else left_out[plants]
+        for left_out in (scene.skipped, scene.flagged)
+    )
+    wished = skipped | flagged
     unseen = last == NEVER
     never = int(np.count_nonzero(unseen & ~recorded[plants]))
     known = int(np.count_nonzero(unseen)) - never
     if never == len(plants):
         return worded("{plants} {where}: never inspected yet.", plants=plants_said, where=where)
     said = [worded("{n} known from records only", n=known)] if known else []
-    tried = int(np.count_nonzero(skipped))
-    if seen := len(plants) - never - known - tried:
-        days = counted(round(float(np.median(scene.day - last[~unseen & ~skipped]))), "day")
+    tried, found = int(np.count_nonzero(skipped)), int(np.count_nonzero(flagged))
+    if seen := len(plants) - never - known - tried - found:
+        days = counted(round(float(np.median(scene.day - last[~unseen & ~wished]))), "day")
         since = worded("not inspected for {days}", days=days)
         if seen < len(plants):
             since = worded("{n} not inspected for {days}", n=seen, days=days)
@@ -147,5 +151,7 @@ def _block(
         said.append(worded("{n} never inspected yet", n=never))
     if tried:
         said.append(worded("{n} nobody could inspect last time", n=tried))
+    if found:
+        said.append(worded("{n} found and only flagged", n=found))
     all_said = joined(", ", said)
     return worded("{plants} {where}: {said}.", plants=plants_said, where=where, said=all_said)

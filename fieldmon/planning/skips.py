@@ -1,4 +1,4 @@
-"""Plants that nobody could inspect: how long they are left out of plans, and how that is said."""
+"""Plants that plans leave out: nobody could inspect them, or they are known to be infested."""
 
 from __future__ import annotations
 
@@ -87,19 +87,44 @@ def without_skipped(scene: Scene, skips: Skips) -> Scene:
     return replace(scene, last_inspected=last, skipped=skipped)
 
 
+def without_flagged(scene: Scene, flagged: NDArray[np.bool_] | None) -> Scene:
+    """Return a scene in which nobody is sent to `flagged` plants ``(n,)``: they seem inspected.
+
+    They were found infested and left so: to inspect them again tells nothing. None: there are none.
+    """
+    if flagged is None:
+        return scene
+    known = flagged & (scene.last_inspected != scene.day)
+    if not known.any():
+        return scene
+    last = np.where(known, np.int32(scene.day), scene.last_inspected)
+    return replace(scene, last_inspected=last, flagged=known)
+
+
 def left_out_in_words(scene: Scene, *routes: Route) -> tuple[Worded, ...]:
-    """Return how many plants a day's routes leave out as nobody could inspect them, if any."""
-    if scene.skipped is None:
-        return ()
-    out = scene.skipped.copy()
+    """Return how many plants a day's routes leave out, and why; nothing where there are none."""
+    said = []
+    if skipped := _still_out(scene.skipped, routes):
+        plants = counted(skipped, "plant")
+        said.append(
+            worded(
+                "Left out of this plan: {plants} that nobody could inspect last time.",
+                plants=plants,
+            )
+        )
+    if flagged := _still_out(scene.flagged, routes):
+        plants = counted(flagged, "plant")
+        said.append(
+            worded("Left out of this plan: {plants} found and only flagged.", plants=plants)
+        )
+    return tuple(said)
+
+
+def _still_out(left_out: NDArray[np.bool_] | None, routes: tuple[Route, ...]) -> int:
+    """Return how many of some plants ``(n,)`` are on none of these routes."""
+    if left_out is None:
+        return 0
+    out = left_out.copy()
     for route in routes:
         out[route.plant] = False  # somebody wishes for them
-    n = int(np.count_nonzero(out))
-    if not n:
-        return ()
-    return (
-        worded(
-            "Left out of this plan: {plants} that nobody could inspect last time.",
-            plants=counted(n, "plant"),
-        ),
-    )
+    return int(np.count_nonzero(out))

@@ -56,16 +56,17 @@ class Wishes:
         """Return the scene as whoever plans is told of it.
 
         Wanted plants seem all but surely infested; unwanted ones seem inspected today. What is
-        left out because nobody could inspect it is not if it is wanted. A sampler that reads no
-        chances, as a sweep, passes wishes for more by: see `unmet`.
+        left out because nobody could inspect it, or as it is known, is not if it is wanted. A
+        sampler that reads no chances, as a sweep, passes wishes for more by: see `unmet`.
         """
         if not self:
             return scene
         wanted, unwanted = (np.array(some, np.intp) for some in (self.wanted, self.unwanted))
         chance, seen = scene.chance.copy(), scene.last_inspected.copy()
         chance[wanted] = np.maximum(chance[wanted], _SURE)
-        if scene.skipped is not None:
-            seen[wanted[scene.skipped[wanted]]] = NEVER
+        for left_out in (scene.skipped, scene.flagged):
+            if left_out is not None:
+                seen[wanted[left_out[wanted]]] = NEVER
         seen[unwanted] = scene.day
         pairs = scene.pair_chance
         if pairs is not None and len(wanted):

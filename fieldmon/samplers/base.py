@@ -98,7 +98,8 @@ class Scene:
     last_inspected
         ``(n,)`` int32 day on which each plant was inspected last, -1 if it was not. Plants
         in aisles too narrow for the robot seem inspected today, and so do those that are left out
-        because nobody could inspect them: nobody is sent there.
+        because nobody could inspect them or because they are known to be infested: nobody is sent
+        there.
     day
         Today's number. A plant inspected on this day is not visited again.
     at
@@ -121,6 +122,9 @@ class Scene:
     skipped
         ``(n,)`` plants that are left out today because nobody could inspect them when they were
         asked for last; None: there are none.
+    flagged
+        ``(n,)`` plants that are left out because they were found infested and only flagged, which
+        they are still; None: there are none.
 
     Examples
     --------
@@ -144,6 +148,7 @@ class Scene:
     traces: Traces | None = None
     supposed: bool = False
     skipped: NDArray[np.bool_] | None = None
+    flagged: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         robot = self.aisles.worked_by(self.robot)
@@ -178,7 +183,10 @@ class Scene:
         Those that are left out only of what is planned: who gave it out wished for them.
         """
         opened: NDArray[np.bool_] = self.last_inspected[plants] != self.day
-        return opened if self.skipped is None else opened | self.skipped[plants]
+        for left_out in (self.skipped, self.flagged):
+            if left_out is not None:
+                opened |= left_out[plants]
+        return opened
 
     def seen(self) -> Scene:
         """Return the same scene, whose arrays cannot be written to."""

@@ -10,6 +10,7 @@ from fieldmon.infestation.ancestry import Ancestry, ToldNight
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.course import BEFORE, Course
 from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.squares import NOBODY
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.infestation.unseen_offspring import Unseen
 from fieldmon.pests.pest import Pest
@@ -22,11 +23,12 @@ SPREAD = Spread(0.3, "one")
 MIDDLE = 20 * 10 + 10
 
 
-def after(plants, found, ancestry=None, detects=0.84):
+def after(plants, found, ancestry=None, detects=0.84, *, treated=True):
     """Return what is known, and the chances, the morning after inspecting some plants."""
     plants = np.asarray(plants, np.int32)
     ancestry = Ancestry.of(GRID, FLAT) if ancestry is None else ancestry
-    known = ancestry.learn(plants, np.asarray(found, bool), np.full(len(plants), detects))
+    each = np.full(len(plants), detects)
+    known = ancestry.learn(plants, np.asarray(found, bool), each, treated=treated)
     return known.overnight(ToldNight(0.3))
 
 
@@ -100,7 +102,7 @@ def test_nights_are_mixed_as_they_are_likely():
         many = [max(4 - began - nights, 0) for nights in (0, 2, 4, 7)]
         assert overlooked[BEFORE + began] == pytest.approx(hiding @ 0.2 ** np.array(many))
     # the same until a find on the last day but one, where it must show by then
-    finds = np.array([BEFORE + 3]), np.array([0])
+    finds = np.array([BEFORE + 3]), np.array([BEFORE + 3]), np.array([0])
     ones = np.ones((t, 1))
     until = module._until_found(missed, Unseen(ones, ones, ones), finds, course)[0]
     assert until[: BEFORE + 1] == pytest.approx(0.2**3)
@@ -160,19 +162,20 @@ def test_a_day_in_two_parts_is_one_day():
     assert (once.missed == twice.missed).all()
 
 
-def a_week(seed=0):
+def a_week(seed=0, *, treated=True):
     """Return what is known after a week of finds and clean plants."""
     rng = np.random.default_rng(seed)
     known = replace(Ancestry.of(GRID, FLAT), hiding=np.array([0.6, 0.1, 0.2, 0.1]))
     for _ in range(7):
         plants = rng.choice(N, 60, replace=False).astype(np.int32)
         found = rng.random(60) < 0.1
-        known, _ = after(plants, found, known)
+        known, _ = after(plants, found, known, treated=treated)
     return known
 
 
-def test_what_is_kept_of_a_morning_goes_on_as_it_did():
-    known = a_week()
+@pytest.mark.parametrize("treated", [True, False])
+def test_what_is_kept_of_a_morning_goes_on_as_it_did(treated):
+    known = a_week(treated=treated)
     kept = Ancestry.of_arrays(GRID, known.arrays)
     plants = np.arange(50, 90)
     on, chance = after(plants, plants % 9 == 0, known)
@@ -217,11 +220,55 @@ def test_it_begins_anew_after_many_days_and_with_many_infestations(monkeypatch):
 def test_it_is_left_out_where_it_does_not_hold():
     belief = TracedPairs.of(GRID, FLAT)
     assert belief.ancestry is not None
-    plants, found = np.array([3], np.int32), np.ones(1, bool)
-    flagged = belief.learn(plants, found, Learning(treated=False))
-    assert flagged.ancestry is None
     assert belief.of_pest(Pest("mite", mortality_per_day=0.1)).ancestry is None
     assert TracedPairs.of(rectangle(101, 100), np.full(10_100, 0.01)).ancestry is None
+
+
+def all_clean_but_the_middle(*, treated):
+    """Return what is known after inspecting all, hardly overlooking anything."""
+    plants = np.arange(N)
+    return after(plants, plants == MIDDLE, detects=0.99, treated=treated)
+
+
+def test_a_find_that_is_left_goes_on_and_sends_out_others():
+    """It began no later than it was seen, and each night brings the plants beside it as much."""
+    left, chance_left = all_clean_but_the_middle(treated=False)
+    ended, chance_ended = all_clean_but_the_middle(treated=True)
+    assert left.left.nonzero()[0].tolist() == [MIDDLE]
+    assert not ended.left.any()
+    assert chance_left[BESIDE].max() < 0.3 / 4
+    for night in range(2, 6):
+        left, chance_left = after([0], [False], left)
+        ended, chance_ended = after([0], [False], ended)
+        by_now = 1.0 - (1.0 - 0.3 / 4) ** night
+        assert chance_left[BESIDE] == pytest.approx(0.9 * by_now, rel=0.2)
+        assert chance_ended[BESIDE].max() < 0.02
+    assert chance_left[MIDDLE] > 0.999
+    assert left.infestations.begins[left.infestations.plant == MIDDLE].max() <= BEFORE
+    # found again it is the same one, and destroyed at last it ends
+    again, _ = after([MIDDLE], [True], left, treated=False)
+    assert np.count_nonzero(again.infestations.found) == 1
+    assert again.left[MIDDLE]
+    gone, chance = after([MIDDLE], [True], again)
+    assert not gone.left.any()
+    assert chance[MIDDLE] < 0.1
+    assert gone.infestations.ends[gone.infestations.found].tolist() == [BEFORE + 6]
+
+
+def test_what_is_left_stays_known_when_it_begins_anew():
+    known, chance = all_clean_but_the_middle(treated=False)
+    later = known.anew(chance)
+    assert later.left.nonzero()[0].tolist() == [MIDDLE]
+    # it sends out others, but is itself no find to be explained
+    for _ in range(3):
+        later, chance = after([0], [False], later)
+        known, without = after([0], [False], known)
+    assert later.infestations.parent[later.infestations.plant == MIDDLE].tolist() == [NOBODY]
+    assert chance[BESIDE] == pytest.approx(without[BESIDE], rel=0.3)
+    waits = known.learn(np.array([50, 3]), np.ones(2, bool), np.full(2, 0.84), treated=False)
+    assert waits.anew(np.ones(N)).left.nonzero()[0].tolist() == [3, 50, MIDDLE]
+    # what may be clean after a treatment is not known any more
+    assert not waits.anew(np.full(N, 0.9)).left.any()
 
 
 def test_a_treatment_begins_anew_with_what_it_left():
@@ -325,18 +372,6 @@ def test_what_was_learnt_of_arrivals_and_jumps_outlives_a_beginning_anew():
     assert later.rates.shares == pytest.approx(known.rates.shares, abs=0.05)
     kept = Ancestry.of_arrays(GRID, known.anew(FLAT).arrays)
     assert np.array_equal(kept.earlier, known.taught)
-
-
-def test_an_ancestry_that_was_kept_without_what_is_new_is_read():
-    known = whole_plot([[21, 88], []])
-    arrays = known.arrays
-    arrays["since"], arrays["at_start"] = arrays["since"][:2], np.array([5.0, 0.04])
-    del arrays["earlier"], arrays["taught"]
-    kept = Ancestry.of_arrays(GRID, arrays)
-    assert kept.heard == 2
-    assert not kept.taught.any()
-    off = 1.645 * np.hypot(0.2, 0.5)
-    assert kept.infested_at_start.high == pytest.approx(5.0 + off, rel=0.01)
 
 
 def test_how_many_there_were_at_the_start_stays_known_when_it_begins_anew():

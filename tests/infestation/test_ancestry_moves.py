@@ -24,6 +24,7 @@ def test_an_ancestry_holds_together(delay):
         made.plant[place], made.ends[place] = plant, rng.integers(3, mornings - 1)
         made.begins[place], made.found[place] = made.ends[place], True
         made.there[place], last_find[plant] = True, made.ends[place]
+        made.seen[place] = made.ends[place]
     lasting = np.exp(-rng.uniform(0.0, 2.0, (144 + made.plant.size, mornings)).astype(np.float32))
     roots = np.full((144, mornings), 1e-4, np.float32)
     sends = np.full(mornings, 0.3)
@@ -39,7 +40,7 @@ def test_an_ancestry_holds_together(delay):
     assert (made.children[there] == children[there]).all()
     assert (made.found[there] | (children[there] > 0)).all()
     for i in there:
-        assert made.earliest[i] <= made.begins[i] <= made.ends[i]
+        assert made.earliest[i] <= made.begins[i] <= made.seen[i] <= made.ends[i]
         if made.parent[i] != NOBODY:
             parent = made.parent[i]
             assert made.there[parent]

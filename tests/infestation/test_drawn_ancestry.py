@@ -35,11 +35,15 @@ def believed(seed=0, grown=(0, 1, 2, 3)):
     )
 
 
-def with_finds(finds):
-    """Return infestations that were found at plants on mornings, and where others may not be."""
+def with_finds(finds, *, left=False):
+    """Return infestations that were found at plants on mornings, and where others may not be.
+
+    They end by that, or are `left` to go on.
+    """
     made = Infestations.room(PLACES)
     for place, (plant, morning) in enumerate(finds):
-        made.plant[place], made.ends[place] = plant, morning
+        made.plant[place], made.seen[place] = plant, morning
+        made.ends[place] = MORNINGS - 1 if left else morning
         made.begins[place], made.found[place], made.there[place] = morning, True, True
     last_find = np.full(N, -1)
     for plant, morning in finds:
@@ -54,14 +58,19 @@ def jump(world, sender, plant):
     return world.kernel[half, half + along]
 
 
-def all_ancestries(world, finds, last_find):
+def all_ancestries(world, finds, last_find, *, left=False):
     """Yield all ancestries as (weight, nodes), a node being (plant, begins, ends, parent)."""
     last = MORNINGS - 1
-    hidden = [p for p in range(N) if last_find[p] + 1 <= last]
+    taken = {p for p, _ in finds} if left else set()
+    hidden = [p for p in range(N) if last_find[p] + 1 <= last and p not in taken]
     for there in product([False, True], repeat=len(hidden)):
-        ends = [(p, 0, e) for p, e in finds]
+        ends = [(p, 0, last if left else e) for p, e in finds]
+        seen = [e for _, e in finds]
         ends += [(p, last_find[p] + 1, last) for p, on in zip(hidden, there, strict=True) if on]
-        for begins in product(*(range(low, e + 1) for _, low, e in ends)):
+        seen += [last] * sum(there)
+        for begins in product(
+            *(range(low, e + 1) for (_, low, _), e in zip(ends, seen, strict=True))
+        ):
             choices = [
                 [NOBODY]
                 + [
@@ -93,18 +102,27 @@ def all_ancestries(world, finds, last_find):
 
 
 @pytest.mark.parametrize("grown", [(0, 1, 2, 3), (0, 2, 3, 3)])
-@pytest.mark.parametrize("finds", [[(0, 3)], [(1, 2)], [(0, 3), (2, 2)], [(1, 1), (1, 3), (3, 3)]])
-def test_ancestries_are_drawn_as_often_as_they_are_likely(finds, grown):
+@pytest.mark.parametrize(
+    ("finds", "left"),
+    [
+        ([(0, 3)], False), ([(1, 2)], False), ([(0, 3), (2, 2)], False),
+        ([(1, 1), (1, 3), (3, 3)], False), ([(1, 1)], True), ([(0, 1), (2, 2)], True),
+    ],
+)  # fmt: skip
+def test_ancestries_are_drawn_as_often_as_they_are_likely(finds, left, grown):
     """Four moves that fit together: each sum is that over all ancestries there are."""
     world = believed(len(finds), grown)
     delays = grown != (0, 1, 2, 3)
-    made, last_find = with_finds(finds)
+    made, last_find = with_finds(finds, left=left)
+    at = np.full(N, NOBODY)
+    if left:
+        at[made.plant[made.there]] = np.flatnonzero(made.there)
     if finds[0][0] == finds[-2 % len(finds)][0] and len(finds) == 3:
         made.earliest[1] = made.ends[0] + 1
     there, active = np.zeros((2, MORNINGS, N))
     hidden, roots = np.zeros(N), np.zeros((2, N))
     total = 0.0
-    for weight, nodes in all_ancestries(world, finds, last_find):
+    for weight, nodes in all_ancestries(world, finds, last_find, left=left):
         if len(finds) == 3 and nodes[1][1] <= finds[0][1]:
             continue  # the plant was found before
         total += weight
@@ -114,7 +132,7 @@ def test_ancestries_are_drawn_as_often_as_they_are_likely(finds, grown):
             hidden[plant] += weight * (k >= len(finds))
             roots[int(begins > SEASON), plant] += weight * (parent == NOBODY)
     drawn = DrawnSums.none(MORNINGS, N, len(world.kernel), delays=delays)
-    kept = draw_ancestries(made, np.full(N, NOBODY), world, last_find, (1, 100_000, 1_000), drawn)
+    kept = draw_ancestries(made, at, world, last_find, (1, 100_000, 1_000), drawn)
     assert kept == 99_000
     assert drawn.hidden / kept == pytest.approx(hidden / total, abs=0.015)
     assert drawn.there / kept == pytest.approx(there / total, abs=0.02)
@@ -137,6 +155,7 @@ def test_a_jump_from_before_the_wind_dropped_is_counted_in_no_other_cell():
     for place, (plant, begins, ends) in enumerate([(0, 0, 3), (30, 2, 3)]):
         made.plant[place], made.begins[place], made.ends[place] = plant, begins, ends
         made.found[place] = made.there[place] = True
+        made.seen[place] = ends
     made.parent[1], made.children[0] = 0, 1
     grown = np.arange(mornings)
     world = Weights(

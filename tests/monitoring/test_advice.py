@@ -119,7 +119,7 @@ def test_one_look_less_would_not_decide(season):
     level = float(season.evening(BEGINS).mean())
     asked, scene = AdviceSettings(level, costs=CHEAP), season.scene(BEGINS)
     more = season.advice(BEGINS, asked).more
-    evening = season.history.evening(season.history.first_morning, 0)
+    evening = season.history.in_hindsight(season.history.first_morning, 0)
     order = Decide().walk(replace(scene, seconds_left=1e6), np.zeros(len(scene.chance), bool)).plant
     learning = Learning(scene.robot.detects, treated=False)
     for looks, found, verdict in ((more.if_clean, False, LEAVE), (more.if_found, True, TREAT)):

@@ -216,6 +216,24 @@ def test_finds_that_are_only_flagged_stay_infested(plot):
     assert Learning().treated
 
 
+@pytest.mark.parametrize("name", ["adaptive", "dynamic", "naive", "decide"])
+@pytest.mark.parametrize("treated", [True, False])
+def test_a_plant_known_to_be_infested_is_not_asked_for_again(plot, name, treated):
+    """It was for ever, and took a third of the day's inspections."""
+    settings = BeliefSettings(treated=treated)
+    monitor = Monitor(plot, name, Robot(hours=1), belief_settings=settings)
+    found = np.zeros(len(plot.grid), np.bool_)
+    for _ in range(4):
+        assert (monitor.left_out == (found & (not treated))).all()
+        with monitor.day() as day:
+            while (stop := day.ask()) is not None:
+                day.tell(found=stop.plant % 3 == 0)
+        assert len(day.plants) > 10
+        assert treated or not found[day.plants].any()
+        found[day.plants[day.found]] = True
+        monitor.night()
+
+
 def test_the_robot_stands_at_the_last_plant_that_was_told_of(plot):
     with Monitor(plot, robot=Robot(hours=1)).day() as day:
         assert day.at == GATE

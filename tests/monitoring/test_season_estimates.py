@@ -11,6 +11,7 @@ from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.pests.weather import weather_of
+from fieldmon.planning.skips import left_out_in_words
 from tests.monitoring.seasons import (
     BEGINS,
     a_season,
@@ -109,6 +110,19 @@ def test_finds_that_are_only_flagged_stay_infested(tmp_path):
     assert status.flagged == season.flagged(BEGINS) > 0.99
     now = season.forecast(BEGINS).expected[0]
     assert status.estimate.expected + status.flagged == pytest.approx(now)
+
+
+def test_what_was_found_and_flagged_is_left_out_of_plans_until_it_may_be_clean(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
+    results = some_results(season, n=30, found=range(20))
+    season.record(results, "x")
+    found, grid = results.plant[:20], season.plot.grid
+    tomorrow = season.plan(on(1))
+    assert not set(found.tolist()) & set(tomorrow.route.plant.tolist())
+    (said,) = left_out_in_words(tomorrow.scene, tomorrow.route)
+    assert said == "Left out of this plan: 20 plants found and only flagged."
+    season.treat(on(1), 0.7, plants=np.isin(np.arange(len(grid)), found[:15]))
+    assert np.flatnonzero(season.scene(on(2)).flagged).tolist() == sorted(found[15:].tolist())
 
 
 def test_the_status_counts(season):

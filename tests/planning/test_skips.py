@@ -8,7 +8,7 @@ import pytest
 from fieldmon.monitoring.closures import Closure, open_to_people
 from fieldmon.planning.explain import explain
 from fieldmon.planning.plan import plan_from, plan_in
-from fieldmon.planning.skips import Skips, left_out_in_words, without_skipped
+from fieldmon.planning.skips import Skips, left_out_in_words, without_flagged, without_skipped
 from fieldmon.planning.wishes import Wishes
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import NEVER
@@ -99,6 +99,26 @@ def test_a_plan_says_how_many_plants_it_leaves_out(scene):
     assert wished.scene.are_open(np.array([300, 0])).all()
     assert any("1 nobody could inspect last time" in one
                for one in explain(wished.scene, wished.work))  # fmt: skip
+
+
+def test_a_flagged_plant_is_left_out_unless_somebody_wishes_for_it(scene):
+    every = np.arange(len(scene.last_inspected))
+    assert without_flagged(scene, None) is scene
+    assert without_flagged(scene, np.zeros(len(every), np.bool_)) is scene
+    flagged = without_flagged(scene, np.isin(every, [300, 301]))
+    both = skipped(flagged, [302])
+    assert (both.last_inspected[[300, 301, 302]] == DAY).all()
+    wished = plan_in(both, HOUR.sampler, Wishes((300,)))
+    assert 300 in wished.route.plant
+    assert left_out_in_words(both, wished.route) == (
+        "Left out of this plan: 1 plant that nobody could inspect last time.",
+        "Left out of this plan: 1 plant found and only flagged.",
+    )
+    assert wished.scene.are_open(np.array([300, 302, 0])).all()
+    assert any("1 found and only flagged" in one
+               for one in explain(wished.scene, wished.work))  # fmt: skip
+    # where all are known there is nowhere to go
+    assert len(plan_in(without_flagged(scene, every >= 0), HOUR.sampler).route) == 0
 
 
 def test_where_every_plant_was_skipped_none_is_left_out():

@@ -100,7 +100,7 @@ def _show_one(choices: Choices) -> None:
         format_func=texts.RESULTS_OF.__getitem__,
     )  # fmt: skip
     show(st.number_input, texts.COUNT, 0, None, box="one_count")
-    acting.at_press(boxes, texts.RECORD_BUTTON, _record_one, choices, key="record_one")
+    acting.at_press(texts.RECORD_BUTTON, _record_one, choices, key="record_one", boxes=boxes)
 
 
 @notices.reporting
@@ -139,8 +139,8 @@ def _show_route(choices: Choices) -> None:
     with st.container(key="route_marks"):
         table = partial(marks.show, choices, plants)
         boxes.show(table, box=f"marked {of}", default=[])
-    acting.at_press(boxes, texts.RECORD_BUTTON, _record_stops, choices, plants, (of, marks),
-                    key="record_route", type="primary")  # fmt: skip
+    acting.at_press(texts.RECORD_BUTTON, _record_stops, choices, plants, (of, marks),
+                    key="record_route", boxes=boxes, type="primary")  # fmt: skip
 
 
 class _Marks:
@@ -207,8 +207,8 @@ def _show_file(choices: Choices) -> None:
         if brought.getvalue().startswith(MAGIC):
             st.text_input(texts.CORRECTED_BY, key=key("corrected_by"),
                           help=texts.CORRECTED_BY_HELP)  # fmt: skip
-        acting.at_press(boxes, texts.RECORD_BUTTON, _record_file, choices, key="record_file",
-                        type="primary")  # fmt: skip
+        acting.at_press(texts.RECORD_BUTTON, _record_file, choices, key="record_file",
+                        boxes=boxes, type="primary")  # fmt: skip
 
 
 @notices.reporting

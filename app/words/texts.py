@@ -103,6 +103,10 @@ ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lie
 OTHER_DAY = "This page is about **{day}**, which is not today ({today})."
 OTHER_DAY_RECORDED = "What you record here is recorded for {day}."
 BACK_TO_TODAY = "Back to today"
+PRESSED_BEFORE = (
+    "*{button}* was pressed before the plot or the day just chosen was shown, so nothing was done. "
+    "Press it again for what is shown now."
+)
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
 ASSUMED = "\\* assumed: {what}."
 ASSUMED_WHAT = {
@@ -915,6 +919,7 @@ TREAT_UNSAID = (
     "it kills, as on the label or by experience."
 )
 DECIDE_TREATED = "The zones were treated"
+DECIDE_NO_ZONE = "By what is asked now there is no zone to treat, so nothing was noted."
 TREAT_RECORD = "What a certifier asks: dose, waiting period, who and why"
 TREAT_DOSE, TREAT_UNIT = "Dose of the product", "Unit of the dose"
 TREAT_WATER = "Water, l/{area}"

@@ -51,6 +51,7 @@ def show(choices: Choices) -> None:
     fresh_boxes.turn(choices)
     st.markdown(f"**{texts.RECORD} · {choices.units.said_day(choices.day)}**")
     st.caption(texts.RECORD_NOTE)
+    moved = st.container()
     ask_about_contradictions(choices)
     one, route, file, treat = st.tabs(
         [texts.RECORD_ONE, texts.RECORD_ROUTE, texts.RECORD_UPLOAD, texts.TREAT]
@@ -63,6 +64,8 @@ def show(choices: Choices) -> None:
         _show_file(choices)
     with treat:
         treating.show(choices)
+    if fresh_boxes.hold_of_another_day(choices):
+        moved.info(texts.MOVED_HERE.format(day=choices.units.said_day(choices.day)))
     kept_files.sync()  # marks are known once their table is shown
 
 

@@ -863,6 +863,10 @@ RECORD_UNSAID = (
     "Something must be said before it is recorded, but no stop is done and none is marked. Say how "
     "many stops were done, or mark those where pests were found."
 )
+MOVED_HERE = (
+    "Something was typed while the page of another day was still in view. It stands in the boxes "
+    "of **{day}** now: look at it before you record."
+)
 ONE_UNSAID = (
     "Row, plant and result must be said before they are recorded, but one of them is empty. Fill "
     "in all three."

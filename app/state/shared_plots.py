@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
 from fieldmon.monitoring import estate_day
-from fieldmon.monitoring.closures import closed_plants, left_off_in_words
+from fieldmon.monitoring.closures import closed_in_words, closed_plants
 from fieldmon.monitoring.estate_day import EstatePlot
 from fieldmon.monitoring.estate_routes import EstateRoute
 from fieldmon.planning.members import TeamMember
@@ -106,7 +106,7 @@ class _Ready:
             return ()
         units = chosen_units.units().in_sentences(self.known.on)
         grid = self.known.scene.grid
-        return tuple(map(in_words, left_off_in_words(closed, grid, units)))
+        return tuple(map(in_words, closed_in_words(closed, grid, units)))
 
 
 def due(plots: Iterable[PlotState]) -> list[PlotState]:

@@ -109,11 +109,11 @@ class _LeftOff(NamedTuple):
     def of(cls, season: Season, on: date, days: tuple[tuple[str, DayPlan], ...]) -> _LeftOff:
         """Return it of the plans of those named."""
         from fieldmon.compute.units import Units
-        from fieldmon.monitoring.closures import closed_plants, is_all_closed, left_off_in_words
+        from fieldmon.monitoring.closures import closed_in_words, closed_plants, is_all_closed
 
         grid = season.plot.grid
         each = [(season.closed(on, who, today.scene.seconds_left), today) for who, today in days]
-        said = (said for closed, _ in each for said in left_off_in_words(closed, grid, Units()))
+        said = (said for closed, _ in each for said in closed_in_words(closed, grid, Units()))
         timely = [one for one in each if one[1].scene.seconds_left > 0]
         return cls(
             tuple(dict.fromkeys(said)),
@@ -152,9 +152,9 @@ def _tell_left_off(options: PlanOptions, off: _LeftOff, *, on_foot: bool) -> Non
 
 def _tell_skipped(days: tuple[DayPlan, ...]) -> None:
     """Print how many plants are left out because nobody could inspect them."""
-    from fieldmon.planning.skips import left_out_in_words
+    from fieldmon.planning.skips import skipped_in_words
 
-    for said in left_out_in_words(days[0].scene, *(today.route for today in days)):
+    for said in skipped_in_words(days[0].scene, *(today.route for today in days)):
         typer.echo(f"seen: {said}", err=True)
 
 

@@ -244,7 +244,7 @@ def _planned(
 ) -> _SharedDay:
     """Return the routes in the order of who works; say what is left off, waits and is free."""
     from fieldmon.compute.units import Units
-    from fieldmon.monitoring.closures import left_off_in_words
+    from fieldmon.monitoring.closures import closed_in_words
     from fieldmon.monitoring.estate_day import share_estate
     from fieldmon.monitoring.estate_routes import EstateRoute
 
@@ -252,7 +252,7 @@ def _planned(
     names = [_name(season) for season in seasons]
     shared = share_estate(plots, members, starts, move_s)
     said = [
-        [*map(str, left_off_in_words(closed, season.plot.grid, Units()))]
+        [*map(str, closed_in_words(closed, season.plot.grid, Units()))]
         for season, closed in zip(seasons, shared.closed, strict=True)
     ]
     routes, worked = [], set()

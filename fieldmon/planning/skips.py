@@ -87,8 +87,8 @@ def without_skipped(scene: Scene, skips: Skips) -> Scene:
     return replace(scene, last_inspected=last, skipped=skipped)
 
 
-def left_out_in_words(scene: Scene, *routes: Route) -> tuple[Worded, ...]:
-    """Return how many plants a day's routes leave out as nobody could inspect them, if any."""
+def skipped_in_words(scene: Scene, *routes: Route) -> tuple[Worded, ...]:
+    """Return how many skipped plants a day's routes leave out, if any."""
     if scene.skipped is None:
         return ()
     out = scene.skipped.copy()

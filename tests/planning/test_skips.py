@@ -8,7 +8,7 @@ import pytest
 from fieldmon.monitoring.closures import Closure, open_to_people
 from fieldmon.planning.explain import explain
 from fieldmon.planning.plan import plan_from, plan_in
-from fieldmon.planning.skips import Skips, left_out_in_words, without_skipped
+from fieldmon.planning.skips import Skips, skipped_in_words, without_skipped
 from fieldmon.planning.wishes import Wishes
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import NEVER
@@ -75,7 +75,7 @@ def test_no_sampler_goes_to_what_is_left_out_unless_somebody_wishes_for_it(scene
 
 def test_nothing_skipped_leaves_the_scene_itself(scene):
     assert skipped(scene, []) is scene
-    assert left_out_in_words(scene, plan_in(scene, HOUR.sampler).route) == ()
+    assert skipped_in_words(scene, plan_in(scene, HOUR.sampler).route) == ()
 
 
 def test_what_was_inspected_today_or_is_closed_stays_so_when_it_is_wished_for(scene):
@@ -90,11 +90,11 @@ def test_what_was_inspected_today_or_is_closed_stays_so_when_it_is_wished_for(sc
 
 def test_a_plan_says_how_many_plants_it_leaves_out(scene):
     without = skipped(scene, [300, 301])
-    (said,) = left_out_in_words(without, plan_in(without, HOUR.sampler).route)
+    (said,) = skipped_in_words(without, plan_in(without, HOUR.sampler).route)
     assert said == "Left out of this plan: 2 plants that nobody could inspect last time."
     wished = plan_in(without, HOUR.sampler, Wishes((300,)))
     assert 300 in wished.route.plant
-    (said,) = left_out_in_words(without, wished.route)
+    (said,) = skipped_in_words(without, wished.route)
     assert said == "Left out of this plan: 1 plant that nobody could inspect last time."
     assert wished.scene.are_open(np.array([300, 0])).all()
     assert any("1 nobody could inspect last time" in one

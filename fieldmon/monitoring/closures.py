@@ -127,9 +127,7 @@ def is_all_closed(scene: Scene, closed: Sequence[Closure]) -> bool:
     return bool(left_out.all())
 
 
-def closed_in_words(
-    closed: Sequence[Closure], grid: PlantGrid, units: Units
-) -> tuple[Worded, ...]:
+def closed_in_words(closed: Sequence[Closure], grid: PlantGrid, units: Units) -> tuple[Worded, ...]:
     """Return which plants are closed to people, and until when: the last to open first.
 
     A plant that several treatments close is said once, with the last time.

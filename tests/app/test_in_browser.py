@@ -934,9 +934,9 @@ def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_
     rest(page)
     forms = page.get_by_role("tabpanel")
     row, plant = (forms.get_by_label(name, exact=True).first for name in ("Row", "Plant"))
-    for box in (row, plant):
-        box.fill("1")
-        box.press("Enter")
+    for typed in (row, plant):
+        typed.fill("1")
+        typed.press("Enter")
     forms.get_by_role("radio", name=texts.RESULTS_OF[0]).first.click()
     rest(page)
     row.press_sequentially("2")

@@ -11,7 +11,7 @@ from fieldmon.compute.units import Units
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.closures import closed_on, closed_plants, entry_waits, closed_in_words
+from fieldmon.monitoring.closures import closed_in_words, closed_on, closed_plants, entry_waits
 from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
 from fieldmon.planning.members import team_of
 from fieldmon.plot.local_clock import local_clock

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Hashable, Iterable, Iterator
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.geopackage import GeoPackageTable
     from fieldmon.monitoring.treatments import Row
 
@@ -201,45 +202,47 @@ def _keys(db: sqlite3.Connection) -> dict[str, str]:
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
     """Raise `FileProblem` unless both are copies of one season."""
-    begun, theirs = (settings_log.begun(one) for one in (db, other))
-    if begun != theirs:
-        raise FileProblem(
-            worded(
-                "Two copies of one season can be merged, but one began on {begun} and the other on "
-                "{theirs}: they are seasons of their own. Leave each in its file.",
-                begun=begun,
-                theirs=theirs,
-            )
-        )
+    _refuse_begun_apart(*(settings_log.begun(one) for one in (db, other)))
     for table in SAME:
         if not _is_same(db, other, table):
-            raise FileProblem(
-                worded(
-                    "Two copies of one season can be merged, but these differ in the layer {name}: "
-                    "they are seasons of their own, or another program changed one of them. Record "
-                    "what was found in the one into the other with: fieldmon record",
-                    name=table.name,
-                )
+            why = worded(
+                "they differ in the layer {name}: they are two seasons, or another program changed "
+                "one of them",
+                name=table.name,
             )
+            raise _strangers(why)
     at, other_at = (settings_log.begun_at(one) for one in (db, other))
-    if at and other_at and at != other_at:
-        raise FileProblem(
-            worded(
-                "Two copies of one season can be merged, but one was begun at {at} and the other "
-                "at {other_at} (UTC): they are two seasons of one plot. Leave each in its file. If "
-                "both look for the same, record what was found in the one into the other with: "
-                "fieldmon record",
-                at=_moment(at),
-                other_at=_moment(other_at),
-            )
-        )
-    if not (at and other_at):  # too old to say it
+    if at and other_at:
+        _refuse_begun_apart(_moment(at), _moment(other_at))
+    else:  # too old to say it
         _refuse_another_pest(db, other)
 
 
+def _refuse_begun_apart(here: str, there: str) -> None:
+    if here != there:
+        raise _strangers(
+            worded(
+                "one was begun on {here} and the other on {there}: they are two seasons",
+                here=here,
+                there=there,
+            )
+        )
+
+
+def _strangers(why: Worded) -> FileProblem:
+    return FileProblem(
+        worded(
+            "Two copies of one season can be merged, but {why}. Leave each in its file. If both "
+            "are of one plot and look for the same, record what was found in the one into the "
+            "other with: fieldmon record",
+            why=why,
+        )
+    )
+
+
 def _moment(at: str) -> str:
-    """Return a moment as people read it, as far as two seasons may differ in it."""
-    return at.replace("T", " ").removesuffix("Z")[:21]
+    """Return a moment as people read it."""
+    return f"{at.replace('T', ' ').removesuffix('Z')} UTC"
 
 
 def _refuse_another_pest(db: sqlite3.Connection, other: sqlite3.Connection) -> None:

@@ -58,7 +58,7 @@ def test_two_seasons_of_one_plot_begun_on_one_day_are_no_copies(run, season, tmp
     before = season.read_bytes()
     code, _, err, _ = run("merge", season, flies)
     assert code == 2
-    assert "they are two seasons of one plot. Leave each in its file" in err
+    assert "they are two seasons. Leave each in its file" in err
     assert season.read_bytes() == before
     # the way out that is named
     code, out, err, _ = run("record", season, flies)

@@ -149,10 +149,10 @@ def another(choices: Choices) -> None:
 @notices.reporting
 def _open_files(choices: Choices) -> str:
     begun_from = st.session_state.get(f"{_FROM} {choices.season.path}")
-    field, nothing = choices.plot.field, plot_files.of_session() is None
+    nothing = plot_files.of_session() is None
     if begun_from is None and not nothing:
         raise SettingError(texts.ANOTHER_ELSEWHERE)
     if begun_from is None:  # opened by its address: what it was begun from is not here
-        drawn_plot.bring(field)
+        drawn_plot.bring(choices.plot)
     plot_source.open_season(begun_from or plot_source.FILES)
     return texts.ANOTHER_BARE if begun_from is None else ""

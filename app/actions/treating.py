@@ -10,7 +10,7 @@ import streamlit as st
 
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.label_file import read_labels
-from fieldmon.decisions.labels import irac_groups
+from fieldmon.decisions.labels import WAITS_DAYS, irac_groups
 from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application
@@ -180,8 +180,33 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
 # -- the harvest
 
 
+def ask_wait(choices: Choices) -> None:
+    """Ask how long a treatment has to be waited for, where no day of harvest is named for it."""
+    first = choices.season.harvest_from(choices.on)
+    if first is None or first[0] is not None or not (product := first[1].application.product):
+        return
+    boxes = FreshBoxes("wait", choices)
+    with st.container(horizontal=True, vertical_alignment="bottom", key="wait_of"):
+        label = texts.WAIT_OF.format(product=texts.isolated(product))
+        boxes.show(st.number_input, label, 0, int(WAITS_DAYS.most), box="wait days",
+                   help=texts.WAIT_HELP)  # fmt: skip
+        acting.at_press(texts.WAIT_BUTTON, _say_wait, choices, product, boxes, key="say_wait",
+                        boxes=boxes)  # fmt: skip
+
+
+@notices.reporting
+def _say_wait(choices: Choices, product: str, boxes: FreshBoxes) -> str:
+    days = boxes.said("wait days")
+    if days is None:
+        raise SettingError(texts.WAIT_UNSAID)
+    choices.season.say_wait(product, int(days), choices.who or "")
+    boxes.empty()
+    return texts.WAIT_KEPT.format(product=texts.isolated(product))
+
+
 def _harvest(choices: Choices) -> None:
     """Show when harvest begins, and change it on demand."""
+    ask_wait(choices)
     harvest = choices.season.settings.harvest
     st.date_input(
         texts.HARVEST, harvest, min_value=choices.season.settings.begins, key=f"harvest {harvest}",

@@ -956,6 +956,12 @@ KEPT_ALL_CLOSED = (
     "nobody."
 )
 HARVEST_FROM = "After the treatments so far, harvest is allowed from **{day}** on."
+WAIT_OF, WAIT_BUTTON = "Days from {product} until harvest", "Its label says so"
+WAIT_HELP = "0 only where the label says so. Empty: not known, and no day of harvest is named."
+WAIT_UNSAID = (
+    "The days that the label says must be typed first. While they are not known, leave it."
+)
+WAIT_KEPT = "How long to wait from {product} is kept among the season's labels."
 LABELS, LABELS_IN = "What labels allow", "Your label table (CSV)"
 LABELS_NOTE = (
     "A table of yours: product, crop, pest, max dose, unit, waiting days, re-entry hours, IRAC "

@@ -224,16 +224,18 @@ def _unsaid_wait(
     if waits(one, label).harvest_from is not None:
         return
     said = worded(
-        "How long to wait from {product} on {day} until harvest was not said. Look at its label, "
-        "and give it in the label table.",
+        "How long to wait from {product} on {day} until harvest was not said.",
         **_named(one, rules.units),
     )
     if rules.harvest is not None and one.on <= rules.harvest:
         said = worded(
-            "How long to wait from {product} on {day} until the harvest on {harvest} was not "
-            "said. Look at its label, and give it in the label table.",
+            "How long to wait from {product} on {day} until the harvest on {harvest} was not said.",
             harvest=rules.units.day(rules.harvest), **_named(one, rules.units),
         )  # fmt: skip
+    todo = worded("Look at its label, and say it as it stands there.")
+    if not one.application.product:
+        todo = worded("Take the treatment back, and record it again with its product and its wait.")
+    said = worded("{said} {todo}", said=said, todo=todo)
     yield Caution("harvest", said, one.batch)
 
 

@@ -71,7 +71,7 @@ def test_a_wait_that_nobody_said_is_asked_for_whether_or_not_a_day_of_harvest_is
     assert after.startswith(f"{how_long} 2026-04-26 until harvest was not said.")
     (said,) = every([treated(0)])
     assert (said.kind, said.batch) == ("harvest", 1)
-    look = "Look at its label, and give it in the label table."
+    look = "Look at its label, and say it as it stands there."
     assert said.sentence == f"{how_long} 2026-04-06 until harvest was not said. {look}"
     assert every([treated(0, waiting_days=0)]) == every([treated(0)], [LABEL]) == ()
 

@@ -865,7 +865,7 @@ RECORD_UNSAID = (
 )
 MOVED_HERE = (
     "Something was typed while the page of another day was still in view. It stands in the boxes "
-    "of **{day}** now: look at it before you record."
+    "of **{day}** now: check it before you record."
 )
 ONE_UNSAID = (
     "Row, plant and result must be said before they are recorded, but one of them is empty. Fill "

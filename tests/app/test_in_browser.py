@@ -950,6 +950,22 @@ def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_
     assert row.input_value() == "123"
 
 
+def test_a_double_press_begins_one_season_and_keeps_one_plan(page, address, served_seasons):
+    before = {*served_seasons.glob("*.gpkg")}
+    shown(page, address)
+    page.locator(".st-key-do_begin button").dblclick()
+    page.get_by_text("has begun").wait_for(timeout=180_000)
+    rest(page)
+    (file,) = {*served_seasons.glob("*.gpkg")} - before
+    assert page.get_by_text("was pressed before").count() == 0
+    page.locator(".st-key-do_plan button").dblclick()
+    page.get_by_text("This is the plan for").first.wait_for(timeout=60_000)
+    rest(page)
+    kept = Season(file)
+    assert len(kept.kept_route(kept.settings.begins))
+    assert sum(one.kind == "planned" for one in kept.log()) == 1
+
+
 @pytest.mark.parametrize("page", [PHONE], indirect=True)
 def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_map_stays(
     page, address, served_seasons

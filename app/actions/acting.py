@@ -9,8 +9,9 @@ import streamlit as st
 from streamlit.runtime.scriptrunner import get_script_run_ctx
 from streamlit.runtime.state import SafeSessionState
 
-from ..state import plot_source, presses, widget_memory, work_day
-from ..state.choices import WHOSE_DAY
+from ..state import notices, plot_source, presses, work_day
+from ..state.presses import Press
+from ..words import texts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -18,69 +19,82 @@ if TYPE_CHECKING:
     from ..state.fresh_boxes import FreshBoxes
 
 
-def once(pressed: bool, action: Callable[..., object], *arguments: object) -> None:  # noqa: FBT001 - what a button returns
-    """Act if a button was pressed, and draw the page anew.
-
-    A button's `on_click` holds the values of the run that drew it. Where a box was changed a moment
-    before the press, those are the earlier ones: a season began with other hours than were shown.
-    """
-    if pressed:
-        action(*arguments)
-        st.rerun()
-
-
 def at_press(
-    boxes: FreshBoxes, label: str, action: Callable[..., object], *arguments: object, key: str,
+    label: str, action: Callable[..., object], *arguments: object, key: str,
+    boxes: FreshBoxes | None = None, at_once: bool = True,
+    button: Callable[..., object] = st.button,
     **settings: Any,  # noqa: ANN401 - those of a button
 ) -> None:  # fmt: skip
-    """Show a button that acts by what is in its boxes when it is pressed; no press is lost.
+    """Show a button that acts by what is chosen when it is pressed; no press is lost.
 
-    The action reads the boxes itself. It is done before the page is drawn anew: what is typed a
-    moment after the press breaks that off, and a press that only the drawing hears of is lost.
+    It acts before the page is drawn anew: what is typed a moment after the press breaks that off,
+    and a press that only the drawing hears of is lost. Where its boxes were emptied since it was
+    drawn, it acts as the page is drawn with those to come, if something was typed for them.
 
-    Where another day or plot was chosen since the button was drawn, it is done as the page is drawn
-    with that; so it is where the boxes were emptied, if something was typed for those to come.
+    A press of a page of another day or plot than that chosen does nothing, and the page says so:
+    nobody saw yet what it would be done by.
+
+    Parameters
+    ----------
+    label, key, settings
+        As of any button; `button` shows it.
+    action, arguments
+        What is done. But for the plot and the day the action reads itself what is chosen.
+    boxes
+        What the action empties, so that a second press does nothing twice.
+    at_once
+        False: the arguments follow from more than those two, so that it acts as the page is drawn.
     """
-    drawn = _chosen(), boxes.times
-    st.button(label, key=key, on_click=_press,
-              args=(key, (boxes, drawn), (action, arguments)), **settings)  # fmt: skip
-    if key in presses.waiting():
-        with _unbroken(), _until_done(key):
-            if not presses.waiting()[key] or boxes.hold_anything():
-                action(*arguments)
-        st.rerun()
+    drawn = Press(_chosen(), 0 if boxes is None else boxes.times)
+    button(label, key=key, on_click=_press,
+           args=(key, label, (boxes, drawn), (action, arguments), at_once), **settings)  # fmt: skip
+    press = presses.waiting().get(key)
+    if press is None:
+        return
+    with _unbroken(), _until_done(key):
+        if press.chosen != drawn.chosen:
+            _say_chosen_before(label)
+        elif press.times == drawn.times or (boxes is not None and boxes.hold_anything()):
+            action(*arguments)
+    st.rerun()
 
 
 def _press(
-    key: str, of: tuple[FreshBoxes, tuple[object, int]],
-    todo: tuple[Callable[..., object], tuple[object, ...]],
+    key: str, label: str, of: tuple[FreshBoxes | None, Press],
+    todo: tuple[Callable[..., object], tuple[object, ...]], at_once: bool,  # noqa: FBT001 - as given
 ) -> None:  # fmt: skip
-    boxes, (chosen, times) = of
+    boxes, drawn = of
     action, arguments = todo
     with _unbroken():
-        is_emptied = boxes.times != times
-        presses.waiting()[key] = is_emptied
-        if not is_emptied and _chosen() == chosen:
+        if _chosen() != drawn.chosen:
+            if not presses.is_done(key, drawn):  # else pressed twice: it chose another itself
+                _say_chosen_before(label)
+            return
+        presses.waiting()[key] = drawn
+        if at_once and (boxes is None or boxes.times == drawn.times):
             with _until_done(key):
                 action(*arguments)
 
 
+def _say_chosen_before(label: str) -> None:
+    notices.keep("warning", texts.PRESSED_BEFORE.format(button=label))
+
+
 def _chosen() -> tuple[object, ...]:
-    """Return what says of which plot, day and person a page is."""
+    """Return what says of which plot and day a page is."""
     source = plot_source.chosen()
-    return source, work_day.chosen(source), widget_memory.value(WHOSE_DAY)
+    return source, work_day.chosen(source)
 
 
 @contextmanager
 def _until_done(key: str) -> Iterator[None]:
     """Keep a press until it is done: to wait for a season's file can be broken off."""
-    waiting = presses.waiting()
     try:
         yield
     except Exception:  # a run broken off is none
-        waiting.pop(key, None)
+        presses.end(key, done=False)
         raise
-    waiting.pop(key, None)
+    presses.end(key, done=True)
 
 
 @contextmanager

@@ -47,9 +47,8 @@ def show(choices: Choices) -> None:
         st.caption(texts.BEGIN_NOTE)
         # outside the form: it counts for the button above, too, which begins at once
         assuming.finds_are(widget_memory.show, _FINDS, default=True)
-        pressed = _form(choices)
+        _form(choices)
         ask(choices, "form")
-    acting.once(pressed, begin_or_ask, choices, "form")
 
 
 def ask(choices: Choices, place: str) -> None:
@@ -60,7 +59,8 @@ def ask(choices: Choices, place: str) -> None:
     with st.container(border=True, key="begin_asks"):
         st.markdown(of_rows(assumptions.of_rows(choices.plot), choices.units))
         with st.container(horizontal=True):
-            pressed = st.button(texts.BEGIN_RIGHT, key="begin_right", type="primary")
+            acting.at_press(texts.BEGIN_RIGHT, begin, choices, key="begin_right", at_once=False,
+                            type="primary")  # fmt: skip
             st.button(texts.BEGIN_NOT_YET, key="begin_not_yet", on_click=assumptions.ask,
                       args=(choices, ""))  # fmt: skip
         drawing.spacings(key, {name: getattr(grid, name) for name in assumptions.SPACINGS})
@@ -68,7 +68,6 @@ def ask(choices: Choices, place: str) -> None:
             drawing.direction(key, grid.frame.bearing_deg % 180.0)
         if choices.plot.field.gate is None:
             st.button(texts.BEGIN_GATE, key="begin_gate", on_click=drawing.set_gate)
-    acting.once(pressed, begin, choices)
 
 
 def begin_or_ask(choices: Choices, place: str) -> None:
@@ -79,7 +78,7 @@ def begin_or_ask(choices: Choices, place: str) -> None:
         begin(choices)
 
 
-def _form(choices: Choices) -> bool:
+def _form(choices: Choices) -> None:
     with st.form("begin", border=False):
         st.text_input(texts.SEASON_NAME, _proposed(choices), key=_name_box(choices))
         if kept := seasons_folder.names():
@@ -87,7 +86,8 @@ def _form(choices: Choices) -> bool:
                 texts.EARLIER, [None, *kept], key="season_earlier", help=texts.EARLIER_HELP,
                 format_func=lambda name: texts.NO_EARLIER if name is None else name,
             )  # fmt: skip
-        return bool(st.form_submit_button(texts.BEGIN))
+        acting.at_press(texts.BEGIN, begin_or_ask, choices, "form", key="begin_form",
+                        at_once=False, button=st.form_submit_button)  # fmt: skip
 
 
 def _proposed(choices: Choices) -> str:
@@ -149,10 +149,10 @@ def another(choices: Choices) -> None:
 @notices.reporting
 def _open_files(choices: Choices) -> str:
     begun_from = st.session_state.get(f"{_FROM} {choices.season.path}")
-    field, nothing = choices.plot.field, plot_files.of_session() is None
+    nothing = plot_files.of_session() is None
     if begun_from is None and not nothing:
         raise SettingError(texts.ANOTHER_ELSEWHERE)
     if begun_from is None:  # opened by its address: what it was begun from is not here
-        drawn_plot.bring(field)
+        drawn_plot.bring(choices.plot)
     plot_source.open_season(begun_from or plot_source.FILES)
     return texts.ANOTHER_BARE if begun_from is None else ""

@@ -16,7 +16,7 @@ from ..state import chosen_day, notices
 from ..words import texts
 from ..words.language import in_words
 from ..words.strategies import sampler_does, sampler_name, strategy_name
-from . import robot_boxes
+from . import acting, robot_boxes
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -83,9 +83,8 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
         with hours if others == settings else nullcontext():
             if wanted != settings:
                 st.caption(texts.CHANGE_NOTE)
-                if st.button(texts.CHANGE, type="primary", key="change_setup"):
-                    season.change(wanted, settings)
-                    st.rerun()
+                acting.at_press(texts.CHANGE, _change, choices, wanted, settings,
+                                key="change_setup", at_once=False, type="primary")  # fmt: skip
         _offer_undo(choices)
 
 
@@ -164,6 +163,12 @@ def _offer_undo(choices: Choices) -> None:
     what = in_words(changed(choices.season.settings, before))
     label = texts.UNDO_CHANGE.format(what=what) if what else texts.UNDO_NO_CHANGE
     st.button(label, key="undo_change", icon=":material/undo:", on_click=_undo, args=(choices,))
+
+
+@notices.reporting
+def _change(choices: Choices, wanted: MonitoringSettings, settings: MonitoringSettings) -> str:
+    choices.season.change(wanted, settings)
+    return ""
 
 
 @notices.reporting

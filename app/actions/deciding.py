@@ -10,7 +10,7 @@ import streamlit as st
 
 from fieldmon.decisions.leaves import of_leaves
 from fieldmon.decisions.thresholds import read_thresholds
-from fieldmon.errors import FieldmonError
+from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.io.options import Upload
 from fieldmon.io.writers.treatment_map import treatment_map_bytes
 from fieldmon.reports.advice import advice_report
@@ -22,6 +22,7 @@ from ..state.chosen_units import units
 from ..words import language, texts
 from ..words.language import in_words, of_error
 from . import treating
+from .treating import Zoned
 
 if TYPE_CHECKING:
     from fieldmon.decisions.thresholds import Threshold
@@ -179,12 +180,18 @@ def files(choices: Choices, advice: Advice) -> None:
 
 def treated(choices: Choices, advice: Advice) -> None:
     """Take down that the zones were treated, and with what; what was advised is kept with it."""
+    if len(advice.zones):
+        with st.expander(texts.DECIDE_TREATED):
+            treating.show(choices, partial(_zoned, choices))
+
+
+def _zoned(choices: Choices) -> Zoned:
+    """Return the zones by what is asked now."""
+    advice = deciding.advice(choices)
     if not len(advice.zones):
-        return
-    with st.expander(texts.DECIDE_TREATED):
-        whole = shapely.union_all(advice.outlines)
-        area = shapely.MultiPolygon(list(shapely.get_parts(whole)))
-        treating.show(choices, area, advice.in_short())
+        raise SettingError(texts.DECIDE_NO_ZONE)
+    whole = shapely.union_all(advice.outlines)
+    return Zoned(shapely.MultiPolygon(list(shapely.get_parts(whole))), advice.in_short())
 
 
 def _report(choices: Choices, advice: Advice, product: str):  # noqa: ANN202 - a report

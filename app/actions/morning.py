@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import timedelta
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
@@ -118,13 +118,11 @@ _HOW_FAR: dict[str, Callable[[Choices, DayPlan], str]] = {
 
 
 def _button(step: Step, label: str, action: Callable[..., object], *arguments: object) -> None:
-    st.button(label, key=f"do_{step.name}", type="primary" if step.next else "secondary",
-              on_click=action, args=arguments)  # fmt: skip
+    st.button(label, on_click=action, args=arguments, **_shown(step))
 
 
-def _pressed(step: Step, label: str) -> bool:
-    kind = "primary" if step.next else "secondary"
-    return bool(st.button(label, key=f"do_{step.name}", type=kind))
+def _shown(step: Step) -> dict[str, Any]:
+    return {"key": f"do_{step.name}", "type": "primary" if step.next else "secondary"}
 
 
 def _look_back(choices: Choices, _: DayPlan, step: Step) -> None:
@@ -141,7 +139,7 @@ def _record_of(on: date) -> None:
 
 def _plan(choices: Choices, plan: DayPlan, step: Step) -> None:
     if len(plan.route):
-        acting.once(_pressed(step, texts.STEP_BUTTONS[PLAN]), _use_plan, choices)
+        acting.at_press(texts.STEP_BUTTONS[PLAN], _use_plan, choices, **_shown(step))
 
 
 @notices.reporting
@@ -152,8 +150,8 @@ def _use_plan(choices: Choices) -> str:
 
 
 def _begin(choices: Choices, _: DayPlan, step: Step) -> None:
-    pressed = _pressed(step, texts.STEP_BUTTONS[BEGIN])
-    acting.once(pressed, beginning.begin_or_ask, choices, "step")
+    acting.at_press(texts.STEP_BUTTONS[BEGIN], beginning.begin_or_ask, choices, "step",
+                    at_once=False, **_shown(step))  # fmt: skip
 
 
 def _note_sent(choices: Choices) -> None:
@@ -163,9 +161,7 @@ def _note_sent(choices: Choices) -> None:
 
 
 def _send(choices: Choices, plan: DayPlan, step: Step) -> None:
-    kind = "primary" if step.next else "secondary"
-    if st.button(texts.STEP_BUTTONS[SEND], key="do_send", type=kind,
-                 on_click=_note_sent, args=(choices,)):  # fmt: skip
+    if st.button(texts.STEP_BUTTONS[SEND], on_click=_note_sent, args=(choices,), **_shown(step)):
         st.dialog(texts.SEND_TITLE)(handing_out.show)(choices, plan)
 
 
@@ -182,14 +178,15 @@ def _report(choices: Choices, _: DayPlan, step: Step) -> None:
     # made when it is asked for: fonts are cut and plants are drawn, in a second or two
     st.download_button(
         texts.STEP_BUTTONS[REPORT], lambda: pdf_bytes(made(), paper), f"day_{choices.day}.pdf",
-        "application/pdf", key="do_report", type="primary" if step.next else "secondary",
-        on_click=morning.note, args=(choices, REPORT),
+        "application/pdf", on_click=morning.note, args=(choices, REPORT), **_shown(step),
     )  # fmt: skip
 
 
 def _next_day(choices: Choices, _: DayPlan, step: Step) -> None:
-    pressed = _pressed(step, texts.STEP_BUTTONS[NEXT_DAY])
-    acting.once(pressed, work_day.choose, plot_source.chosen(), choices.on + timedelta(days=1))
+    # of its own day: pressed twice it is the day after that all the same
+    st.button(texts.STEP_BUTTONS[NEXT_DAY], on_click=work_day.choose,
+              args=(plot_source.chosen(), choices.on + timedelta(days=1)),
+              **_shown(step) | {"key": f"do_next_day {choices.day}"})  # fmt: skip
 
 
 _BUTTONS: dict[str, Callable[[Choices, DayPlan, Step], None]] = {

@@ -51,6 +51,7 @@ def show(choices: Choices) -> None:
     fresh_boxes.turn(choices)
     st.markdown(f"**{texts.RECORD} · {choices.units.said_day(choices.day)}**")
     st.caption(texts.RECORD_NOTE)
+    moved = st.container()
     ask_about_contradictions(choices)
     one, route, file, treat = st.tabs(
         [texts.RECORD_ONE, texts.RECORD_ROUTE, texts.RECORD_UPLOAD, texts.TREAT]
@@ -63,6 +64,8 @@ def show(choices: Choices) -> None:
         _show_file(choices)
     with treat:
         treating.show(choices)
+    if fresh_boxes.hold_of_another_day(choices):
+        moved.info(texts.MOVED_HERE.format(day=choices.units.said_day(choices.day)))
     kept_files.sync()  # marks are known once their table is shown
 
 
@@ -100,7 +103,7 @@ def _show_one(choices: Choices) -> None:
         format_func=texts.RESULTS_OF.__getitem__,
     )  # fmt: skip
     show(st.number_input, texts.COUNT, 0, None, box="one_count")
-    acting.at_press(boxes, texts.RECORD_BUTTON, _record_one, choices, key="record_one")
+    acting.at_press(texts.RECORD_BUTTON, _record_one, choices, key="record_one", boxes=boxes)
 
 
 @notices.reporting
@@ -139,8 +142,8 @@ def _show_route(choices: Choices) -> None:
     with st.container(key="route_marks"):
         table = partial(marks.show, choices, plants)
         boxes.show(table, box=f"marked {of}", default=[])
-    acting.at_press(boxes, texts.RECORD_BUTTON, _record_stops, choices, plants, (of, marks),
-                    key="record_route", type="primary")  # fmt: skip
+    acting.at_press(texts.RECORD_BUTTON, _record_stops, choices, plants, (of, marks),
+                    key="record_route", boxes=boxes, type="primary")  # fmt: skip
 
 
 class _Marks:
@@ -207,8 +210,8 @@ def _show_file(choices: Choices) -> None:
         if brought.getvalue().startswith(MAGIC):
             st.text_input(texts.CORRECTED_BY, key=key("corrected_by"),
                           help=texts.CORRECTED_BY_HELP)  # fmt: skip
-        acting.at_press(boxes, texts.RECORD_BUTTON, _record_file, choices, key="record_file",
-                        type="primary")  # fmt: skip
+        acting.at_press(texts.RECORD_BUTTON, _record_file, choices, key="record_file",
+                        boxes=boxes, type="primary")  # fmt: skip
 
 
 @notices.reporting

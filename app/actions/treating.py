@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +10,7 @@ import streamlit as st
 
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.label_file import read_labels
-from fieldmon.decisions.labels import irac_groups
+from fieldmon.decisions.labels import WAITS_DAYS, irac_groups
 from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application
@@ -23,6 +23,8 @@ from ..words.language import in_words, listed
 from . import acting
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
@@ -38,32 +40,34 @@ _TEXTS = (
 )
 
 
-def show(choices: Choices, area: MultiPolygon | None = None, advised: str = "") -> None:
+@dataclass(frozen=True, eq=False)
+class Zoned:
+    """Where zones were treated, lon/lat, and what was advised, for the season's log."""
+
+    area: MultiPolygon
+    advised: str
+
+
+def show(choices: Choices, zones: Callable[[], Zoned] | None = None) -> None:
     """Show the form for a treatment of the open season, and note it on demand.
 
     Parameters
     ----------
     choices
         With a season.
-    area
-        Where it was, lon/lat, as the zones of a decision; None: on the whole plot, unless a part
-        is named or selected.
-    advised
-        What was advised, for the season's log; empty: nothing.
+    zones
+        Returns where it was, as the zones of a decision, when it is noted; None: on the whole
+        plot, unless a part is named or selected.
     """
     # what was typed on one page is of its own place
-    boxes = FreshBoxes("treatment" if area is None else "treatment of zones", choices)
-    if area is None:
+    boxes = FreshBoxes("treatment" if zones is None else "treatment of zones", choices)
+    if zones is None:
         _where(boxes)
     boxes.show(st.number_input, texts.TREAT_EFFICACY, 0, 100, step=5, box="efficacy")
     boxes.show(st.text_input, texts.TREAT_PRODUCT, box="product", default="")
     with st.expander(texts.TREAT_RECORD):
         _boxes(boxes)
-    todo = _treat, choices, boxes, area, advised
-    if area is None:
-        acting.at_press(boxes, texts.TREAT_BUTTON, *todo, key="treat")
-    else:  # zones follow from what is chosen above them: a press counts for those shown then
-        acting.once(st.button(texts.TREAT_BUTTON, key="treat"), *todo)
+    acting.at_press(texts.TREAT_BUTTON, _treat, choices, boxes, zones, key="treat", boxes=boxes)
     _harvest(choices)
     with st.expander(texts.LABELS):
         _labels(choices)
@@ -141,7 +145,7 @@ def _said(boxes: FreshBoxes) -> Application:
 
 
 @notices.reporting
-def _treat(choices: Choices, boxes: FreshBoxes, area: MultiPolygon | None, advised: str) -> str:
+def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | None) -> str:
     """Note a treatment; say what to beware of because of it."""
     efficacy, season = boxes.said("efficacy"), choices.season
     said = _said(boxes)
@@ -149,9 +153,11 @@ def _treat(choices: Choices, boxes: FreshBoxes, area: MultiPolygon | None, advis
     if efficacy is None and not said.product:
         raise SettingError(texts.TREAT_UNSAID)
     works = None if efficacy is None else efficacy / 100
-    if advised:
-        season.advise(choices.on, advised, choices.who or "")
-    plants = _plants(boxes) if area is None else None
+    zoned = None if zones is None else zones()
+    if zoned is not None:
+        season.advise(choices.on, zoned.advised, choices.who or "")
+    area = None if zoned is None else zoned.area
+    plants = _plants(boxes) if zoned is None else None
     done = season.treat(choices.on, works, area, application=said, plants=plants)
     boxes.empty()
     if plants is not None:
@@ -174,8 +180,33 @@ def _treat(choices: Choices, boxes: FreshBoxes, area: MultiPolygon | None, advis
 # -- the harvest
 
 
+def ask_wait(choices: Choices) -> None:
+    """Ask how long a treatment has to be waited for, where no day of harvest is named for it."""
+    first = choices.season.harvest_from(choices.on)
+    if first is None or first[0] is not None or not (product := first[1].application.product):
+        return
+    boxes = FreshBoxes("wait", choices)
+    with st.container(horizontal=True, vertical_alignment="bottom", key="wait_of"):
+        label = texts.WAIT_OF.format(product=texts.isolated(product))
+        boxes.show(st.number_input, label, 0, int(WAITS_DAYS.most), box="wait days",
+                   help=texts.WAIT_HELP)  # fmt: skip
+        acting.at_press(texts.WAIT_BUTTON, _say_wait, choices, product, boxes, key="say_wait",
+                        boxes=boxes)  # fmt: skip
+
+
+@notices.reporting
+def _say_wait(choices: Choices, product: str, boxes: FreshBoxes) -> str:
+    days = boxes.said("wait days")
+    if days is None:
+        raise SettingError(texts.WAIT_UNSAID)
+    choices.season.say_wait(product, int(days), choices.who or "")
+    boxes.empty()
+    return texts.WAIT_KEPT.format(product=texts.isolated(product))
+
+
 def _harvest(choices: Choices) -> None:
     """Show when harvest begins, and change it on demand."""
+    ask_wait(choices)
     harvest = choices.season.settings.harvest
     st.date_input(
         texts.HARVEST, harvest, min_value=choices.season.settings.begins, key=f"harvest {harvest}",
@@ -205,13 +236,16 @@ def _labels(choices: Choices) -> None:
     boxes = FreshBoxes("labels", choices)
     brought = st.file_uploader(texts.LABELS_IN, type=["csv"], key=boxes.key("labels_file"))
     if brought is not None:
-        pressed = st.button(texts.LABELS_BUTTON, key="take_labels")
-        table = Upload(brought.name, brought.getvalue())
-        acting.once(pressed, _take_labels, choices, boxes, table)
+        acting.at_press(texts.LABELS_BUTTON, _take_labels, choices, boxes, key="take_labels",
+                        boxes=boxes)  # fmt: skip
 
 
 @notices.reporting
-def _take_labels(choices: Choices, boxes: FreshBoxes, table: Upload) -> str:
+def _take_labels(choices: Choices, boxes: FreshBoxes) -> str:
+    brought = boxes.said("labels_file")
+    if brought is None:  # taken out again
+        return ""
+    table = Upload(brought.name, brought.getvalue())
     read = read_labels(table)
     n = choices.season.keep_labels(read.value, table.name, choices.who or "")
     boxes.empty()

@@ -8,7 +8,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.monitoring.cautions import harvest_unsaid
-from fieldmon.monitoring.closures import closed_plants, is_all_closed, left_off_in_words
+from fieldmon.monitoring.closures import closed_in_words, closed_plants, is_all_closed
 from fieldmon.planning.skips import left_out_in_words
 
 from ..state import chosen_day
@@ -58,7 +58,7 @@ def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
         return []
     season, units = choices.season, choices.units.in_sentences(choices.on)
     closed = season.closed(choices.on, choices.who or "", plan.scene.seconds_left)
-    said = left_off_in_words(closed, choices.plot.grid, units)
+    said = closed_in_words(closed, choices.plot.grid, units)
     to_kept = season.closed_to_kept(choices.on, choices.who or "")
     plants = closed_plants(to_kept, len(choices.plot.grid))
     kept = np.count_nonzero(plants[chosen_day.given_out(choices)])

@@ -21,25 +21,31 @@ from fieldmon.io.parse.geometry import LARGEST_M2, SMALLEST_M2, area_m2, steps_m
 from fieldmon.io.parse.values import positions_in_cells
 
 from ..words import language, texts
-from . import brought_files, plot_edits, plot_files, plot_source, widget_memory
-from .brought_files import PLANTS, PLOT
+from . import brought_files, plot_edits, plot_files, plot_source, row_settings, widget_memory
+from .brought_files import BLOCKS, PLANTS, PLOT, ROWS
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
+    from shapely.geometry.base import BaseGeometry
 
     from fieldmon.plot.field import Field
+    from fieldmon.plot.plot import Plot
 
     from ..words.units import UnitsInLanguage
     from .plot_edits import Points
 
 #: what the corners so far are kept as
 CORNERS = "corners"
+# both faces of a row stand in one place
+_TWINS_M = 0.05
 #: corners that a plot has
 LEAST = 3
 # a plot as wide as this is a slip of a finger, or two plots
 _WIDEST_M = LARGEST_M2**0.5
 _OPEN, _TURN, _FILE = "draws a plot", "plot drawn anew", "drawn.geojson"
-_PLANTS_FILE = "plants.geojson"
+_PLANTS_FILE, _ROWS_FILE, _BLOCKS_FILE = "plants.geojson", "rows.geojson", "blocks.geojson"
 _NUMBER = r"(-?\d{1,3}(?:\.\d+)?)"
 _PAIR = rf"(?:loc:)?{_NUMBER}[,~\s+]+{_NUMBER}"
 # how maps on the internet write a position into an address, latitude first: a pin before the view
@@ -152,8 +158,12 @@ def use(units: UnitsInLanguage) -> None:
     st.session_state[_OPEN] = False
 
 
-def bring(field: Field) -> None:
-    """Let the plot be this one, as if it had come in files, with what is drawn on it."""
+def bring(plot: Plot) -> None:
+    """Let the plot be this one, as if it had come in files, with all that its rows were laid by.
+
+    Its headlands are not known any more.
+    """
+    field = plot.field
     parts = shapely.get_parts(field.boundary)
     if len(parts) == 1 and not parts[0].interiors:
         data = geojson(tuple(parts[0].exterior.coords)[:-1], field.name)
@@ -164,6 +174,14 @@ def bring(field: Field) -> None:
     brought_files.keep_uploads(PLOT, (Upload(_FILE, data),))
     if field.plants is not None:
         brought_files.keep_uploads(PLANTS, (Upload(_PLANTS_FILE, measured_plants(field)),))
+    elif len(lines := shapely.get_parts(field.row_lines)):
+        brought_files.keep_uploads(ROWS, (Upload(_ROWS_FILE, _features(lines, [{}] * len(lines))),))
+    if field.blocks:
+        stated = [{"name": one.name, "bearing": one.row_bearing_deg,
+                   "row_spacing": one.row_spacing_m, "plant_spacing": one.plant_spacing_m}
+                  for one in field.blocks]  # fmt: skip
+        areas = [block.area for block in field.blocks]
+        brought_files.keep_uploads(BLOCKS, (Upload(_BLOCKS_FILE, _features(areas, stated)),))
     drawn = [plot_edits.Edit(plot_edits.GATE, (field.gate,))] if field.gate is not None else []
     for kind, lines in (
         (plot_edits.PATH, shapely.get_parts(field.paths)),
@@ -171,7 +189,59 @@ def bring(field: Field) -> None:
     ):
         drawn += [plot_edits.Edit(kind, tuple(line.coords)) for line in lines]
     files = plot_files.of_session()
-    plot_files.draw(plot_files.outline(files, lambda *_: 0).key, tuple(drawn))
+    key = plot_files.outline(files, lambda *_: 0).key
+    plot_files.draw(key, tuple(drawn))
+    row_settings.say(key, _said_of_rows(plot))
+
+
+def _said_of_rows(plot: Plot) -> dict[str, float | bool]:
+    """Return how a plot's rows were laid, as far as neither its files say it nor it was assumed."""
+    field, grid = plot.field, plot.grid
+    said: dict[str, float | bool] = {"both_faces": bool((grid.twin >= 0).any())}
+    if grid.half_canopy_m is not None:
+        said["half_canopy"] = grid.half_canopy_m
+    if field.plants is not None:
+        return said | {"no_rows": not field.in_rows}
+    assumed = {one.setting for one in plot.assumed}
+    for name in ("row_spacing", "plant_spacing"):
+        known = {getattr(one, f"{name}_m") for one in field.blocks}
+        if f"{name}_m" not in assumed and (not known or None in known):
+            # the rest is stated by its blocks; what is measured is within a centimetre
+            said[name] = round(_laid_m(plot, f"{name}_m"), 2)
+    if field.row_lines.is_empty and not field.blocks:
+        said["row_bearing"] = grid.frame.bearing_deg % 360.0
+    return said
+
+
+def _laid_m(plot: Plot, name: str) -> float:
+    """Return a spacing of the rows laid, of those in blocks that do not state it themselves."""
+    field, grid = plot.field, plot.grid
+    usual: float = getattr(grid, name)
+    if not field.blocks:
+        return usual
+    unstated = [one.area for one in field.blocks if getattr(one, name) is None]
+    inside = shapely.contains_xy(shapely.union_all(unstated), *grid.lonlat().T)
+    rows = [grid.xy_m[one] for one in np.split(np.arange(len(grid)), grid.row_start[1:-1])
+            if inside[one].all() and len(one) > 1]  # fmt: skip
+    if name == "plant_spacing_m":
+        apart = [np.hypot(*np.diff(row, axis=0).T) for row in rows]
+    else:
+        lines = [LineString(row) for row in rows]
+        apart = [shapely.distance(shapely.points(row[len(row) // 2]), line)
+                 for row, line in zip(rows, lines[1:], strict=False)]  # fmt: skip
+    steps = np.concatenate([np.ravel(one) for one in apart]) if apart else np.zeros(0)
+    steps = steps[steps > _TWINS_M]
+    return float(np.median(steps)) if len(steps) else usual
+
+
+def _features(shapes: Sequence[BaseGeometry], columns: Sequence[dict[str, object]]) -> bytes:
+    """Return shapes with their columns as a GeoJSON file."""
+    features = [
+        {"type": "Feature", "properties": said, "geometry": shapely.geometry.mapping(shape)}
+        for shape, said in zip(shapes, columns, strict=True)
+    ]
+    whole = {"type": "FeatureCollection", "features": features}
+    return json.dumps(whole, ensure_ascii=False).encode()
 
 
 def _carry(old: str, new: str) -> None:
@@ -194,16 +264,8 @@ def measured_plants(field: Field) -> bytes:
     """Return the measured plants of a plot and what they are called as a GeoJSON file."""
     called = {"block": field.plant_blocks, "row": field.plant_rows, "plant": field.plant_names}
     columns = {kind: names.tolist() for kind, names in called.items() if names is not None}
-    features = [
-        {
-            "type": "Feature",
-            "properties": {kind: names[k] for kind, names in columns.items()},
-            "geometry": {"type": "Point", "coordinates": at},
-        }
-        for k, at in enumerate(field.plants.tolist())
-    ]
-    whole = {"type": "FeatureCollection", "features": features}
-    return json.dumps(whole, ensure_ascii=False).encode()
+    said = [{kind: names[k] for kind, names in columns.items()} for k in range(len(field.plants))]
+    return _features(list(shapely.points(field.plants)), said)
 
 
 def data_of_plot() -> bytes | None:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 _BOXES, _TIMES = "fresh boxes", "emptied "
 _WHERE, _HELD, _LATE = "form and name of boxes", "boxes held", "boxes filled late"
+_MOVED = "boxes filled from another day's"
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,10 +122,27 @@ def turn(choices: Choices) -> None:
             continue
         now = widget_memory.value(key)
         if now not in (before, last):  # else the browser sends again what is known
-            late[st.session_state[_WHERE][key]] = now
+            form, box = st.session_state[_WHERE][key]
+            late[form, box] = now
             _held()[key] = (before, now)
+            if not key.endswith(here):
+                _moved()[FreshBoxes(form, choices).key(box)] = now
         if now != before and is_shown:
             widget_memory.put(key, before)
+
+
+def hold_of_another_day(choices: Choices) -> bool:
+    """Return whether a box of this day still holds what was said in another day's, and moved."""
+    here = f" {choices.day} {choices.key}"
+    return any(
+        key in _shown() and key.endswith(here) and widget_memory.value(key) == value
+        for key, value in _moved().items()
+    )
+
+
+def _moved() -> dict[str, object]:
+    moved: dict[str, object] = st.session_state.setdefault(_MOVED, {})
+    return moved
 
 
 def _held() -> dict[str, tuple[object, object]]:

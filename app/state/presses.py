@@ -2,15 +2,37 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import streamlit as st
 
-_PRESSES = "presses"
+_PRESSES, _DONE = "presses", "press done"
 
 
-def waiting() -> dict[str, bool]:
-    """Return whether the boxes were emptied since, of each button whose press waits, by its key."""
-    presses: dict[str, bool] = st.session_state.setdefault(_PRESSES, {})
+@dataclass(frozen=True)
+class Press:
+    """A press of a page: of which plot and day it was, and how often its boxes were emptied."""
+
+    chosen: tuple[object, ...]
+    times: int = 0
+
+
+def waiting() -> dict[str, Press]:
+    """Return the presses that wait, by the keys of their buttons."""
+    presses: dict[str, Press] = st.session_state.setdefault(_PRESSES, {})
     return presses
+
+
+def end(key: str, *, done: bool) -> None:
+    """Let the press of a button wait no more, as it was carried out, or failed."""
+    press = waiting().pop(key, None)
+    if done:
+        st.session_state[_DONE] = key, press
+
+
+def is_done(key: str, press: Press) -> bool:
+    """Return whether this press of a button was carried out as the last of all."""
+    return st.session_state.get(_DONE) == (key, press)
 
 
 def forget() -> None:

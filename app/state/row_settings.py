@@ -22,6 +22,13 @@ def row_settings(plot_key: str) -> dict[str, float | None]:
     return {**said, "row_bearing_deg": bearing, "faces": 2 if both else None, "in_rows": in_rows}
 
 
+def say(plot_key: str, said: dict[str, float | bool]) -> None:
+    """Let boxes begin with this, lengths in metres, by the names of the boxes (for callbacks)."""
+    for name, value in said.items():
+        shown = units().shown(value) if name in LENGTHS else value
+        widget_memory.put(f"{name} {plot_key}", shown)
+
+
 def is_said(plot_key: str) -> bool:
     """Return whether anything was said of a plot's rows by hand."""
     return row_settings(plot_key) != dict.fromkeys(row_settings(plot_key), None) | {"in_rows": True}

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import count
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
 from fieldmon.monitoring import estate_day
-from fieldmon.monitoring.closures import closed_plants, left_off_in_words
+from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.estate_day import EstatePlot
-from fieldmon.monitoring.estate_routes import EstateRoute
+from fieldmon.monitoring.estate_routes import EstateRoute, NamedPlot, walked
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.plot.local_clock import local_clock
@@ -33,7 +34,6 @@ from .chosen_day import STARTS
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from fieldmon.monitoring.closures import Closure
     from fieldmon.monitoring.estate_day import EstateTurn
     from fieldmon.planning.plan import DayPlan
 
@@ -100,13 +100,10 @@ class _Ready:
     sampler: str
     known: EstatePlot
 
-    def closed_in_words(self, closed: tuple[Closure, ...]) -> tuple[str, ...]:
-        """Return what is left off as people may not be there yet, and until when."""
-        if self.known.season is None:
-            return ()
+    def named(self) -> NamedPlot:
+        """Return it as it is called here."""
         units = chosen_units.units().in_sentences(self.known.on)
-        grid = self.known.scene.grid
-        return tuple(map(in_words, left_off_in_words(closed, grid, units)))
+        return NamedPlot(self.plot.name, self.sampler, self.known, units)
 
 
 def due(plots: Iterable[PlotState]) -> list[PlotState]:
@@ -130,35 +127,33 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
     kind = estate_day.one_robot(seasons) if len(seasons) == len(known) else None
     members = crew.members(kind)
     shared = estate_day.share_estate(known, members, STARTS, 60.0 * crew.move_min)
-    said = [one.closed_in_words(closed) for one, closed in zip(ready, shared.closed, strict=True)]
-    turns, waiting, otherwise = [], {*shared.waiting}, []
-    for k, turn in enumerate(shared.turns):
-        progress(len(plots) + k, 2 * len(plots))
-        one, who = ready[turn.plot], members[turn.who].name
-        plan = _plan(one, turn)
-        if len(plan.route):
-            turns.append(PlannedTurn(
-                plot=one.plot.name, who=who, begins=turn.begins, route=plan.route,
-                sampler=one.sampler, closed=said[turn.plot], state=one.plot, number=turn.who,
-            ))  # fmt: skip
-            season, member = one.known.season, members[turn.who]
-            if season is not None and estate_day.read_otherwise(season, [member]):
-                otherwise.append((who, one.plot.name))
-        else:
-            waiting.add(turn.plot)
+    done = count(len(plots))
+
+    def plan(turn: EstateTurn) -> DayPlan:
+        progress(next(done), 2 * len(plots))
+        return _plan(ready[turn.plot], turn)
+
+    made = walked(shared, [one.named() for one in ready], members, plan, in_words)
     return SharedPlots(
-        tuple(turns),
-        tuple(ready[k].plot for k in sorted(waiting)),
+        tuple(
+            PlannedTurn(**vars(route), state=ready[turn.plot].plot, number=turn.who)
+            for turn, route in made.turns
+        ),
+        tuple(ready[k].plot for k in made.waiting),
         tuple(problems),
         tuple(
             f"{texts.isolated(one.plot.name)}: {sentence}"
-            for one, sentences in zip(ready, said, strict=True)
+            for one, sentences in zip(ready, made.closed, strict=True)
             for sentence in sentences
         ),
-        tuple(one.name for one in members if one.name not in {turn.who for turn in turns}),
+        made.free,
         len(members),
         several_kinds=kind is None and bool(seasons),
-        otherwise=tuple(otherwise),
+        otherwise=tuple(
+            (member.name, ready[k].plot.name)
+            for k, each in made.otherwise.items()
+            for member, _ in each
+        ),
     )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from ..actions import assuming, beginning
+from ..actions import assuming, beginning, treating
 from ..show import cautions, charts, development, forecast, learnt, map_layers, plant_history
 from ..show import day as show_day
 from ..state import assumptions, chosen_day
@@ -35,6 +35,7 @@ def show(choices: Choices) -> None:
     show_day.planned_only(choices)
     cautions.show(choices)
     cautions.show_treatments(choices)
+    treating.ask_wait(choices)
     assuming.show(choices)
     development.show(choices)
     _charts(choices, days, progress)

@@ -103,6 +103,10 @@ ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lie
 OTHER_DAY = "This page is about **{day}**, which is not today ({today})."
 OTHER_DAY_RECORDED = "What you record here is recorded for {day}."
 BACK_TO_TODAY = "Back to today"
+PRESSED_BEFORE = (
+    "*{button}* was pressed before the plot or the day just chosen was shown, so nothing was done. "
+    "Press it again for what is shown now."
+)
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
 ASSUMED = "\\* assumed: {what}."
 ASSUMED_WHAT = {
@@ -859,6 +863,10 @@ RECORD_UNSAID = (
     "Something must be said before it is recorded, but no stop is done and none is marked. Say how "
     "many stops were done, or mark those where pests were found."
 )
+MOVED_HERE = (
+    "Something was typed while the page of another day was still in view. It stands in the boxes "
+    "of **{day}** now: check it before you record."
+)
 ONE_UNSAID = (
     "Row, plant and result must be said before they are recorded, but one of them is empty. Fill "
     "in all three."
@@ -915,6 +923,7 @@ TREAT_UNSAID = (
     "it kills, as on the label or by experience."
 )
 DECIDE_TREATED = "The zones were treated"
+DECIDE_NO_ZONE = "By what is asked now there is no zone to treat, so nothing was noted."
 TREAT_RECORD = "What a certifier asks: dose, waiting period, who and why"
 TREAT_DOSE, TREAT_UNIT = "Dose of the product", "Unit of the dose"
 TREAT_WATER = "Water, l/{area}"
@@ -947,6 +956,12 @@ KEPT_ALL_CLOSED = (
     "nobody."
 )
 HARVEST_FROM = "After the treatments so far, harvest is allowed from **{day}** on."
+WAIT_OF, WAIT_BUTTON = "Days from {product} until harvest", "Its label says so"
+WAIT_HELP = "0 only where the label says so. Empty: not known, and no day of harvest is named."
+WAIT_UNSAID = (
+    "The days that the label says must be typed first. While they are not known, leave it."
+)
+WAIT_KEPT = "How long to wait from {product} is kept among the season's labels."
 LABELS, LABELS_IN = "What labels allow", "Your label table (CSV)"
 LABELS_NOTE = (
     "A table of yours: product, crop, pest, max dose, unit, waiting days, re-entry hours, IRAC "

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.options import SeasonFile
+from fieldmon.decisions.labels import WAITS_DAYS
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel
@@ -20,19 +23,40 @@ Table = Annotated[
     ),
 ]
 Who = Annotated[str, typer.Option(help="Who provides it.")]
+Product = Annotated[
+    str, typer.Option(help="Say one product's wait without a table: its name, as it was used.")
+]
+Waiting = Annotated[
+    int | None,
+    typer.Option(
+        "--waiting-days",
+        help="Whole days until harvest on its label; 0 only where the label says so.",
+        callback=within(WAITS_DAYS),
+    ),
+]
 
 
-def labels(season: SeasonFile, table: Table = None, who: Who = "") -> None:
+def labels(
+    season: SeasonFile,
+    table: Table = None,
+    product: Product = "",
+    waiting_days: Waiting = None,
+    who: Who = "",
+) -> None:
     """Read a table of what product labels allow; treatments are checked against it.
 
-    The table is yours: fieldmon knows no label and no law. It replaces the one before.
+    The table is yours: fieldmon knows no label and no law. It replaces the one before, with what
+    was said by --product. What is not known stays empty there: it is never taken as 0.
 
     Example: fieldmon labels season.gpkg labels.csv
+    Example: fieldmon labels season.gpkg --product Acarol --waiting-days 7
     """
     from fieldmon.compute.wording import written
     from fieldmon.decisions.label_file import read_labels
     from fieldmon.monitoring import Season
 
+    if bool(product) != (waiting_days is not None):
+        raise SettingError("Give --product and --waiting-days together, or neither.")
     kept = Season(season)
     if table is not None:
         read = read_labels(table)
@@ -40,6 +64,8 @@ def labels(season: SeasonFile, table: Table = None, who: Who = "") -> None:
             typer.echo(f"{table.name}: {message}", err=True)
         n = kept.keep_labels(read.value, table.name, who)
         typer.echo(f"{table.name}: {n} {written(n, 'label|labels')} kept")
+    if waiting_days is not None:
+        kept.say_wait(product, waiting_days, who)
     for one in kept.labels():
         typer.echo(f"  {_line(one)}")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import datetime, time, timedelta
@@ -15,6 +16,7 @@ from fieldmon.errors import ChoiceNeeded
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from datetime import date
+    from pathlib import Path
 
     import numpy as np
 
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.io.prepared import Laid, SourceMessage
     from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
@@ -220,3 +223,12 @@ def tell_unusable(records: Observations, day: np.datetime64, prior: PriorSetting
 
     for sentence in usable(records, day, prior.hardly_days).messages():
         typer.echo(sentence, err=True)
+
+
+def how_to_say_wait(season: Path, one: KeptTreatment) -> str:
+    """Return how to say how long to wait from a treatment until harvest."""
+    if product := one.application.product:
+        pasted = shlex.join(["fieldmon", "labels", str(season), "--product", product])
+        return f"Say it as its label does: {pasted} --waiting-days DAYS"
+    pasted = shlex.join(["fieldmon", "undo", str(season), "--batch", str(one.batch)])
+    return f"It names no product: {pasted}; then record it again with --product, --waiting-days"

@@ -109,11 +109,11 @@ class _LeftOff(NamedTuple):
     def of(cls, season: Season, on: date, days: tuple[tuple[str, DayPlan], ...]) -> _LeftOff:
         """Return it of the plans of those named."""
         from fieldmon.compute.units import Units
-        from fieldmon.monitoring.closures import closed_plants, is_all_closed, left_off_in_words
+        from fieldmon.monitoring.closures import closed_in_words, closed_plants, is_all_closed
 
         grid = season.plot.grid
         each = [(season.closed(on, who, today.scene.seconds_left), today) for who, today in days]
-        said = (said for closed, _ in each for said in left_off_in_words(closed, grid, Units()))
+        said = (said for closed, _ in each for said in closed_in_words(closed, grid, Units()))
         timely = [one for one in each if one[1].scene.seconds_left > 0]
         return cls(
             tuple(dict.fromkeys(said)),

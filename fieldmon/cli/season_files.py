@@ -40,15 +40,24 @@ def opened(files: Iterable[Path]) -> list[Season]:
     seasons = [Season(file) for file in files]
     for one, other in combinations(seasons, 2):
         if one.is_copy(other.path):
-            pasted = shlex.join([str(one.path), str(other.path)])
             raise SettingError(
                 f"Each season must be given once, but {one.path} and {other.path} are the same or "
-                "copies of one: what both hold would stand there twice. Leave one away, or bring "
-                f"them together first: fieldmon merge {pasted}"
+                f"copies of one: what both hold would stand there twice. {_instead(one, other)}"
             )
         if one.is_of_one_plot(other.path):
             _tell_of_one_plot(one, other)
     return seasons
+
+
+def _instead(one: Season, other: Season) -> str:
+    """Return what to do with two copies of a season of which each is to count once."""
+    if one.is_of_another_pest(other.path):
+        return (
+            "They look for different pests by now: leave one away, or undo in one of them what was "
+            "recorded before it was copied."
+        )
+    pasted = shlex.join([str(one.path), str(other.path)])
+    return f"Leave one away, or bring them together first: fieldmon merge {pasted}"
 
 
 def _tell_of_one_plot(one: Season, other: Season) -> None:
@@ -58,7 +67,7 @@ def _tell_of_one_plot(one: Season, other: Season) -> None:
         for pest in [season.settings.pest]
     ]
     typer.echo(
-        f"seen: {named[0]} and {named[1]} are two seasons of one plot, begun apart: each counts. "
+        f"seen: {named[0]} and {named[1]} are two seasons of one plot: each counts. "
         "If somebody began one of them a second time, leave it away.",
         err=True,
     )

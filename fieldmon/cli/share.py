@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -28,9 +28,10 @@ if TYPE_CHECKING:
     from datetime import date, time
 
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.estate_day import EstatePlot
-    from fieldmon.monitoring.estate_routes import EstateRoute
+    from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn
+    from fieldmon.monitoring.estate_routes import EstateRoutes, NamedPlot
     from fieldmon.planning.members import TeamMember
+    from fieldmon.planning.plan import DayPlan
 
 Seasons = Annotated[
     list[Path], typer.Argument(help="Season files, made by fieldmon init; a plot each.")
@@ -68,14 +69,6 @@ class ShareOptions:
     worker: WorkerOptions = field(default_factory=WorkerOptions)
 
 
-class _SharedDay(NamedTuple):
-    """What comes of it: the routes, plots to which nobody goes with what is closed, who is free."""
-
-    routes: list[EstateRoute]
-    waiting: dict[str, list[str]]
-    free: list[str]
-
-
 @with_options
 def share(options: ShareOptions) -> None:
     """Share one day between the seasons that are due: who inspects which plot, when and where.
@@ -101,34 +94,31 @@ def share(options: ShareOptions) -> None:
     folder = options.output or Path(f"day-{min(plot.on for _, plot in due)}")
     _require_empty(folder)
     members, starts = _members(options, [season for season, _ in due])
-    made = _planned(due, members, starts, 60.0 * options.move)
+    plots = [_named(season, plot) for season, plot in due]
+    made = _planned(plots, members, starts, 60.0 * options.move)
     if len(due) > 1:
         move = f"{options.move:g} minute{'' if options.move == 1 else 's'}"
         typer.echo(f"From plot to plot takes {move}, wherever they lie (--move).")
-    _tell_read_otherwise(options, due, members, made)
+    _tell_read_otherwise(options, due, made)
     tell_assumed_of_plots({_name(season): _assumed(season, members) for season, _ in due})
-    if not made.routes:
+    if not made.turns:
         raise SettingError(
             "Somebody must be able to inspect a plot within the hours, but nobody is: the plots "
             "are closed, as said above, or the hours are too short."
         )
-    _write(folder, made, endings)
+    _write(folder, plots, made, endings)
 
 
 def _tell_read_otherwise(
     options: ShareOptions,
     due: Sequence[tuple[Season, EstatePlot]],
-    members: Sequence[TeamMember],
-    made: _SharedDay,
+    made: EstateRoutes,
 ) -> None:
     """Say whose finds a season will read by another detection than the route was planned with."""
     from fieldmon.compute.wording import joined, written
-    from fieldmon.monitoring.estate_day import read_otherwise
 
-    for season, plot in due:
-        there = {one.who for one in made.routes if one.plot == _name(season)}
-        if not (others := read_otherwise(season, [one for one in members if one.name in there])):
-            continue
+    for k, others in made.otherwise.items():
+        season, plot = due[k]
         each = joined(", ", [
             f"{one.name}'s by {written(reads, '.0%')}, not {written(one.robot.detects, '.0%')}"
             for one, reads in others
@@ -236,63 +226,57 @@ def _assumed(season: Season, members: tuple[TeamMember, ...]) -> str:
     return assumed_in_words(season.assumed(replace(season.settings, team=members)))
 
 
+def _named(season: Season, plot: EstatePlot) -> NamedPlot:
+    from fieldmon.monitoring.estate_routes import NamedPlot
+
+    return NamedPlot(_name(season), season.settings.sampler, plot)
+
+
 def _planned(
-    due: Sequence[tuple[Season, EstatePlot]],
-    members: Sequence[TeamMember],
-    starts: time,
-    move_s: float,
-) -> _SharedDay:
-    """Return the routes in the order of who works; say what is left off, waits and is free."""
-    from fieldmon.compute.units import Units
-    from fieldmon.monitoring.closures import left_off_in_words
+    plots: Sequence[NamedPlot], members: Sequence[TeamMember], starts: time, move_s: float
+) -> EstateRoutes:
+    """Return what comes of the day; say the routes, what is left off, what waits, who is free."""
     from fieldmon.monitoring.estate_day import share_estate
-    from fieldmon.monitoring.estate_routes import EstateRoute
+    from fieldmon.monitoring.estate_routes import walked
 
-    seasons, plots = zip(*due, strict=True)
-    names = [_name(season) for season in seasons]
-    shared = share_estate(plots, members, starts, move_s)
-    said = [
-        [*map(str, left_off_in_words(closed, season.plot.grid, Units()))]
-        for season, closed in zip(seasons, shared.closed, strict=True)
-    ]
-    routes, worked = [], set()
+    shared = share_estate([one.known for one in plots], members, starts, move_s)
     with progress("Routes", len(shared.turns)) as bar:
-        for turn in shared.turns:
-            route, k = turn.plan().route, turn.plot
+
+        def plan(turn: EstateTurn) -> DayPlan:
+            made = turn.plan()
             bar.update(1)
-            if not len(route):
-                continue
-            worked.add(k)
-            who, sampler = members[turn.who].name, seasons[k].settings.sampler
-            routes.append(EstateRoute(names[k], who, turn.begins, route, sampler, said[k]))
-    for one in routes:
+            return made
+
+        made = walked(shared, plots, members, plan)
+    for _, one in made.turns:
         tell_member(f"{one.plot}, {one.who}", one.begins, one.route)
-    for name, sentences in zip(names, said, strict=True):
+    for plot, sentences in zip(plots, made.closed, strict=True):
         for sentence in sentences:
-            typer.echo(f"seen: {name}: {sentence}", err=True)
-    without = sorted({*range(len(plots))} - worked)
-    if late := [names[k] for k in without if not said[k]]:
-        typer.echo(f"No time for {', '.join(late)}.")
-    busy = {one.who for one in routes}
-    if free := [one.name for one in members if one.name not in busy]:
-        typer.echo(f"Without a plot: {', '.join(free)}.")
-    return _SharedDay(routes, {names[k]: said[k] for k in without}, free)
+            typer.echo(f"seen: {plot.name}: {sentence}", err=True)
+    if made.waiting:
+        typer.echo(f"No time for {', '.join(plots[k].name for k in made.waiting)}.")
+    if made.free:
+        typer.echo(f"Without a plot: {', '.join(made.free)}.")
+    return made
 
 
-def _write(folder: Path, made: _SharedDay, endings: Sequence[str]) -> None:
+def _write(
+    folder: Path, plots: Sequence[NamedPlot], made: EstateRoutes, endings: Sequence[str]
+) -> None:
     """Write the routes and their table."""
     from fieldmon.io.atomic_write import write_whole
     from fieldmon.monitoring.estate_routes import TABLE, plan_table, stems
 
     folder.mkdir(parents=True, exist_ok=True)
-    files = {}
-    for stem, one in stems(made.routes).items():
+    files, routes = {}, [one for _, one in made.turns]
+    for stem, one in stems(routes).items():
         route = replace(one.route, notes=one.notes)
         written = [path for end in endings for path in route.to_file(folder / f"{stem}{end}")]
         files[" ".join(dict.fromkeys(path.name for path in written))] = one
-    write_whole(folder / TABLE, plan_table(files, made.waiting, made.free))
-    plants = sum(len(one.route) for one in made.routes)
+    nobody = {plots[k].name: made.closed[k] for k in made.nobody}
+    write_whole(folder / TABLE, plan_table(files, nobody, made.free))
+    plants = sum(len(one.route) for one in routes)
     typer.echo(
-        f"{counted(len(made.routes), 'plot')}, {counted(plants, 'plant')}. Routes and {TABLE} in "
+        f"{counted(len(routes), 'plot')}, {counted(plants, 'plant')}. Routes and {TABLE} in "
         f"{folder}"
     )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_drafts
+from fieldmon.cli.messages import how_to_say_wait, tell_drafts
 from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.season_files import day_meant, learnt_of_each
 from fieldmon.cli.times import day
@@ -220,6 +220,8 @@ def of_treatments(season: Season, now: Status) -> Iterator[str]:
     if (first := season.harvest_from(now.on)) is not None:
         from_when = f"from {first[0]} on, after the treatment of {first[1].on}"
         yield f"  {'harvest':22} {from_when if first[0] else harvest_unsaid(first[1])}"
+        if first[0] is None:
+            yield f"  {'':22} {how_to_say_wait(season.path, first[1])}"
     for number, effect in enumerate(one for one in season.effects(now.on) if one.before.inspected):
         yield f"  {'' if number else 'as treatments worked':22} {effect.sentence()}"
     for caution in dict.fromkeys(one.sentence for one in season.cautions(now.on)):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,8 +20,6 @@ if TYPE_CHECKING:
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
     from fieldmon.plot.robot import Robot
-
-_NOT_IN_A_NAME = re.compile(r"[^\w-]+")
 
 
 def members_of(
@@ -68,7 +65,9 @@ def _tell_team(members: list[TeamMember], on_foot: list[bool]) -> None:
 
 def files_of_each(outputs: list[Path] | None, members: tuple[TeamMember, ...]) -> list[list[Path]]:
     """Return the files of each member: those asked for, with its name."""
-    names = [_NOT_IN_A_NAME.sub("_", member.name) for member in members]
+    from fieldmon.io.writers.file_names import plain_name
+
+    names = [plain_name(member.name) for member in members]
     if len({name.casefold() for name in names}) < len(names):
         raise SettingError(
             f"Members must have names that differ in file names, but they are {', '.join(names)}."

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_not_come
+from fieldmon.cli.messages import how_to_say_wait, tell_not_come
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile, TheDate
@@ -180,8 +180,10 @@ def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
         typer.echo(f"Enter there from {period.entry_from:%Y-%m-%d %H:%M} on ({one.clock.zone}).")
     first = kept.harvest_from(one.on)
     if first is not None and first[0] is None and first[1].batch != batch:
-        typer.echo(harvest_unsaid(first[1]))
+        typer.echo(f"{harvest_unsaid(first[1])} {how_to_say_wait(kept.path, first[1])}")
     elif period.harvest_from is not None:
         typer.echo(f"Harvest there from {period.harvest_from} on.")
     for caution in kept.cautions_because_of(one.batch, one.on):
         typer.echo(f"warning: {caution.sentence}", err=True)
+    if period.harvest_from is None:
+        typer.echo(how_to_say_wait(kept.path, one), err=True)

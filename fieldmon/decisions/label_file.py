@@ -46,6 +46,8 @@ _CALLED = {
     "source": "source label reference",
 }
 _MOST_LINES = 10_000
+# cells in which nobody says a number
+_NOT_KNOWN = frozenset({"", "-", "–", "?", "n/a", "not known", "unknown"})
 
 
 def read_labels(source: Path | Upload) -> Imported[tuple[ProductLabel, ...]]:
@@ -163,7 +165,8 @@ def _refuse_unit_in_cell(cell: str) -> None:
 
 def _number(said: Mapping[str, str], role: str) -> float | None:
     cell = said.get(role, "")
-    return told_number(cell, role) if cell else None
+    # never a zero
+    return None if cell.casefold() in _NOT_KNOWN else told_number(cell, role)
 
 
 def _whole(said: Mapping[str, str], role: str) -> int | None:

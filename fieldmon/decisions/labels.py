@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from fieldmon.decisions.doses import Dose
 
+#: source of a line that nobody's table has: somebody said it of a treatment
+SAID_BY_HAND = "said by hand"
 #: whole days until harvest, and hours until people may enter
 WAITS_DAYS, WAITS_HOURS = AllowedRange(0, 3650, unit=" days"), AllowedRange(0, 10_000, unit=" h")
 
@@ -123,6 +125,18 @@ def irac_groups(said: str) -> tuple[str, ...]:
                 )
             )
     return tuple(dict.fromkeys(found))
+
+
+def with_wait(labels: Iterable[ProductLabel], product: str, days: int) -> tuple[ProductLabel, ...]:
+    """Return labels that say, too, how many whole days a product waits until harvest.
+
+    What was said of it so before is replaced. Where a line of a table says more days, they count.
+    """
+    own = ProductLabel(product, waiting_days=days, source=SAID_BY_HAND)
+    others = (
+        one for one in labels if not (one.source == own.source and _same(one.product, product))
+    )
+    return (*others, own)
 
 
 def label_for(

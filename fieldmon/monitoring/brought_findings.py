@@ -88,6 +88,11 @@ def read_brought(
         How it is read.
     folder
         An empty one, for copies; it is needed until the file is recorded.
+
+    Raises
+    ------
+    FileProblem
+        If it is a season that looks for another pest, among others.
     """
     # what reads files is half a second to import
     from fieldmon.io.read import read_phone_file  # noqa: PLC0415
@@ -99,6 +104,8 @@ def read_brought(
         saved = read_phone_file(source)
         return BroughtFile(name, Inspections.none(), saved.messages, saved=saved.value)
     copy = _copied(source, folder)
+    if copy is not None:
+        season.refuse_another_pest(copy)
     corrected = [] if copy is None else [one.row for one in season.corrections_in(copy)]
     if copy is not None:
         (folder / "new").mkdir()

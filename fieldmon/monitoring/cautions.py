@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.waiting_periods import WaitingPeriod
 
 _Wait = TypeVar("_Wait", int, float)
+_Said = tuple["KeptTreatment", "ProductLabel | None"]
 #: uses of one mode-of-action group after another that breed resistance
 MOST_IN_A_ROW = 2
 # kinds of caution, the most urgent first
@@ -85,18 +86,8 @@ def cautions(
 
     Those whose mode-of-action group nobody said are no use of any group, and end no row of uses.
     """
-    # one that went on over midnight is of the day on which it began
-    done = sorted((one for one in treatments if one.on <= on), key=lambda one: one.on)
-    said = [(one, label_of(one, rules.labels)) for one in done]
-    found = [
-        *(caution for one, label in said for caution in _unsaid_wait(one, label, rules)),
-        *(caution for one, label in said for caution in _of_waits(one, label, rules, on)),
-        *_groups_in_a_row(said, rules.units),
-        *_uses(said, rules.units),
-        *(caution for one, label in said for caution in _of_dose(one, label, rules)),
-    ]
-    found.reverse()
-    return tuple(sorted(found, key=lambda one: _URGENT.index(one.kind)))
+    said = _labelled(treatments, rules, on)
+    return _urgent_first(said, _in_a_row(said, rules.units), rules, on)
 
 
 def because_of(
@@ -106,12 +97,41 @@ def because_of(
 
     One that is entered late may make a later use one too many.
     """
-    own = [one for one in cautions(treatments, rules, on) if one.batch == batch]
-    others = [one for one in treatments if one.batch != batch]
-    without = {one.sentence for one in cautions(others, rules, date.max)}
-    added = [one for one in cautions(treatments, rules, date.max)
-             if one.batch != batch and one.sentence not in without]  # fmt: skip
-    return (*own, *added)
+    said = _labelled(treatments, rules, date.max)
+    in_a_row = [*_in_a_row(said, rules.units)]
+    own = [(one, label) for one, label in said if one.batch == batch and one.on <= on]
+    of_own = [caution for caution in in_a_row if own and caution.batch == batch]
+    others = [(one, label) for one, label in said if one.batch != batch]
+    without = {caution.sentence for caution in _in_a_row(others, rules.units)}
+    added = [one for one in in_a_row if one.batch != batch and one.sentence not in without]
+    return (*_urgent_first(own, of_own, rules, on), *_urgent_first([], added, rules, on))
+
+
+def _labelled(treatments: Iterable[KeptTreatment], rules: RulesToKeep, until: date) -> list[_Said]:
+    """Return the treatments up to a day with their labels, in the order of their days."""
+    # one that went on over midnight is of the day on which it began
+    done = sorted((one for one in treatments if one.on <= until), key=lambda one: one.on)
+    return [(one, label_of(one, rules.labels)) for one in done]
+
+
+def _urgent_first(
+    said: Sequence[_Said], in_a_row: Iterable[Caution], rules: RulesToKeep, on: date
+) -> tuple[Caution, ...]:
+    """Return what to beware of because of each treatment, and of several in a row."""
+    found = [
+        *(caution for one, label in said for caution in _unsaid_wait(one, label, rules)),
+        *(caution for one, label in said for caution in _of_waits(one, label, rules, on)),
+        *in_a_row,
+        *(caution for one, label in said for caution in _of_dose(one, label, rules)),
+    ]
+    found.reverse()
+    return tuple(sorted(found, key=lambda one: _URGENT.index(one.kind)))
+
+
+def _in_a_row(said: Sequence[_Said], units: Units) -> Iterator[Caution]:
+    """Yield what to beware of because of several treatments of one group, or with one product."""
+    yield from _groups_in_a_row(said, units)
+    yield from _uses(said, units)
 
 
 def label_of(one: KeptTreatment, labels: Iterable[ProductLabel]) -> ProductLabel | None:
@@ -204,16 +224,18 @@ def _unsaid_wait(
     if waits(one, label).harvest_from is not None:
         return
     said = worded(
-        "How long to wait from {product} on {day} until harvest was not said. Look at its label, "
-        "and give it in the label table.",
+        "How long to wait from {product} on {day} until harvest was not said.",
         **_named(one, rules.units),
     )
     if rules.harvest is not None and one.on <= rules.harvest:
         said = worded(
-            "How long to wait from {product} on {day} until the harvest on {harvest} was not "
-            "said. Look at its label, and give it in the label table.",
+            "How long to wait from {product} on {day} until the harvest on {harvest} was not said.",
             harvest=rules.units.day(rules.harvest), **_named(one, rules.units),
         )  # fmt: skip
+    todo = worded("Look at its label, and say it as it stands there.")
+    if not one.application.product:
+        todo = worded("Take the treatment back, and record it again with its product and its wait.")
+    said = worded("{said} {todo}", said=said, todo=todo)
     yield Caution("harvest", said, one.batch)
 
 
@@ -260,10 +282,7 @@ def _shorter_than_the_label(
         yield Caution("waiting", said, one.batch)
 
 
-_Said = tuple["KeptTreatment", "ProductLabel | None"]
-
-
-def _groups_in_a_row(said: list[_Said], units: Units) -> Iterator[Caution]:
+def _groups_in_a_row(said: Sequence[_Said], units: Units) -> Iterator[Caution]:
     """Yield uses of one mode-of-action group after another on the same plants."""
     row: dict[str, NDArray[np.int64]] = {}
     of = {one.batch: groups(one, label) for one, label in said}
@@ -288,7 +307,7 @@ def _groups_in_a_row(said: list[_Said], units: Units) -> Iterator[Caution]:
                     yield Caution("group", sentence, one.batch)
 
 
-def _uses(said: list[_Said], units: Units) -> Iterator[Caution]:
+def _uses(said: Sequence[_Said], units: Units) -> Iterator[Caution]:
     """Yield uses of a product beyond what its label allows in a season, on the same plants."""
     uses: dict[str, NDArray[np.int64]] = {}
     last: dict[str, NDArray[np.int64]] = {}

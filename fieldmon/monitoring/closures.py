@@ -127,10 +127,8 @@ def is_all_closed(scene: Scene, closed: Sequence[Closure]) -> bool:
     return bool(left_out.all())
 
 
-def left_off_in_words(
-    closed: Sequence[Closure], grid: PlantGrid, units: Units
-) -> tuple[Worded, ...]:
-    """Return which plants are left off a plan, and until when: the last to open first.
+def closed_in_words(closed: Sequence[Closure], grid: PlantGrid, units: Units) -> tuple[Worded, ...]:
+    """Return which plants are closed to people, and until when: the last to open first.
 
     A plant that several treatments close is said once, with the last time.
     """

@@ -1,22 +1,29 @@
-"""An estate's day as files: a route for each turn, and a table of who is where when."""
+"""An estate's day: a route for each turn, what is closed, who is free; and all of it as files."""
 
 from __future__ import annotations
 
 import csv
 import io
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.units import Units
 from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name
+from fieldmon.monitoring.closures import closed_in_words
+from fieldmon.monitoring.estate_day import EstateTurn, read_otherwise
 from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
     from datetime import datetime
 
+    from fieldmon.compute.wording import Worded
+    from fieldmon.monitoring.estate_day import EstatePlot, SharedEstate
+    from fieldmon.planning.members import TeamMember
+    from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
 
 #: the table's file, beside the routes
@@ -58,6 +65,90 @@ class EstateRoute:
     def notes(self) -> RouteNotes:
         """Return what the route's file says beside it."""
         return RouteNotes(self.plot, self.sampler, self.begins, self.who)
+
+
+@dataclass(frozen=True, eq=False)
+class NamedPlot:
+    """A plot of an estate's day as it is called, its sampler's name, and how dates are said."""
+
+    name: str
+    sampler: str
+    known: EstatePlot
+    units: Units = field(default_factory=Units)
+
+
+@dataclass(frozen=True, eq=False)
+class EstateRoutes:
+    """What comes of a shared day.
+
+    Parameters
+    ----------
+    turns
+        Those with a stop or more, with their routes, in the order of who works.
+    closed
+        Of each plot, sentences on what is left off, as people may not be there.
+    nobody
+        Numbers of the plots to which nobody goes.
+    free
+        Names of those who have no plot.
+    otherwise
+        Of the plots whose seasons will not read results as they are planned: whose, and by what
+        they will.
+    """
+
+    turns: tuple[tuple[EstateTurn, EstateRoute], ...]
+    closed: tuple[tuple[str, ...], ...]
+    nobody: tuple[int, ...]
+    free: tuple[str, ...]
+    otherwise: Mapping[int, Sequence[tuple[TeamMember, float]]]
+
+    @property
+    def waiting(self) -> tuple[int, ...]:
+        """Return the numbers of the plots to which nobody goes though nothing is closed there."""
+        return tuple(k for k in self.nobody if not self.closed[k])
+
+
+def walked(
+    shared: SharedEstate,
+    plots: Sequence[NamedPlot],
+    members: Sequence[TeamMember],
+    plan: Callable[[EstateTurn], DayPlan] = EstateTurn.plan,
+    said: Callable[[Worded], str] = str,
+) -> EstateRoutes:
+    """Return the routes of a day that was shared between plots, and what else comes of it.
+
+    Parameters
+    ----------
+    shared, plots, members
+        As shared, and of what, and between whom.
+    plan
+        Plans a turn.
+    said
+        Says a sentence in the language of who reads it.
+    """
+    closed = tuple(
+        tuple(map(said, closed_in_words(some, one.known.scene.grid, one.units)))
+        for one, some in zip(plots, shared.closed, strict=True)
+    )
+    turns = []
+    for turn in shared.turns:
+        if len(route := plan(turn).route):
+            plot, who = plots[turn.plot], members[turn.who].name
+            sentences = closed[turn.plot]
+            made = EstateRoute(plot.name, who, turn.begins, route, plot.sampler, sentences)
+            turns.append((turn, made))
+    there = {k: [members[t.who] for t, _ in turns if t.plot == k] for k in range(len(plots))}
+    busy = {turn.who for turn, _ in turns}
+    return EstateRoutes(
+        tuple(turns), closed,
+        tuple(k for k, some in there.items() if not some),
+        tuple(one.name for k, one in enumerate(members) if k not in busy),
+        {
+            k: read for k, some in there.items()
+            if (season := plots[k].known.season) is not None
+            and (read := read_otherwise(season, some))
+        },
+    )  # fmt: skip
 
 
 def stems(routes: Iterable[EstateRoute]) -> dict[str, EstateRoute]:

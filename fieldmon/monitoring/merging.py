@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Hashable, Iterable, Iterator
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.geopackage import GeoPackageTable
     from fieldmon.monitoring.treatments import Row
 
@@ -100,8 +101,8 @@ class MergedCopy(NamedTuple):
     new, taken_back
         As `Merged` has them.
     differing
-        A sentence for each setting, and the table of labels, that both chose differently, and for
-        treatments that are alike but for what a label may add.
+        A sentence for each setting, and the table of labels, that both chose differently, for
+        treatments that are alike but for what a label may add, and where only one names a pest.
     treatments, codes
         As `Merged` has them.
     numbers
@@ -126,7 +127,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     Raise `FileProblem` if it is no copy of the same season, or is of another pest by now.
     """
     refuse_strangers(db, other)
-    _refuse_another_pest(db, other)
+    refuse_another_pest(db, other)
     less = [table for table in TAKEN if table is not schema.INSPECTIONS]
     copies = [{table.name: _rows(one, table) for table in less} for one in (db, other)]
     phones = [phone_tables.brought(one) for one in (db, other)]
@@ -137,6 +138,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     ]
     stay = _n_staying((db, other), numbers)
     before, keys = _counting(db, stay), _keys(db)
+    unnamed = (*_of_no_pest(db, other), *_of_no_pest(other, db))
     applied = [treatments.counting_of(copied["treatments"]) for copied in copies]
     changes = _merged_changes(copies, batches)
     _write(db, schema.OUTSIDE_CHANGES, changes)
@@ -164,7 +166,10 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     n_treated, undone = _changed_treatments(db, applied)
     held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
             for rows, batch_of in zip(own, numbers, strict=True)]  # fmt: skip
-    said = *_differing(copies, chosen), *replaced_twice, *_alike_but_for_labels(treated, held)
+    said = (
+        *_differing(copies, chosen), *unnamed, *replaced_twice,
+        *_alike_but_for_labels(treated, held),
+    )  # fmt: skip
     anew = {old: number for old, number in numbers[0].items() if old != number}
     return MergedCopy(new, taken_back, said, n_treated, codes, anew, undone)
 
@@ -201,61 +206,93 @@ def _keys(db: sqlite3.Connection) -> dict[str, str]:
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
     """Raise `FileProblem` unless both are copies of one season."""
-    begun, theirs = (settings_log.begun(one) for one in (db, other))
-    if begun != theirs:
-        raise FileProblem(
-            worded(
-                "Two copies of one season can be merged, but one began on {begun} and the other on "
-                "{theirs}: they are seasons of their own. Leave each in its file.",
-                begun=begun,
-                theirs=theirs,
-            )
-        )
+    _refuse_begun_apart(*(settings_log.begun(one) for one in (db, other)))
     for table in SAME:
         if not _is_same(db, other, table):
-            raise FileProblem(
-                worded(
-                    "Two copies of one season can be merged, but these differ in the layer {name}: "
-                    "they are seasons of their own, or another program changed one of them. Record "
-                    "what was found in the one into the other with: fieldmon record",
-                    name=table.name,
-                )
+            why = worded(
+                "they differ in the layer {name}: they are two seasons, or another program changed "
+                "one of them",
+                name=table.name,
             )
+            raise _strangers(why)
     at, other_at = (settings_log.begun_at(one) for one in (db, other))
-    if at and other_at and at != other_at:
-        raise FileProblem(
+    if at and other_at:
+        _refuse_begun_apart(_moment(at), _moment(other_at))
+    else:  # too old to say it
+        refuse_another_pest(db, other)
+
+
+def _refuse_begun_apart(here: str, there: str) -> None:
+    if here != there:
+        raise _strangers(
             worded(
-                "Two copies of one season can be merged, but one was begun at {at} and the other "
-                "at {other_at} (UTC): they are two seasons of one plot. Leave each in its file. If "
-                "both look for the same, record what was found in the one into the other with: "
-                "fieldmon record",
-                at=_moment(at),
-                other_at=_moment(other_at),
-            )
-        )
-    if not (at and other_at):  # too old to say it
-        _refuse_another_pest(db, other)
-
-
-def _moment(at: str) -> str:
-    """Return a moment as people read it, as far as two seasons may differ in it."""
-    return at.replace("T", " ").removesuffix("Z")[:21]
-
-
-def _refuse_another_pest(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
-    """Raise `FileProblem` where the two are of different pests: finds would be of the wrong one."""
-    here, there = (settings_log.pest(one) for one in (db, other))
-    if here and there and here != there:
-        raise FileProblem(
-            worded(
-                "Two copies of one season can be merged if both look for one pest, but one looks "
-                "for {here} and the other for {there}: finds would become those of another pest. "
-                "Leave each in its file; where one of them names the wrong pest, name the right "
-                "one there first with: fieldmon change --pest",
+                "one was begun on {here} and the other on {there}: they are two seasons",
                 here=here,
                 there=there,
             )
         )
+
+
+def _strangers(why: Worded) -> FileProblem:
+    return FileProblem(
+        worded(
+            "Two copies of one season can be merged, but {why}. Leave each in its file. If both "
+            "are of one plot and look for the same, record what was found in the one into the "
+            "other with: fieldmon record",
+            why=why,
+        )
+    )
+
+
+def _moment(at: str) -> str:
+    """Return a moment as people read it."""
+    return f"{at.replace('T', ' ').removesuffix('Z')} UTC"
+
+
+def refuse_another_pest(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
+    """Raise `FileProblem` where the two are of different pests: finds would be of the wrong one."""
+    here, there = _pests(db, other)
+    if are_of_two_pests(db, other):
+        raise FileProblem(
+            worded(
+                "What was found can come from one season into another if both look for one pest, "
+                "but one looks for {here} and the other for {there}: finds would become those of "
+                "another pest. Leave each in its file; where one of them names the wrong pest, "
+                "name the right one there first with: fieldmon change --pest",
+                here=here,
+                there=there,
+            )
+        )
+
+
+def _of_no_pest(db: sqlite3.Connection, other: sqlite3.Connection) -> Iterator[str]:
+    """Yield a sentence where `db` names a pest, and another names none but found something."""
+    pest, named = _pests(db, other)
+    if pest and not named and _counting(other, 0) - _counting(db, 0):
+        yield worded(
+            "Only one copy names a pest, {pest}: what the other found counts as found of it, too. "
+            "If that one looked for another pest, undo its batches.",
+            pest=pest,
+        )
+
+
+def are_of_two_pests(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:
+    """Return whether two seasons name pests by now that differ."""
+    here, there = _pests(db, other)
+    return bool(here and there and here != there)
+
+
+def _pests(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, str]:
+    return settings_log.pest(db), settings_log.pest(other)
+
+
+def hold_in_common(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:
+    """Return whether an inspection or a treatment that counts stands in both."""
+    held = []
+    for one in (db, other):
+        treated = frozenset[str]().union(*treatments.counting(one))
+        held.append(_counting(one, 0) | treated)
+    return not held[0].isdisjoint(held[1])
 
 
 def are_of_one_plot(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:

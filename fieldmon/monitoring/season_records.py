@@ -319,7 +319,8 @@ class SeasonRecords(OpenSeason):
     def is_copy(self, file: Path) -> bool:
         """Return whether a file is this season or a copy of it, however far they went apart.
 
-        Seasons begun apart are no copies, even of one plot and one day.
+        Seasons begun apart are no copies, even of one plot and one day. Nor is a copy any more that
+        looks for another pest, once nothing that counts stands in both.
         """
         if file.resolve() == self.path.resolve():
             return True
@@ -328,7 +329,18 @@ class SeasonRecords(OpenSeason):
                 merging.refuse_strangers(db, theirs)
             except FileProblem:
                 return False
-        return True
+            apart = merging.are_of_two_pests(db, theirs)
+            return not apart or merging.hold_in_common(db, theirs)
+
+    def is_of_another_pest(self, file: Path) -> bool:
+        """Return whether this and the season in a file name pests that differ."""
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            return merging.are_of_two_pests(db, theirs)
+
+    def refuse_another_pest(self, file: Path) -> None:
+        """Raise `FileProblem` where the season in a file looks for another pest than this one."""
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            merging.refuse_another_pest(db, theirs)
 
     def is_of_one_plot(self, file: Path) -> bool:
         """Return whether the season in a file has the same rows and plants as this one."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from fieldmon.compute.arguments import array_of
 from fieldmon.compute.kinds import checked
-from fieldmon.compute.wording import worded
-from fieldmon.decisions.labels import label_for
+from fieldmon.compute.wording import first_few, worded
+from fieldmon.decisions.labels import SAID_BY_HAND, label_for, plain_name, with_wait
 from fieldmon.decisions.zones import ground_m2, outline_of
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import (
@@ -45,6 +45,10 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.cautions import Caution
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
     from fieldmon.monitoring.treatments import KeptTreatment
+
+
+# products in a sentence
+_NAMED = 5
 
 
 @checked
@@ -188,6 +192,28 @@ class SeasonTreatments(OpenSeason):
                     states={"labels": season_log.labels_state(db)},
                 )  # fmt: skip
         return len(kept)
+
+    def say_wait(self, product: str, days: int, who: str = "") -> None:
+        """Say how many whole days the label of a product that was used waits until harvest.
+
+        It stands in the table of labels from then on, and counts unless the table says more days.
+        `who` says so, for the log.
+        Raise `SettingError` if no treatment was with it.
+        """
+        with self._lock:
+            used = [one.application.product for one in self.treatments()]
+            named = next((one for one in used if plain_name(one) == plain_name(product)), "")
+            if not named:
+                known = first_few([*dict.fromkeys(filter(None, used))], _NAMED) or worded("none")
+                raise SettingError(
+                    worded(
+                        "A wait can be said of a product that was used, but no treatment is with "
+                        "{product!r}. Used were: {known}.",
+                        product=product,
+                        known=known,
+                    )
+                )
+            self.keep_labels(with_wait(self.labels(), named, days), SAID_BY_HAND, who)
 
     def labels(self) -> tuple[ProductLabel, ...]:
         """Return what the labels of products allow, as the user's own table says."""

@@ -14,7 +14,7 @@ from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.cautions import label_of, waits
-from fieldmon.monitoring.closures import left_off_in_words
+from fieldmon.monitoring.closures import closed_in_words
 from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import left_out_in_words
 from fieldmon.plot.grid import row_label
@@ -239,7 +239,7 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
         said.append(worded(words.DAY_OF_NOBODY))
     if not facts.worked:
         grid = facts.route.aisles.grid
-        said += left_off_in_words(facts.closed, grid, units)
+        said += closed_in_words(facts.closed, grid, units)
         said += facts.skipped
     return said
 

@@ -926,6 +926,46 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
+def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_one(
+    page, address, served_seasons
+):
+    kept = season(served_seasons / "Typing.gpkg", sample()[0])
+    page.goto(f"{address}/?season=Typing&part=record")
+    rest(page)
+    forms = page.get_by_role("tabpanel")
+    row, plant = (forms.get_by_label(name, exact=True).first for name in ("Row", "Plant"))
+    for typed in (row, plant):
+        typed.fill("1")
+        typed.press("Enter")
+    forms.get_by_role("radio", name=texts.RESULTS_OF[0]).first.click()
+    rest(page)
+    row.press_sequentially("2")
+    # pressed from afar: the box is not left, as by what is typed just after a press
+    page.evaluate("document.querySelector('[class*=st-key-record_one] button').click()")
+    page.get_by_text("1 recorded").wait_for(timeout=180_000)
+    rest(page)
+    assert len(kept.history.inspections) == 1
+    assert plant.input_value() == ""
+    page.keyboard.type("3")
+    assert row.input_value() == "123"
+
+
+def test_a_double_press_begins_one_season_and_keeps_one_plan(page, address, served_seasons):
+    before = {*served_seasons.glob("*.gpkg")}
+    shown(page, address)
+    page.locator(".st-key-do_begin button").dblclick()
+    page.get_by_text("has begun").wait_for(timeout=180_000)
+    rest(page)
+    (file,) = {*served_seasons.glob("*.gpkg")} - before
+    assert page.get_by_text("was pressed before").count() == 0
+    page.locator(".st-key-do_plan button").dblclick()
+    page.get_by_text("This is the plan for").first.wait_for(timeout=60_000)
+    rest(page)
+    kept = Season(file)
+    assert len(kept.kept_route(kept.settings.begins))
+    assert sum(one.kind == "planned" for one in kept.log()) == 1
+
+
 @pytest.mark.parametrize("page", [PHONE], indirect=True)
 def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_map_stays(
     page, address, served_seasons

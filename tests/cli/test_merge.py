@@ -85,5 +85,5 @@ def test_seasons_of_two_years_on_one_plot_are_no_copies(run, tmp_path):
     kept = (tmp_path / "this.gpkg").read_bytes()
     code, _, err, made = run("merge", "this.gpkg", other)
     assert (code, made) == (2, set())
-    assert f"one began on {BEGINS} and the other on 2027-11-02" in err
+    assert f"one was begun on {BEGINS} and the other on 2027-11-02" in err
     assert (tmp_path / "this.gpkg").read_bytes() == kept

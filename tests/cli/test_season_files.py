@@ -54,11 +54,11 @@ def test_two_seasons_of_one_plot_begun_on_one_day_are_no_copies(run, season, tmp
                   ("report", "-o", "all.html", "--certification")):  # fmt: skip
         code, _, err, _ = run(words[0], season, flies, *words[1:])
         assert code == 0, err
-        assert "season and flies are two seasons of one plot, begun apart" in err
+        assert "season and flies are two seasons of one plot: each" in err
     before = season.read_bytes()
     code, _, err, _ = run("merge", season, flies)
     assert code == 2
-    assert "they are two seasons of one plot. Leave each in its file" in err
+    assert "they are two seasons. Leave each in its file" in err
     assert season.read_bytes() == before
     # the way out that is named
     code, out, err, _ = run("record", season, flies)
@@ -137,3 +137,42 @@ def test_a_plan_without_a_season_never_writes_over_what_was_filled_in(run, tmp_p
     assert (code, made) == (2, set())
     assert f"{file.name} would be written over, but was filled in" in " ".join(err.split())
     assert file.read_bytes() == held
+
+
+def test_a_copy_that_looks_for_another_pest_is_a_season_of_its_own_once_nothing_stands_in_both(
+    run, season, tmp_path
+):
+    """Beginning a second pest's season by cp, before anything was recorded or after it."""
+    early = shutil.copy(season, tmp_path / "early.gpkg")
+    worked(run, season, "a.csv", {0, 1}, "Ann")
+    late = shutil.copy(season, tmp_path / "late.gpkg")
+    for file, pest in ((season, "spider-mite"), (early, "whitefly"), (late, "whitefly")):
+        code, _, err, _ = run("change", file, "--pest", pest)
+        assert code == 0, err
+    words = ("export", season, early, "-o", "all.csv", "--of", "inspections")
+    code, _, err, _ = run(*words)
+    assert code == 0, err
+    assert "are two seasons of one plot: each counts" in err
+    code, _, err, _ = run("export", season, late, "-o", "b.csv", "--of", "inspections")
+    assert code == 2
+    assert "would stand there twice. They look for different pests by now: leave one away" in err
+    worked(run, early, "b.csv", {3}, "Ben")
+    before = season.read_bytes()
+    for words in (("merge", season, early), ("record", season, early)):
+        code, _, err, _ = run(*words)
+        assert code == 2
+        assert "finds would become those of another pest" in err
+    assert season.read_bytes() == before
+
+
+def test_merged_with_a_copy_that_names_no_pest_it_is_said_whose_finds_all_are(
+    run, season, tmp_path
+):
+    for named, other in (("a", "b"), ("b", "a")):
+        files = {name: shutil.copy(season, tmp_path / f"{name}.gpkg") for name in "ab"}
+        run("change", files[named], "--pest", "whitefly")
+        said = "Only one copy names a pest, whitefly: what the other found counts as found of it"
+        assert said not in run("merge", files["a"], files["b"])[1]
+        files[other] = shutil.copy(season, tmp_path / f"{other}.gpkg")
+        worked(run, files[other], f"{other}.csv", {1}, "Ann")
+        assert said in run("merge", files["a"], files["b"])[1]

@@ -1,5 +1,7 @@
 """A team's season on the command line: one route file each, and several findings at once."""
 
+from pathlib import Path
+
 import pytest
 
 from fieldmon.cli.team_files import files_of_each
@@ -61,6 +63,13 @@ def test_a_team_without_time_to_reach_a_plant_is_told_so(run, season):
     assert code == 2
     assert "nobody has" in err
     assert not files
+
+
+def test_a_file_is_named_as_any_other_of_a_name():
+    ((path,), _) = files_of_each([Path("r.csv")], (TeamMember("Ann / 2"), TeamMember("מטע" * 60)))
+    assert path == Path("r-Ann___2.csv")
+    (_, (long,)) = files_of_each([Path("r.csv")], (TeamMember("Ann"), TeamMember("מטע" * 60)))
+    assert len(long.name.encode()) == 126, "a longer one may be no file's"
 
 
 def test_names_that_are_one_in_file_names_are_refused():

@@ -70,3 +70,11 @@ def test_a_table_that_is_wrong_says_where_and_asks_what_holds(tmp_path, text, sa
 def test_a_file_that_is_not_there_is_a_sentence(tmp_path):
     with pytest.raises(FileProblem, match="must be readable"):
         read_labels(tmp_path / "none.csv")
+
+
+def test_what_is_not_known_is_nothing_said_and_never_a_zero(tmp_path):
+    for cell in ("", "?", "-", "unknown", "Not known", "n/a"):
+        (label,) = read(tmp_path, f"product,waiting days,re-entry hours\nOil,{cell},{cell}\n").value
+        assert (label.waiting_days, label.reentry_hours) == (None, None), cell
+    (label,) = read(tmp_path, "product,waiting days\nOil,0\n").value
+    assert label.waiting_days == 0

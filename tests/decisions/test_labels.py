@@ -3,7 +3,7 @@
 import pytest
 
 from fieldmon.decisions.doses import Dose
-from fieldmon.decisions.labels import ProductLabel, checked_waits, irac_groups, label_for
+from fieldmon.decisions.labels import ProductLabel, checked_waits, irac_groups, label_for, with_wait
 from fieldmon.errors import SettingError
 
 FULL = ProductLabel(
@@ -51,3 +51,12 @@ def test_of_doses_on_an_area_and_in_water_the_strictest_counts_in_any_order(used
 def test_waits_that_cannot_be_are_refused(days, hours):
     with pytest.raises(SettingError):
         checked_waits(days, hours)
+
+
+def test_a_wait_said_by_hand_replaces_what_was_said_so_and_never_shortens_the_table_s():
+    longer = with_wait(with_wait([FULL], "ACAROL", 1), "acarol", 2)
+    assert longer[0] == FULL
+    assert [one.waiting_days for one in longer] == [3, 2]
+    assert label_for(longer, "Acarol", "tomato").waiting_days == 3
+    assert label_for(longer, "Acarol", "tomato").irac_groups == FULL.irac_groups
+    assert label_for(longer, "Acarol", "rose").waiting_days == 2

@@ -9,8 +9,16 @@ import pytest
 from fieldmon.compute.wording import counted
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import ProductLabel
+from fieldmon.monitoring import cautions as module
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.cautions import RulesToKeep, cautions, groups, harvest_from, harvest_unsaid
+from fieldmon.monitoring.cautions import (
+    RulesToKeep,
+    because_of,
+    cautions,
+    groups,
+    harvest_from,
+    harvest_unsaid,
+)
 from fieldmon.monitoring.treatments import KeptTreatment, TreatedPlace
 from fieldmon.monitoring.waiting_periods import end_of
 from fieldmon.plot.local_clock import LocalClock
@@ -63,7 +71,7 @@ def test_a_wait_that_nobody_said_is_asked_for_whether_or_not_a_day_of_harvest_is
     assert after.startswith(f"{how_long} 2026-04-26 until harvest was not said.")
     (said,) = every([treated(0)])
     assert (said.kind, said.batch) == ("harvest", 1)
-    look = "Look at its label, and give it in the label table."
+    look = "Look at its label, and say it as it stands there."
     assert said.sentence == f"{how_long} 2026-04-06 until harvest was not said. {look}"
     assert every([treated(0, waiting_days=0)]) == every([treated(0)], [LABEL]) == ()
 
@@ -269,3 +277,21 @@ def test_uses_of_a_season_are_the_days_on_which_each_plant_had_the_product(seed)
     told = [(one.batch, one.sentence) for one in found(done, [label])[::-1] if one.kind == "uses"]
     assert [batch for batch, _ in told] == [batch for batch, _ in wanted]
     assert all(s.startswith(said) for (_, s), (_, said) in zip(told, wanted, strict=True))
+
+
+def test_a_treatment_entered_late_is_warned_of_with_what_it_adds_to_later_ones(monkeypatch):
+    asked, label_of = [], module.label_of
+    monkeypatch.setattr(module, "label_of", lambda *of: asked.append(1) or label_of(*of))
+    rules = RulesToKeep((LABEL,), BEGINS + timedelta(6), time(6))
+    late, others = treated(1), [treated(0), treated(5), treated(9)]
+    said = because_of([late, *others], late.batch, rules, late.on)
+    assert [(one.kind, one.batch) for one in said] == [
+        ("entry", 2), ("harvest", 2), ("uses", 10), ("uses", 6), ("group", 10), ("group", 6)
+    ]  # fmt: skip
+    assert "Use 3 of mode-of-action group 6" in said[-1].sentence
+    assert len(asked) == 4, "each label is looked up once"
+    assert because_of([late, *others], late.batch, rules, BEGINS)[0].kind == "uses", "not done yet"
+    alone = treated(1, product="Neem", irac_groups=("UN",))
+    assert because_of([alone, *others], alone.batch, rules, alone.on) == every(
+        [alone], [LABEL], rules.harvest, 1
+    )

@@ -11,7 +11,7 @@ from fieldmon.compute.units import Units
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.closures import closed_on, closed_plants, entry_waits, left_off_in_words
+from fieldmon.monitoring.closures import closed_in_words, closed_on, closed_plants, entry_waits
 from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
 from fieldmon.planning.members import team_of
 from fieldmon.plot.local_clock import local_clock
@@ -57,7 +57,7 @@ def test_what_is_left_off_is_said_once_with_its_last_time(season):
     assert not closed_plants((), n).any()
     for wait, lines in ((24, [1, 2, 3, 7]), (72, [3, 4])):
         sprayed(season, lines, wait, product="Acarol" if wait == 24 else "")
-    first, second = left_off_in_words(season.closed(ON), grid, Units())
+    first, second = closed_in_words(season.closed(ON), grid, Units())
     low, high = (np.count_nonzero(np.isin(season.label.line, some)) for some in ([1, 2, 7], [3, 4]))
     assert first == (
         "Closed until 09:00 on 2026-04-09 after a product that nobody named, so not on the route: "
@@ -168,5 +168,5 @@ def test_east_and_west_are_closed_each_until_their_time():
 
 def test_one_row_is_a_row(season):
     sprayed(season, [3], 24)
-    (said,) = left_off_in_words(season.closed(ON), season.plot.grid, Units())
+    (said,) = closed_in_words(season.closed(ON), season.plot.grid, Units())
     assert "plants in row 3." in said

@@ -1,12 +1,17 @@
-"""An estate's day as files: names in any script, and a table that tells them."""
+"""An estate's day: what comes of it, and its files, with names in any script and a table."""
 
 import csv
 import io
 from dataclasses import replace
-from datetime import datetime
+from datetime import datetime, time
+from types import SimpleNamespace
 
-from fieldmon.monitoring.estate_routes import EstateRoute, plan_table, stems
-from tests.monitoring.seasons import a_plot
+from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn, share_estate
+from fieldmon.monitoring.estate_routes import EstateRoute, NamedPlot, plan_table, stems, walked
+from fieldmon.planning.members import TeamMember
+from fieldmon.plot.robot import Robot
+from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 SIX = datetime(2026, 4, 6, 6)
 
@@ -59,3 +64,40 @@ def test_a_turn_over_a_change_of_clocks_ends_when_the_clock_says():
     late = replace(a_route("a"), begins=datetime(2027, 3, 26, 1, 30))
     (row,) = csv.DictReader(io.StringIO(plan_table({"a.gpx": late}).decode("utf-8-sig")))
     assert (row["from"], row["to"]) == ("2027-03-26T01:30:00", "2027-03-26T03:30:00")
+
+
+def test_what_comes_of_a_shared_day_is_who_is_where_what_is_closed_and_who_is_free(tmp_path):
+    robot = Robot(hours=2, detection=0.7)
+    seasons = [a_season(tmp_path / f"{name}.gpkg", robot=robot) for name in "abc"]
+    until_six_on_wednesday = Application("Soap", reentry_hours=48.0, began=time(5), ended=time(6))
+    seasons[0].treat(BEGINS, 0.1, application=until_six_on_wednesday)
+    plots = [NamedPlot(one.path.stem, "adaptive", EstatePlot.of(one, BEGINS)) for one in seasons]
+    ann = TeamMember("Ann", Robot(hours=1, detection=0.5))
+    members = (ann, *(TeamMember(name, Robot(hours=1, detection=0.7)) for name in ("Ben", "Cy")))
+    shared = share_estate([one.known for one in plots], members, time(6))
+    made = walked(shared, plots, members, said=str.upper)
+    assert [(turn.plot, route.plot) for turn, route in made.turns] == [
+        (turn.plot, "abc"[turn.plot]) for turn in shared.turns
+    ]
+    for turn, route in made.turns:
+        assert route.who == members[turn.who].name
+        assert route.route.plant.tolist() == turn.plan().route.plant.tolist()
+    busy = {route.who for _, route in made.turns}
+    assert set(made.free) == {"Ann", "Ben", "Cy"} - busy
+    assert made.closed[0][0].startswith("CLOSED UNTIL 06:00 ON 2026-04-08 AFTER SOAP")
+    assert made.closed[1:] == ((), ())
+    assert (made.nobody, made.waiting) == ((0,), ()), "it is closed, and has not too little time"
+    anns = next(turn.plot for turn, route in made.turns if route.who == "Ann")
+    assert made.otherwise == {anns: [(ann, 0.7)]}
+
+
+def test_a_plot_whose_hours_are_too_short_for_a_stop_waits(tmp_path):
+    plot = NamedPlot("a", "adaptive", EstatePlot.of(a_season(tmp_path / "a.gpkg"), BEGINS))
+    members = (TeamMember("Ann", Robot(hours=1)),)
+    shared = share_estate([plot.known], members, time(6))
+
+    def plan(_: EstateTurn):
+        return SimpleNamespace(route=())
+
+    made = walked(shared, [plot], members, plan)
+    assert (made.turns, made.nobody, made.waiting, made.free) == ((), (0,), (0,), ("Ann",))

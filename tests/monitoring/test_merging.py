@@ -775,7 +775,8 @@ def test_seasons_begun_apart_are_none_and_copies_of_another_pest_are_not_merged(
     one, other = copies_of(2)
     merging.refuse_strangers(one, other)
     begun_again("2026-04-05T06:00:00.000000Z", one, other)
-    with pytest.raises(FileProblem, match=r"other at 2026-04-05 06:00:00.0 \(UTC\): they are two"):
+    apart = r"the other on 2026-04-05 06:00:00.000000 UTC: they are two seasons\. Leave each in its"
+    with pytest.raises(FileProblem, match=apart):
         merging.merge(one, other)
     one, other = copies_of(2)
     looks_for(one, "mites")
@@ -961,8 +962,15 @@ def test_a_copy_that_brings_nothing_leaves_the_routes_of_a_day_as_they_are(path,
 def test_another_season_is_no_copy_of_this_one(path, tmp_path):
     stranger = a_season(tmp_path / "stranger.gpkg", a_plot(width=0.0009))
     before = path.read_bytes()
-    with pytest.raises(FileProblem, match="differ in the layer arrays"):
+    with pytest.raises(FileProblem, match="differ in the layer arrays: they are two") as refused:
         Season(path).merge(stranger)
+    advice = str(refused.value).partition("one of them. ")[2]
+    here = Season(path)
+    begins = replace(here.settings, begins=BEGINS + timedelta(1))
+    later = Season.create(tmp_path / "later.gpkg", here.plot, here.observations, begins)
+    with pytest.raises(FileProblem, match="other on 2026-04-07: they are two seasons") as refused:
+        Season(path).merge(later)
+    assert str(refused.value).endswith(advice), "what is done about it is the same"
     with closing(sqlite3.connect(path)) as db:
         assert db.execute("PRAGMA quick_check").fetchone() == ("ok",)
     assert Season(path).batches() == Season(path).batches()

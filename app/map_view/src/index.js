@@ -22,6 +22,7 @@ import { covered, keepShape, listed } from "./shape.js";
 import * as store from "./store.js";
 import style from "./style.css";
 import { waitForBoxes } from "./turning.js";
+import { keepUnfinished } from "./unfinished.js";
 import { besideBox, fitted, metresPerPixel } from "./view.js";
 
 const STILL_PX = 6, TWICE_MS = 350, TIP_PX = 12, FLY_MS = 600, TURN_MS = 300;
@@ -38,6 +39,7 @@ class MapPage {
   constructor(parent) {
     takeCommas();
     waitForBoxes();
+    keepUnfinished();
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(style);
     const root = parent.getRootNode();

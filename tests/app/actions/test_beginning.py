@@ -4,10 +4,17 @@ from datetime import date, timedelta
 
 import numpy as np
 import pytest
+from shapely import LineString, MultiLineString, MultiPolygon, box, intersection
 
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.monitoring import Season
+from fieldmon.infestation.observations import Observations
+from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.plot.block import Block
+from fieldmon.plot.field import Field
+from fieldmon.plot.planting import Planting
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
 from tests.app.driving import (
     begun,
     boxed,
@@ -153,6 +160,49 @@ def test_another_season_of_one_opened_by_its_address_has_its_measured_plants_and
     assert np.allclose(before.grid.lonlat(), after.grid.lonlat(), rtol=0.0, atol=1e-8)
     assert list(before.grid.row_signs.values()) == list(after.grid.row_signs.values())
     assert np.array_equal(before.field.plant_names, after.field.plant_names)
+
+
+AREA = MultiPolygon([box(35.1500, 30.3600, 35.1512, 30.3610)])
+WEST, EAST = box(35.1500, 30.3600, 35.1506, 30.3610), box(35.1506, 30.3600, 35.1512, 30.3610)
+BENT = LineString([(35.1501, 30.3602), (35.1506, 30.3605), (35.1511, 30.3603)])
+SCATTERED = np.random.default_rng(1).uniform([35.1501, 30.3601], [35.1511, 30.3609], (40, 2))
+PLANTED = {
+    "blocks": (
+        {"blocks": (Block("west", WEST, 20.0, 3.0, 2.0), Block("east", EAST))},
+        {"row_spacing_m": 5.0},
+    ),
+    "one bent row": ({"row_lines": MultiLineString([BENT])}, {"row_spacing_m": 3.5}),
+    "a bent row a block": (
+        {"blocks": (Block("west", WEST), Block("east", EAST, 90.0)),
+         "row_lines": MultiLineString([intersection(BENT, WEST)])},
+        {},
+    ),
+    "no rows": ({"plants": SCATTERED, "in_rows": False}, {}),
+    "by hand": (
+        {}, {"row_bearing_deg": 200.0, "row_spacing_m": 2.5, "plant_spacing_m": 1.5, "faces": 2,
+             "half_canopy_m": 0.4},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", PLANTED)
+def test_another_season_of_one_opened_by_its_address_is_laid_as_that_one(kind, seasons_folder):
+    drawn, planting = PLANTED[kind]
+    before = Plot.of(Field("Hill", AREA, **drawn), Planting(**planting))
+    settings = MonitoringSettings(date(2026, 11, 16), robot=Robot(hours=1.0))
+    Season.create(seasons_folder / "Hill 2026.gpkg", before, Observations.none(), settings)
+    app = go(opened("Hill 2026"), "plot")
+    press(app, texts.ANOTHER)
+    assert not app.exception
+    assert not app.error
+    begun(app, "Hill again")
+    after = Season(seasons_folder / "Hill again.gpkg").plot
+    assert np.allclose(before.grid.lonlat(), after.grid.lonlat(), rtol=0.0, atol=1e-8)
+    for one in ("row_start", "twin", "block"):
+        assert np.array_equal(getattr(before.grid, one), getattr(after.grid, one)), one
+    for one in ("in_rows", "half_canopy_m", "row_spacing_m", "plant_spacing_m"):
+        assert getattr(after.grid, one) == pytest.approx(getattr(before.grid, one)), one
+    assert [one.name for one in after.field.blocks] == [one.name for one in before.field.blocks]
 
 
 def test_the_gate_is_set_on_the_map_before_a_season_begins(app, tmp_path):

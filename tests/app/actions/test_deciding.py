@@ -1,10 +1,14 @@
 """What can be done on the page Decide: leaves, and the files."""
 
 import re
+from types import SimpleNamespace
+
+import pytest
 
 from app.actions import deciding as acting
 from app.words import texts
 from fieldmon.decisions.thresholds import published
+from fieldmon.errors import SettingError
 from fieldmon.io.writers.treatment_map import FORMATS
 from tests.app.driving import boxed, go, press, texts_of
 
@@ -55,3 +59,10 @@ def test_zones_that_were_treated_are_noted_with_what_was_advised(season_app, sea
     advised, treated = season().log()[-2:]
     assert (advised.kind, treated.kind) == ("advised", "treated")
     assert advised.what["date"] == str(one.on)
+
+
+def test_zones_that_are_gone_by_what_is_asked_since_are_not_noted_as_treated(monkeypatch):
+    none = SimpleNamespace(zones=())
+    monkeypatch.setattr(acting.deciding, "advice", lambda _: none)
+    with pytest.raises(SettingError, match=texts.DECIDE_NO_ZONE):
+        acting._zoned(None)

@@ -61,6 +61,21 @@ def test_a_day_that_is_done_says_what_was_found(season_app, season):
     assert texts.TODAY_OVER in texts_of(season_app)
 
 
+def test_the_next_day_of_a_day_is_its_own_though_that_is_done_too(season_app, season):
+    days = [date(2026, 11, 16), date(2026, 11, 17)]
+    plants, late = np.arange(40), np.linspace(6 * 3600, 18.1 * 3600, 40)
+    for day in days:
+        results = Inspections.of(plants, np.zeros(40, np.int8), np.datetime64(day), second=late)
+        season().record(results, str(day))
+    keys = []
+    for day in days:
+        season_app.date_input(key="day Gate 2026").set_value(day).run()
+        keys += [one.key for one in season_app.button if "next_day" in one.key]
+    assert len(set(keys)) == 2, "or a second press of the first would be one of the second"
+    tap(season_app, keys[1])
+    assert season_app.date_input(key="day Gate 2026").value == date(2026, 11, 18)
+
+
 @pytest.mark.parametrize("begun", [True, False], ids=["season", "plan"])
 def test_the_route_goes_along_as_a_file_where_no_phone_reaches_this_machine(begun, request):
     here = request.getfixturevalue("season_app" if begun else "app")

@@ -241,8 +241,12 @@ def test_what_is_typed_before_the_page_of_another_day_is_there_is_of_that_day(se
     season_app.session_state[row] = 7  # from the box still in view
     season_app.run()
     assert (boxed(season_app.number_input, "one_row").value, season_app.error.len) == (7, 0)
+    assert "boxes of **Tue 17 Nov** now" in season_app.info[0].value
+    boxed(season_app.number_input, "one_row").set_value(8).run()
+    assert not season_app.info, "it was looked at"
     season_app.date_input[0].set_value(day).run()
     assert boxed(season_app.number_input, "one_row").value == 2
+    assert not season_app.info
 
 
 @pytest.mark.parametrize("form", ["route", "one", "treatment"])

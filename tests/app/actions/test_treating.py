@@ -2,6 +2,9 @@
 
 from datetime import date
 
+import pytest
+
+from app.words import texts
 from fieldmon.decisions.labels import ProductLabel
 from tests.app.chosen import in_season
 from tests.app.driving import boxed, go, press, texts_of
@@ -130,3 +133,24 @@ def test_without_a_word_on_where_the_whole_plot_was_treated(season_app, season):
     part_noted(season_app)
     (one,) = season().treatments()
     assert one.place.plants.all()
+
+
+@pytest.mark.parametrize("page", ["record", "season"])
+def test_the_wait_of_a_treatment_is_said_in_one_step_where_no_day_of_harvest_is_named(
+    season_app, season, page
+):
+    kept = season()
+    kept.treat(kept.settings.begins, 0.8, product="Acarol")
+    go(season_app, page)
+    press(season_app, texts.WAIT_BUTTON)
+    assert season_app.error[0].value == texts.WAIT_UNSAID
+    assert season().labels() == (), "not known is no 0"
+    box = boxed(season_app.number_input, "wait")
+    assert "Acarol" in box.label
+    assert box.value is None
+    box.set_value(7)
+    press(season_app, texts.WAIT_BUTTON)
+    assert "How long to wait from" in season_app.success[0].value
+    assert [(one.product, one.waiting_days) for one in season().labels()] == [("Acarol", 7)]
+    assert texts.WAIT_BUTTON not in [one.label for one in season_app.button]
+    assert "harvest is allowed from" in texts_of(go(season_app, "season"))

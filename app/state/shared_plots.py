@@ -77,8 +77,7 @@ class SharedPlots:
     """The plan: its turns, plots for which there is no time, and plots that cannot be planned.
 
     And what is left off as people may not be there yet, who has no plot, of how many, and whether
-    the plots have robots of several kinds, so that the usual one is taken. `otherwise` names who
-    goes to which season that will not read their results as they are planned.
+    the plots have robots of several kinds, so that the usual one is taken.
     """
 
     turns: tuple[PlannedTurn, ...]
@@ -88,7 +87,6 @@ class SharedPlots:
     free: tuple[str, ...] = ()
     n_members: int = 0
     several_kinds: bool = False
-    otherwise: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +129,7 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
     members = crew.members(kind)
     shared = estate_day.share_estate(known, members, STARTS, 60.0 * crew.move_min)
     said = [one.closed_in_words(closed) for one, closed in zip(ready, shared.closed, strict=True)]
-    turns, waiting, otherwise = [], {*shared.waiting}, []
+    turns, waiting = [], {*shared.waiting}
     for k, turn in enumerate(shared.turns):
         progress(len(plots) + k, 2 * len(plots))
         one, who = ready[turn.plot], members[turn.who].name
@@ -141,9 +139,6 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
                 plot=one.plot.name, who=who, begins=turn.begins, route=plan.route,
                 sampler=one.sampler, closed=said[turn.plot], state=one.plot, number=turn.who,
             ))  # fmt: skip
-            season, member = one.known.season, members[turn.who]
-            if season is not None and estate_day.read_otherwise(season, [member]):
-                otherwise.append((who, one.plot.name))
         else:
             waiting.add(turn.plot)
     return SharedPlots(
@@ -158,7 +153,6 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
         tuple(one.name for one in members if one.name not in {turn.who for turn in turns}),
         len(members),
         several_kinds=kind is None and bool(seasons),
-        otherwise=tuple(otherwise),
     )
 
 

@@ -146,7 +146,7 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
         if rule := DETECTS.broken(float(inspections.detects[row])):
             raise ObservationError(
                 worded(
-                    "What an inspection detects of what is there must be {rule}, but result "
+                    "The chance to see an infested plant (detects) must be {rule}, but result "
                     "{value} says {found:g}.",
                     rule=rule, value=row + 1, found=inspections.detects[row],
                 )

@@ -178,7 +178,7 @@ def test_what_a_phone_says_that_it_finds_holds_and_is_in_the_file_that_it_saves(
     told = [a_finding(3, FOUND, detects=0.3), a_finding(4, CLEAN), a_finding(5, CLEAN, detects=1.5),
             a_finding(6, CLEAN, detects=0.0)]  # fmt: skip
     taken = take(season, key, told, NOW)
-    assert [one.problem[:26] for one in taken] == ["", "", *["What an inspection detects"] * 2]
+    assert [one.problem[:26] for one in taken] == ["", "", *["The chance to see an infes"] * 2]
     usual = season.settings.robot.detects
     history = Season(season.path).history
     read = dict(zip(history.inspections.plant.tolist(), history.detections.tolist(), strict=True))

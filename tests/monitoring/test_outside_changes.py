@@ -93,7 +93,7 @@ def test_what_an_inspection_finds_is_corrected_and_refused_as_the_rest_of_it(pat
     season.undo()
     assert season.history.detections.tolist() == before
     outside(path, "UPDATE inspections SET detects = 30 WHERE fid = 1")
-    with pytest.raises(FileProblem, match="a chance above 0, and 1 at most"):
+    with pytest.raises(FileProblem, match="above 0, and 1 at most"):
         Season(path).correct("Ann")
 
 

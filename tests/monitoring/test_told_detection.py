@@ -201,7 +201,7 @@ def test_the_log_says_what_was_said_where_the_season_would_read_it_otherwise(sea
 
 @pytest.mark.parametrize("detects", [0.0, -0.1, 1.01, np.inf])
 def test_what_is_no_chance_to_see_anything_is_refused(season, detects):
-    with pytest.raises(ObservationError, match="must be a chance above 0, and 1 at most, but"):
+    with pytest.raises(ObservationError, match="must be above 0, and 1 at most, but"):
         season.record(seen(0, detects=detects))
     assert told(season) == []
 

@@ -163,7 +163,7 @@ def _chance(said: object) -> float | None:
     if rule := DETECTS.broken(number):
         raise ObservationError(
             worded(
-                "What an inspection detects of what is there must be {rule}, but it says {said}.",
+                "The chance to see an infested plant (detects) must be {rule}, but it says {said}.",
                 rule=rule, said=str(said)[:60],
             )
         )  # fmt: skip

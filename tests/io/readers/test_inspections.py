@@ -63,7 +63,7 @@ def test_what_is_no_chance_to_see_anything_is_refused_with_file_record_and_value
     with pytest.raises(ObservationError) as refused:
         read(f"plant,found,detects\n1,yes,0.3\n2,no,{cell}\n", name="rex.csv")
     said = str(refused.value)
-    assert "must be a chance above 0, and 1 at most" in said
+    assert "must be above 0, and 1 at most" in said
     assert f"record 2 of rex.csv says {cell!r}" in said
 
 

@@ -46,7 +46,7 @@ def test_what_a_finding_detects_is_read_and_what_is_no_chance_is_left_out_with_i
     assert [one.fields["detects"] for one in read.value.findings] == [0.3, None]
     (said,) = read.messages
     assert said.feature == "finding 3"
-    assert "must be a chance above 0, and 1 at most, but it says 1.4" in said.sentence
+    assert "must be above 0, and 1 at most, but it says 1.4" in said.sentence
 
 
 def test_a_file_says_what_the_clock_said_and_one_from_before_does_not():

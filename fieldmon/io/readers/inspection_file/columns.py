@@ -164,9 +164,9 @@ def detects_in(layer: Layer, columns: InspectionColumns, file: str) -> NDArray[n
         if cell and (rule := DETECTS.broken(known[cell])):
             raise ObservationError(
                 worded(
-                    "What an inspection detects of what is there must be {rule}, but record "
-                    "{record} of {name} says {cell!r}. Mend that, or empty it: then it is what "
-                    "the season says.",
+                    "The chance to see an infested plant (detects) must be {rule}, but record "
+                    "{record} of {name} says {cell!r}. Write 0.3 for 30 %, or leave it empty: "
+                    "then the season's own counts.",
                     rule=rule, record=record, name=file, cell=cell,
                 )
             )  # fmt: skip

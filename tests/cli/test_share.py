@@ -144,6 +144,7 @@ def test_a_crews_detection_reaches_the_season_and_each_keeps_its_own(
     _, out, _, _ = run("status", season)
     assert "Ben, 2026-11-02: 5 inspections find 30 % of what is there, as was said with them" in out
     assert "the season's own is 84 %." in out
+    assert "Inspections of that day find" not in out
 
 
 def test_days_of_several_lengths_are_asked_for_one(run, seasons):

@@ -171,9 +171,9 @@ class SeasonEstimates(OpenSeason):
             return told_otherwise(db, done, now.settings.begins)
 
     def reads(self, on: date, who: str = "") -> float:
-        """Return what inspections of somebody on `on` find, where nothing else is said with them.
+        """Return what inspections of `who` on `on` find, where nothing else is said with them.
 
-        That is by the day's last plan, or else by what counts when it is recorded first.
+        Nobody named: whoever is in no team. That is by the day's last plan, or else by what counts when it is recorded first.
         """
         with self.store.reading() as db:
             return read_now(db, on, who)

@@ -26,7 +26,7 @@ def show(choices: Choices) -> None:
     And with which inspections another detection was said than the season's own.
     """
     st.markdown(f"**{texts.LEARNT_TITLE}**")
-    estimates, said = chosen_day.learnt(choices), choices.season.told_otherwise(choices.on)
+    estimates, said = chosen_day.learnt(choices), chosen_day.told_otherwise(choices)
     if not estimates:
         st.caption(texts.NOT_LEARNT)
         _list(one.sentence() for one in said)

@@ -209,11 +209,11 @@ def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:
 def _told_otherwise(season: Season, until: date) -> Iterator[str]:
     """Yield with which inspections another detection was said than the season's own."""
     said = season.told_otherwise(until)
-    lines = [one.sentence() for one in said[:_MOST_SAID]]
+    lines = [str(one.sentence()) for one in said[:_MOST_SAID]]
     if len(said) > _MOST_SAID:
         lines.append(f"And {len(said) - _MOST_SAID} more.")
     for number, one in enumerate(lines):
-        yield f"  {'' if number else 'detection said':22} {one}"
+        yield f"  {'' if number else 'told to find':22} {one}"
 
 
 def _planned_only(season: Season, until: date) -> Iterator[str]:

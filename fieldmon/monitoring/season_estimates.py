@@ -173,7 +173,8 @@ class SeasonEstimates(OpenSeason):
     def reads(self, on: date, who: str = "") -> float:
         """Return what inspections of `who` on `on` find, where nothing else is said with them.
 
-        Nobody named: whoever is in no team. That is by the day's last plan, or else by what counts when it is recorded first.
+        Nobody named: whoever is in no team. That is by the day's last plan, or else by what counts
+        when it is recorded first.
         """
         with self.store.reading() as db:
             return read_now(db, on, who)

@@ -193,15 +193,27 @@ def told_otherwise(
         return ()
     own = _own(db, inspections, begins, _told(db))
     held = told_detection(db, inspections, begins)
-    apart = np.flatnonzero(held != own)
-    groups: dict[tuple[str, float, float], list[date]] = {}
-    for k in apart.tolist():
-        key = person_key(str(inspections.who[k])), float(held[k]), float(own[k])
-        groups.setdefault(key, []).append(inspections.date[k].item())
-    names = {person_key(str(name)): str(name) for name in inspections.who[apart]}
+    apart = held != own
+    done, held, own = inspections.take(apart), held[apart], own[apart]
+    people = {name: person_key(name) for name in dict.fromkeys(done.who.tolist())}
+    numbers = {person: k for k, person in enumerate(dict.fromkeys(people.values()))}
+    person = [numbers[people[name]] for name in done.who]
+    _, first, group, n = np.unique(
+        np.stack([person, held, own], axis=1), axis=0,
+        return_index=True, return_inverse=True, return_counts=True,
+    )  # fmt: skip
+    last = np.zeros(len(first), np.int64)
+    last[group.ravel()] = np.arange(len(done))  # they are by day
     return tuple(
-        ToldOtherwise(names[who], said, reads, min(days), max(days), len(days))
-        for (who, said, reads), days in groups.items()
+        ToldOtherwise(
+            str(done.who[first[k]]),
+            float(held[first[k]]),
+            float(own[first[k]]),
+            done.date[first[k]].item(),
+            done.date[last[k]].item(),
+            int(n[k]),
+        )
+        for k in np.argsort(first).tolist()
     )
 
 

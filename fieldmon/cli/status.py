@@ -199,8 +199,8 @@ def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:
     detects = {one.detects for one in [member.robot for member in by.team] or [by.robot]}
     history = season.history
     that_day = {*history.detections[history.days == now.day].tolist()}
-    if detects == {history.mean_detection(now.day)} or (that_day and not that_day & detects):
-        return  # it takes seconds to work out, or who inspected was said to find otherwise
+    if detects == {history.mean_detection(now.day)} or that_day - detects:
+        return  # it takes seconds to work out, or with some of them another one was said
     for whose, _, learnt in learnt_of_each(season, now.on):
         if learnt != of_all:
             yield f"  {'':22} Inspections{whose or ' of that day'} find {learnt}."

@@ -288,10 +288,16 @@ def _told(db: sqlite3.Connection) -> _Told:
         parts = settings_log.at(db, moment)
         told.since.append(moment)
         told.which.append(told.add(ToldDetection.in_parts(parts, now)))
-        pest = _named_later(parts, now)
-        seen_by = None if pest is None else (pest.detection, pest.viewpoints)
-        told.before_pest.append(seen_by not in (None, (None, None)))
+        told.before_pest.append(_is_before_pest(parts, now))
     return told
+
+
+def _is_before_pest(parts: Parts, now: Parts) -> bool:
+    """Tell whether the pest of now, which says how it is seen, was not looked for in settings."""
+    pest = _named_later(parts, now)
+    if pest is None or settings_log.pest_in(parts.get("pest", "null")) == pest.name:
+        return False
+    return pest.detection is not None or pest.viewpoints is not None
 
 
 def _which(db: sqlite3.Connection, inspections: Inspections, begins: date, told: _Told) -> Ints:

@@ -214,6 +214,15 @@ def test_what_was_said_before_a_pest_that_is_seen_otherwise_was_named_is_of_that
     assert told(season) == [0.7] * 4 + [0.5] * 4
 
 
+def test_what_was_said_of_a_pest_holds_though_its_figures_are_others_now(season):
+    pest = replace(shipped_pest("spider-mite"), detection=0.7)
+    change(season, pest=pest, robot=pest.seen_by(season.settings.robot))
+    season.record(seen(0, detects=0.3))
+    sharper = replace(pest, detection=0.8)
+    change(season, pest=sharper, robot=sharper.seen_by(season.settings.robot))
+    assert told(season) == [0.3] * 4
+
+
 def test_what_was_said_before_a_pest_that_says_nothing_of_that_was_named_holds(season):
     season.record(seen(0, detects=0.3))
     pest = replace(shipped_pest("spider-mite"), detection=None, viewpoints=None)

@@ -74,6 +74,13 @@ def _applications_say_all(db: sqlite3.Connection) -> None:
         add_column(db, "treatments", column)
 
 
+def _inspections_say_what_they_find(db: sqlite3.Connection) -> None:
+    """Version 12 read each inspection by the season's settings alone."""
+    add_column(db, "inspections", schema.DETECTS)
+    # those of before lack the column, and are made anew as the file is written next
+    db.execute("DELETE FROM inspection_lots")
+
+
 #: what makes a file of version k one of version k + 1; `watch` follows the last
 MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     1: _treatments_come,
@@ -87,4 +94,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     9: _long_seasons_come,
     10: _corrections_keep_what_was,
     11: _applications_say_all,
+    12: _inspections_say_what_they_find,
 }

@@ -7,6 +7,8 @@ changed): planned, recorded, undone, treated, changed. Beside each lies what ``f
 
 import re
 import shutil
+import sqlite3
+from contextlib import closing
 from dataclasses import replace
 from datetime import date, datetime
 from pathlib import Path
@@ -169,6 +171,32 @@ def test_a_season_of_format_11_holds_and_knows_its_treatments_again(tmp_path):
         noted = db.execute("SELECT by_label FROM treatments ORDER BY fid").fetchall()
     assert noted == [(None,), (None,), ("waiting_days+reentry_hours",)]
     assert season.verify() == ()
+
+
+def test_a_season_of_format_12_is_read_as_before_and_takes_what_is_said_from_now_on(tmp_path):
+    """Made before inspections said what they find: 40 s a plant, then 25 s, and a correction."""
+    path = Path(shutil.copy(FOLDER / "of_format_12.gpkg", tmp_path))
+    season = Season(path)
+    assert (tmp_path / "of_format_12.gpkg.format-12").is_file()
+    assert season.verify() == ()
+    assert season.history.detections.tolist() == [0.84] * 20 + [0.6] * 12
+    assert np.isnan(season.inspections.detects).all()
+    assert "1 correction" in season.undo(3)
+    more = Inspections.of(np.array([80]), np.array([CLEAN]), LAST, detects=np.array([0.3]))
+    season.record(more, "rex.geojson")
+    assert Season(season.path).history.detections[-1] == 0.3
+    assert season.verify() == ()
+
+
+def test_what_another_program_changed_in_a_season_of_format_12_can_be_corrected(tmp_path):
+    path = Path(shutil.copy(FOLDER / "of_format_12.gpkg", tmp_path))
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("UPDATE inspections SET result = 'found' WHERE fid = 20")
+        db.commit()
+    season = Season(path)
+    assert season.correct("Ann") == 1
+    assert season.history.detections.tolist() == [0.84] * 20 + [0.6] * 12
+    assert "1 correction" in season.undo()
 
 
 def _only_the_map_differs(season, day):

@@ -16,7 +16,7 @@ import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
 from fieldmon.infestation.ancestry import MOST_PLANTS, Ancestry, ToldNight
-from fieldmon.infestation.calibration_slope import no_inspections
+from fieldmon.infestation.calibration_slope import finds_noted, no_inspections
 from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.clustering import (
     CLUSTERING,
@@ -28,6 +28,7 @@ from fieldmon.infestation.clustering import (
     no_evidence,
 )
 from fieldmon.infestation.cohorts import Cohorts
+from fieldmon.infestation.heavier import IN_DOUBT, TOLD, heavier_than, likeliest, odds_times
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import (
     ANYWHERE,
@@ -46,6 +47,7 @@ from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.plot_estimate import drawn_numbers
+from fieldmon.infestation.prior import scaled
 from fieldmon.infestation.reach import pest_reach_of, reach_of
 from fieldmon.infestation.traced_day import KernelRoom, TracedDay, learn_day
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
@@ -125,6 +127,13 @@ class TracedPairs:
         named end of themselves.
     unwatched
         The days without inspections until now.
+    likely
+        The logarithm of how likely it is that so many were infested as this map was told, and that
+        inspections so far had their results.
+    is_heavier
+        Whether it takes more for infested on the first morning than was told, see `heavier`.
+    others
+        Other such maps that are possible still; None: nothing was inspected yet.
     """
 
     grid: PlantGrid
@@ -141,6 +150,9 @@ class TracedPairs:
     slope_sums: Floats = field(default_factory=no_inspections)
     ancestry: Ancestry | None = None
     unwatched: Unwatched = field(default_factory=Unwatched)
+    likely: float = TOLD
+    is_heavier: bool = False
+    others: tuple[TracedPairs, ...] | None = None
 
     @classmethod
     def of(
@@ -245,7 +257,7 @@ class TracedPairs:
         ancestry = self.ancestry
         if ancestry is not None and ancestry.knows and not ancestry.waits:
             doubt *= _MORE_DOUBT if ancestry.left.any() else _LESS_DOUBT
-        return float(np.hypot(doubt, self._left_in_doubt))
+        return float(np.hypot(doubt, self._in_doubt_besides))
 
     @property
     def doubt_of_rates(self) -> float:
@@ -255,7 +267,7 @@ class TracedPairs:
         """
         brought = self._brought_so_far
         doubt = self._doubt_of(brought, float(brought.sum()))
-        return float(np.hypot(doubt, self._left_in_doubt))
+        return float(np.hypot(doubt, self._in_doubt_besides))
 
     @property
     def since_inspected(self) -> Since | None:
@@ -263,9 +275,13 @@ class TracedPairs:
         return self.unwatched.draws(self.arrivals_found)
 
     @property
-    def _left_in_doubt(self) -> float:
-        """How far the number may be off yet of days without inspections before the last one."""
-        return float(np.sqrt(self.unwatched.left))
+    def _in_doubt_besides(self) -> float:
+        """How far the number may be off yet of days without inspections before the last one.
+
+        And as another share than was told may be infested.
+        """
+        left = float(np.sqrt(self.unwatched.left))
+        return float(np.hypot(left, IN_DOUBT)) if self.is_heavier else left
 
     @property
     def _variance_since_inspected(self) -> float:
@@ -294,9 +310,47 @@ class TracedPairs:
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
     ) -> TracedPairs:
-        """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
+        """Return what is believed after inspecting `plants` ``(k,)`` with results `found`.
+
+        That is the likeliest map: this one, or one of the others.
+        """
         if not len(plants):
             return self
+        maps = (self, *(self._heavier() if self.others is None else self.others))
+        learnt = [TracedPairs._learnt(one, plants, found, learning) for one in maps]
+        best, others = likeliest(learnt, finds_noted(learnt[0].slope_sums))
+        return replace(best, others=tuple(replace(one, others=()) for one in others))
+
+    def _heavier(self) -> list[TracedPairs]:
+        """Return maps like this one that were told of more, of the plants not known yet."""
+        known = self.chance > KNOWN
+        told = self.chance[~known]
+        if not len(told):
+            return []
+        return [
+            self._told_of(scaled(told, share), known, likely)
+            for share, likely in heavier_than(float(told.mean()))
+        ]
+
+    def _told_of(self, told: Floats, known: NDArray[np.bool_], likely: float) -> TracedPairs:
+        """Return this map with other chances of the plants that are not `known` ``(n,)``."""
+        chance = self.chance.copy()
+        chance[~known] = np.clip(told, LEAST_CHANCE, _UNKNOWN)
+        factor = float(_odds(told[0]) / _odds(self.chance[~known][0]))
+        ancestry = self.ancestry and replace(
+            self.ancestry, start=odds_times(self.ancestry.start, factor)
+        )
+        return replace(
+            self, chance=chance, pair_chance=pair_chances(chance, self.grid, CLUSTERING),
+            at_start=self.at_start * float(chance.sum() / self.chance.sum()), ancestry=ancestry,
+            latency=self.latency and self.latency.levelled(chance),
+            likely=likely, is_heavier=True,
+        )  # fmt: skip
+
+    def _learnt(
+        self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
+    ) -> TracedPairs:
+        """Return what this map alone says after inspections."""
         n, nothing = len(self.chance), np.zeros((2, N_ORIGINS))
         none = np.zeros((2, n))
         told = self.counts.detects(learning.detects(len(plants)))
@@ -310,7 +364,9 @@ class TracedPairs:
         jumps = self._jumps(evidence)
         # before any find of the day is traced: that is done with what is known of jumps by now
         shares = self._jumping(believed, jumps / self.jumps)
-        day = TracedDay(shares, believed[0].copy(), *none, *nothing)
+        day = TracedDay(
+            shares, believed[0].copy(), none[0], none[1], nothing[0], nothing[1], np.zeros(1)
+        )
         traces = self.traces.own()
         each = self.reach.kernels * self.beyond[:, None, None]
         room = KernelRoom(each, Neighbourhood.of(n, believed[0]), Raised.of(n))
@@ -322,6 +378,7 @@ class TracedPairs:
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence, slope_sums=traces.slope_sums,
+            likely=self.likely + float(day.likely[0]),
             ancestry=self.ancestry
             and self.ancestry.learn(plants, found, told, treated=learning.treated),
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
@@ -394,7 +451,8 @@ class TracedPairs:
         """Return what is believed the next morning."""
         morning = self._overnight(spread, tells_apart=True)
         morning = self._with_ancestry(morning, self._sends(spread), spread)
-        return self._in_doubt(morning, spread)
+        others = self.others and tuple(one.overnight(spread) for one in self.others)
+        return replace(self._in_doubt(morning, spread), others=others)
 
     def _in_doubt(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
         """Return the next morning with what is in doubt of it if nobody inspected today."""
@@ -557,9 +615,11 @@ class TracedPairs:
         together = self.pair_chance * np.repeat(left, np.diff(start)) * left[other]
         latency = self.latency and self.latency.treated(left)
         ancestry = self.ancestry and self.ancestry.anew(chance)
+        others = self.others and tuple(one.treated(left) for one in self.others)
         return replace(
-            self, chance=chance, pair_chance=together, latency=latency, ancestry=ancestry
-        )
+            self, chance=chance, pair_chance=together, latency=latency, ancestry=ancestry,
+            others=others,
+        )  # fmt: skip
 
 
 def _levelled(belief: TracedPairs) -> TracedPairs:

@@ -265,6 +265,7 @@ def test_offspring_is_no_surer_than_what_it_came_from(beside):
 def test_in_hindsight_an_evening_says_what_the_next_morning_does_of_the_same_finds():
     """Where a third of what was inspected is infested, and a fiftieth was told."""
     belief, plants = TracedPairs.of(GRID, FLAT), np.arange(40, dtype=np.int32)
+    belief = replace(belief, others=())  # no heavier infestation is thought of
     evening, still = belief.learn(plants, plants % 3 == 0, LEARNING), Spread(0.0)
     told, morning = evening.in_hindsight(still), evening.overnight(still)
     assert morning.chance.sum() > 1.3 * evening.chance.sum()
@@ -298,7 +299,9 @@ def test_as_far_as_more_were_there_at_the_start_than_was_told_the_number_is_in_d
 def day_of(belief):
     n, none = len(belief.chance), np.zeros((2, N_ORIGINS))
     zeros = np.zeros((2, n))
-    return TracedDay(belief.shares.astype(np.float64), belief.chance.copy(), *zeros, *none)
+    return TracedDay(
+        belief.shares.astype(np.float64), belief.chance.copy(), *zeros, *none, np.zeros(1)
+    )
 
 
 @pytest.mark.parametrize("found", [False, True])

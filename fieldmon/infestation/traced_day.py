@@ -105,11 +105,9 @@ def learn_day(
 def _count(day: TracedDay, i: int, found: bool, expected: float) -> None:  # noqa: FBT001 - a result
     """Count what an inspection found and was expected to find, origin by origin.
 
-    A plant known to be infested tells how much is overlooked.
+    A plant known to be infested tells nothing: it may have been cleaned by now.
     """
     if day.before[i] > KNOWN:
-        day.found[OVERLOOKED] += 1.0 - found
-        day.expected[OVERLOOKED] += 1.0 - expected
         return
     day.likely[0] += np.log(expected if found else 1.0 - expected)
     for o in range(N_ORIGINS):

@@ -69,6 +69,9 @@ if TYPE_CHECKING:
 _SENT, _MOST_SENT = 3.5, 7.0
 # only another inspection can say that a plant found and left where it is may be clean
 _UNKNOWN = 0.95
+# one that seems clean on a later day may have been cleaned without a word: so likely it was not
+# (our choice)
+_STILL_INFESTED, _PROBABLE = 0.7, 0.5
 # what was inspected around a plant never lowers it by more in a day (as an exponent)
 _MOST_LOWERED = 3.0
 # the wind by which finds are traced: so much of it is that of the nights before the last, told
@@ -375,12 +378,13 @@ class TracedPairs:
         hidden = (told - shown) / np.maximum(told * (1.0 - shown), LEAST_CHANCE)
         inspections_of = *inspections, hidden.clip(0.0, 1.0)
         learn_day(believed, self.grid.linked, inspections_of, rule, (day, traces), room)
+        cleaned = self._doubt_known(believed, (plants, found, told))
+        ancestry = self.ancestry and self.ancestry.without_left(cleaned)
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence, slope_sums=traces.slope_sums,
             likely=self.likely + float(day.likely[0]),
-            ancestry=self.ancestry
-            and self.ancestry.learn(plants, found, told, treated=learning.treated),
+            ancestry=ancestry and ancestry.learn(plants, found, told, treated=learning.treated),
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
             latency=self.latency and self.latency.inspected(plants, found, told),
             unwatched=self.unwatched.inspected(
@@ -389,6 +393,30 @@ class TracedPairs:
         )  # fmt: skip
         lowered = after.times(self._lowered(after, day, jumps * self.beyond))
         return _levelled(lowered.counting(self, day))
+
+    def _doubt_known(
+        self,
+        believed: tuple[Floats, Floats],
+        inspections: tuple[NDArray[np.int32], NDArray[np.bool_], Floats],
+    ) -> NDArray[np.int32]:
+        """Doubt in place that plants known before are infested yet, where they only seemed clean.
+
+        Return those that probably are not.
+        """
+        plants, found, detects = inspections
+        asked = (self.chance[plants] > KNOWN) & ~np.isin(plants, plants[found])
+        if not asked.any():
+            return np.empty(0, np.int32)
+        missed = np.ones(len(self.chance))
+        np.multiply.at(missed, plants[asked], 1.0 - detects[asked])
+        known = np.unique(plants[asked])
+        overlooked = _STILL_INFESTED * missed[known]
+        chance, both = believed
+        scale = np.ones(len(chance))
+        scale[known] = overlooked / (overlooked + 1.0 - _STILL_INFESTED) / chance[known]
+        chance *= scale
+        both[:] = pairs_scaled(both, self.grid.adjacent, scale, chance)
+        return known[chance[known] < _PROBABLE]
 
     def _jumping(self, believed: tuple[Floats, Floats], ratio: float) -> NDArray[np.float32]:
         """Believe in what jumps have brought `ratio` times as much, in place; return the shares."""

@@ -50,9 +50,13 @@ def test_the_first_of_those_equally_likely_is_believed_and_the_impossible_droppe
             self.likely = likely
 
     maps = [Map(-9.0), Map(-3.0), Map(-3.0), Map(-10.1)]
-    best, others = likeliest(maps)
+    best, others = likeliest(maps, 5.0)
     assert best is maps[1]
     assert others == (maps[0], maps[2])
+    # a find or two may be of one spot to which somebody was sent
+    best, others = likeliest(maps, 4.0)
+    assert best is maps[0]
+    assert others == (maps[1], maps[2])
 
 
 @pytest.mark.parametrize("share", [0.15, 0.3, 0.6])
@@ -88,7 +92,10 @@ def test_what_leads_may_change_and_each_map_goes_on_by_itself():
     """A dense spot first and then a clean plot: what was told is believed again."""
     infested = np.zeros(N, bool)
     infested[np.arange(0, 30, 2)] = True
-    belief = inspected(TracedPairs.of(GRID, FLAT), infested, np.arange(12))
+    few = inspected(TracedPairs.of(GRID, FLAT), infested, np.arange(8))
+    assert not few.is_heavier
+    assert few.likely < max(one.likely for one in few.others)
+    belief = inspected(few, infested, np.arange(8, 10))
     assert belief.is_heavier
     assert belief.others
     morning = belief.overnight(QUIET)

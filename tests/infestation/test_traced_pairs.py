@@ -305,17 +305,18 @@ def day_of(belief):
 
 
 @pytest.mark.parametrize("found", [False, True])
-def test_finds_are_counted_by_origin_and_known_ones_tell_what_is_overlooked(found):
+def test_finds_are_counted_by_origin_and_known_ones_tell_nothing(found):
     day = day_of(mid_season())
     _count.py_func(day, 5, found, 0.3)
     assert day.found == pytest.approx(found * day.shares[5])
     assert day.expected == pytest.approx(0.3 * day.shares[5])
+    assert np.exp(day.likely[0]) == pytest.approx(0.3 if found else 0.7)
     day = day_of(mid_season())
     day.before[5] = 0.995
     _count.py_func(day, 5, found, 0.8)
-    wanted = np.zeros((2, N_ORIGINS))
-    wanted[:, OVERLOOKED] = 1.0 - found, 0.2
-    assert np.array([day.found, day.expected]) == pytest.approx(wanted)
+    assert not day.found.any()
+    assert not day.expected.any()
+    assert day.likely[0] == 0.0
 
 
 def test_what_a_chance_rises_by_came_from_the_plant_beside_and_what_falls_tells_no_origin():
@@ -404,3 +405,30 @@ def test_what_lands_anywhere_is_what_all_plants_that_move_send_there(tells_apart
         from_outside = 0.01 * belief.counts.scale[ANYWHERE]
         landed = 0.3 * sum(sends * moves) / 12
         assert brought[ANYWHERE] == pytest.approx(np.full(12, from_outside + landed))
+
+
+def test_a_flagged_plant_that_seems_clean_later_is_in_doubt_and_teaches_no_detection():
+    belief, plants = TracedPairs.of(GRID, FLAT), np.array([105, 210], np.int32)
+    flagged = belief.learn(plants, np.ones(2, bool), Learning(0.84, treated=False))
+    morning = flagged.overnight(QUIET)
+    assert morning.ancestry.left.nonzero()[0].tolist() == plants.tolist()
+    looked = morning.learn(plants, np.array([True, False]), Learning(0.84, treated=False))
+    assert looked.chance[105] > 0.99
+    assert looked.chance[210] == pytest.approx(0.7 * 0.16 / (0.7 * 0.16 + 0.3), abs=0.02)
+    later = looked.overnight(QUIET)
+    assert later.ancestry.left.nonzero()[0].tolist() == [105]
+    assert later.chance[210] < 0.3
+    # whoever overlooks half leaves it likely, and two looks are more than one
+    once, twice = (
+        morning.learn(np.full(k, 210, np.int32), np.zeros(k, bool), Learning(0.5, treated=False))
+        for k in (1, 2)
+    )
+    assert 0.5 < once.chance[210] < 0.6
+    assert once.ancestry.left[210]
+    assert twice.chance[210] == pytest.approx(0.175 / 0.475, abs=0.02)
+    for after in (looked, once, twice):
+        assert after.counts.found[OVERLOOKED] == morning.counts.found[OVERLOOKED]
+    # a find of the same day says that it is there
+    both = np.array([210, 210], np.int32)
+    again = morning.learn(both, np.array([True, False]), Learning(0.84, treated=False))
+    assert again.chance[210] > 0.99

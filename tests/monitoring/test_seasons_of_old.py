@@ -51,6 +51,10 @@ def test_a_season_says_what_it_said(season, capsys):
         since = [line for line in said if line.startswith(new)]
         assert len(since) == 1
         said.remove(since[0])
+    how = "Say it as its label does: fieldmon labels", "It names no product: fieldmon undo"
+    since = [line for line in said if any(one in line for one in how)]
+    assert len(since) == 1
+    said.remove(since[0])
     flagged = "were found and only flagged, are still", "that the plot is clean leaves these out."
     planned = "  planned, not recorded  2026-04-09", "  Record it; if nobody went, record one stop"
     for new, there in (

@@ -51,14 +51,20 @@ class Heavier(NamedTuple):
     likely: float
 
 
-def heavier_than(told: float) -> tuple[Heavier, ...]:
+def heavier_than(told: float, found: NDArray[np.bool_], detects: Floats) -> tuple[Heavier, ...]:
     """Return which heavier infestations are possible where a share of the plants was `told`.
 
-    Three times as many are a third as likely.
+    Three times as many are a third as likely. What so many finds among the first inspections rule
+    out twice over is left out at once: `found` and `detects` ``(k,)`` are their results, and the
+    chances to find what is there.
     """
     shares = np.array([share for share in _SHARES if share > _APART * told])
-    likely = (1.0 - _RIGHT) / shares / (1.0 / shares).sum()
-    return tuple(map(Heavier, shares.tolist(), np.log(likely).tolist()))
+    likely = np.log((1.0 - _RIGHT) / shares / (1.0 / shares).sum())
+    finds, seen = np.count_nonzero(found), float(detects.mean())
+    clean = np.log((1.0 - seen * shares) / (1.0 - seen * told))
+    counts = finds * np.log(shares / told) + (len(found) - finds) * clean
+    possible = likely + counts > TOLD - 2.0 * _DROPPED
+    return tuple(map(Heavier, shares[possible].tolist(), likely[possible].tolist()))
 
 
 def odds_times(chance: NDArray[np.floating[Any]], factor: float) -> Floats:

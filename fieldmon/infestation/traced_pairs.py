@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -319,20 +319,26 @@ class TracedPairs:
         """
         if not len(plants):
             return self
-        maps = (self, *(self._heavier() if self.others is None else self.others))
-        learnt = [TracedPairs._learnt(one, plants, found, learning) for one in maps]
-        best, others = likeliest(learnt, finds_noted(learnt[0].slope_sums))
-        return replace(best, others=tuple(replace(one, others=()) for one in others))
+        maps = (self, *(self._heavier(found, learning) if self.others is None else self.others))
+        days = [TracedPairs._inspected(one, plants, found, learning) for one in maps]
+        best, others = likeliest(days, finds_noted(days[0].after.slope_sums))
+        settled = tuple(replace(one.settled(), others=()) for one in others)
+        return replace(best.settled(), others=settled)
 
-    def _heavier(self) -> list[TracedPairs]:
-        """Return maps like this one that were told of more, of the plants not known yet."""
+    def _heavier(self, found: NDArray[np.bool_], learning: Learning) -> list[TracedPairs]:
+        """Return maps like this one that were told of more, of the plants not known yet.
+
+        Those that the first inspections, with results `found` ``(k,)``, leave possible.
+        """
         known = self.chance > KNOWN
         told = self.chance[~known]
         if not len(told):
             return []
         return [
             self._told_of(scaled(told, share), known, likely)
-            for share, likely in heavier_than(float(told.mean()))
+            for share, likely in heavier_than(
+                float(told.mean()), found, learning.detects(len(found))
+            )
         ]
 
     def _told_of(self, told: Floats, known: NDArray[np.bool_], likely: float) -> TracedPairs:
@@ -350,10 +356,10 @@ class TracedPairs:
             likely=likely, is_heavier=True,
         )  # fmt: skip
 
-    def _learnt(
+    def _inspected(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
-    ) -> TracedPairs:
-        """Return what this map alone says after inspections."""
+    ) -> _Inspected:
+        """Return what inspections change about them, by this map alone."""
         n, nothing = len(self.chance), np.zeros((2, N_ORIGINS))
         none = np.zeros((2, n))
         told = self.counts.detects(learning.detects(len(plants)))
@@ -391,8 +397,7 @@ class TracedPairs:
                 self._expected_finds(plants, shown), self._variance_since_inspected
             ),
         )  # fmt: skip
-        lowered = after.times(self._lowered(after, day, jumps * self.beyond))
-        return _levelled(lowered.counting(self, day))
+        return _Inspected(self, after, day, jumps * self.beyond)
 
     def _doubt_known(
         self,
@@ -447,7 +452,7 @@ class TracedPairs:
         chance = self.chance[plants]
         return float(shown @ np.where(chance > KNOWN, 0.0, chance))
 
-    def _lowered(self, after: TracedPairs, day: TracedDay, beyond: Floats) -> Floats:
+    def lowered(self, after: TracedPairs, day: TracedDay, beyond: Floats) -> Floats:
         """Return how much less likely plants are as no relatives were found about them, ``(n,)``.
 
         What clean inspections took from the chances about a plant, it would have infested, or
@@ -648,6 +653,35 @@ class TracedPairs:
             self, chance=chance, pair_chance=together, latency=latency, ancestry=ancestry,
             others=others,
         )  # fmt: skip
+
+
+class _Inspected(NamedTuple):
+    """What a day's inspections say to a map, before the whole plot is thought over.
+
+    Parameters
+    ----------
+    before, after
+        The map before them, and with what they change about themselves.
+    day
+        What they say beside that.
+    beyond
+        What an infested plant sends out by each kernel, ``(6,)``.
+    """
+
+    before: TracedPairs
+    after: TracedPairs
+    day: TracedDay
+    beyond: Floats
+
+    @property
+    def likely(self) -> float:
+        """The logarithm of how likely the map is by now."""
+        return self.after.likely
+
+    def settled(self) -> TracedPairs:
+        """Return what is believed of the whole plot by that."""
+        lowered = self.after.times(self.before.lowered(self.after, self.day, self.beyond))
+        return _levelled(lowered.counting(self.before, self.day))
 
 
 def _levelled(belief: TracedPairs) -> TracedPairs:

@@ -30,12 +30,17 @@ def scattered(share, seed=3):
 
 
 def test_what_may_be_instead_is_more_than_twice_what_was_told():
-    assert [one.share for one in heavier_than(0.01)] == [0.05, 0.15, 0.4]
-    assert [one.share for one in heavier_than(0.06)] == [0.15, 0.4]
-    assert heavier_than(0.3) == ()
+    few = np.array([True, False]), np.full(2, 0.84)
+    assert [one.share for one in heavier_than(0.01, *few)] == [0.05, 0.15, 0.4]
+    assert [one.share for one in heavier_than(0.06, *few)] == [0.15, 0.4]
+    assert heavier_than(0.3, *few) == ()
     for told in (0.01, 0.06, 0.15):
-        weights = np.exp([TOLD, *(one.likely for one in heavier_than(told))])
+        weights = np.exp([TOLD, *(one.likely for one in heavier_than(told, *few))])
         assert weights.sum() == pytest.approx(1.0)
+    # of three hundred plants in turn: none, one in a hundred, in ten and in two
+    for finds, possible in ((0, []), (3, [0.05]), (30, [0.05, 0.15, 0.4]), (150, [0.05, 0.15, 0.4])):
+        many = np.arange(300) < finds, np.full(300, 0.84)
+        assert [one.share for one in heavier_than(0.01, *many)] == possible, finds
 
 
 def test_odds_are_multiplied():
@@ -123,8 +128,9 @@ def test_what_is_known_for_certain_stays_and_the_rest_is_told_of_more():
     chance = FLAT.copy()
     chance[:5] = 1.0
     first = TracedPairs.of(GRID, chance)
-    for one, told in zip(first._heavier(), (0.05, 0.15, 0.4), strict=True):
+    few = np.array([True]), Learning(0.84)
+    for one, told in zip(first._heavier(*few), (0.05, 0.15, 0.4), strict=True):
         assert (one.chance[:5] == first.chance[:5]).all()
         assert one.chance[5:].mean() == pytest.approx(told)
         assert one.at_start.sum() == pytest.approx(one.chance.sum())
-    assert TracedPairs.of(GRID, np.ones(N))._heavier() == []
+    assert TracedPairs.of(GRID, np.ones(N))._heavier(*few) == []

@@ -388,7 +388,7 @@ def test_what_was_found_clean_about_a_plant_lowers_it_by_the_relatives_it_would_
     to = belief.reach.brought(day.dropped, beyond)
     back = belief.reach.brought(day.cleared * belief.unseen, beyond, back=True)
     relatives = to * after.unseen / after.chance + back
-    lowered = belief._lowered(after, day, beyond)
+    lowered = belief.lowered(after, day, beyond)
     assert lowered == pytest.approx(np.exp(-np.minimum(relatives, 3.0)))
     assert (relatives > 3.0).any()
     assert (relatives < 3.0).any()

@@ -40,7 +40,7 @@ class Learnt:
         ``"detection"``, ``"infested at the start"`` (plants), ``"arrivals a night"`` (plants),
         ``"jumps beyond neighbours"`` (the chance that insects do), ``"length of jumps"``
         (plants, if they do), ``"hiding"`` (the chance that new infestations hide for nights), or
-        ``"more than told"`` (the share infested at the start that finds speak for).
+        ``"more than told"`` (the share that the map goes on with, as if it had been told).
     value, low, high
         The guess and the interval; both ends are the guess where the number is a chance itself.
     """
@@ -99,8 +99,8 @@ class Learnt:
             )
         if self.name == "more than told":
             return worded(
-                "Far more was found than was told: about {value} of the plants are taken to have "
-                "been infested at the start.",
+                "Far more was found than was told: the map goes on as if {value} of the plants had "
+                "been told.",
                 value=value,
             )
         return worded("Insects jump beyond the next plant with a chance of {value}.", value=value)
@@ -138,13 +138,13 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
     at_start, arrivals = _come_from_none(belief)
     jumps = belief.jumps
     return (
+        *_more_than_told(belief),
         Learnt("detection", found.value, found.low, found.high),
         Learnt("infested at the start", *astuple(at_start)),
         Learnt("arrivals a night", *astuple(arrivals)),
         Learnt("jumps beyond neighbours", jumps, jumps, jumps),
         *_length(belief),
         *_hiding(belief),
-        *_more_than_told(belief),
     )
 
 
@@ -184,7 +184,7 @@ def _hiding(belief: TracedPairs) -> tuple[Learnt, ...]:
 
 
 def _more_than_told(belief: TracedPairs) -> tuple[Learnt, ...]:
-    """Return which share is taken to have been infested, where far more is than was told."""
+    """Return as if which share had been told the map goes on, where far more is infested."""
     if not belief.is_heavier:
         return ()
     share = float(belief.at_start.sum()) / len(belief.chance)

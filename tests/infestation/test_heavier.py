@@ -78,7 +78,7 @@ def test_a_heavy_infestation_that_nobody_announced_is_believed(share):
     assert told_only.chance.sum() < 0.6 * evening.chance.sum()
     assert "more than told" in {one.name for one in learnt_from(evening, 0.84)}
     (said,) = [one for one in learnt_from(evening, 0.84) if one.name == "more than told"]
-    assert said.sentence().startswith("Far more was found than was told: about ")
+    assert said.sentence().startswith("Far more was found than was told: the map goes on as if ")
 
 
 def test_clusters_where_few_are_infested_are_no_heavy_infestation():

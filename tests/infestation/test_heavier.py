@@ -38,7 +38,12 @@ def test_what_may_be_instead_is_more_than_twice_what_was_told():
         weights = np.exp([TOLD, *(one.likely for one in heavier_than(told, *few))])
         assert weights.sum() == pytest.approx(1.0)
     # of three hundred plants in turn: none, one in a hundred, in ten and in two
-    for finds, possible in ((0, []), (3, [0.05]), (30, [0.05, 0.15, 0.4]), (150, [0.05, 0.15, 0.4])):
+    for finds, possible in (
+        (0, []),
+        (3, [0.05]),
+        (30, [0.05, 0.15, 0.4]),
+        (150, [0.05, 0.15, 0.4]),
+    ):
         many = np.arange(300) < finds, np.full(300, 0.84)
         assert [one.share for one in heavier_than(0.01, *many)] == possible, finds
 

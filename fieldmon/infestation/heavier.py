@@ -91,3 +91,17 @@ def likeliest(maps: Sequence[M], finds: float) -> tuple[M, tuple[M, ...]]:
     return best, tuple(
         one for one in maps if one is not best and one.likely > most.likely - _DROPPED
     )
+
+
+def doubt_between(likely: Floats, expected: Floats) -> float:
+    """Return how far a number may be off (1 sigma, as a share), as several maps are possible.
+
+    Parameters
+    ----------
+    likely, expected
+        ``(m,)`` the logarithm of how likely each is, and the number that it expects.
+    """
+    weight = np.exp(likely - likely.max())
+    weight /= weight.sum()
+    number = np.log(expected)
+    return float(np.sqrt(weight @ (number - weight @ number) ** 2))

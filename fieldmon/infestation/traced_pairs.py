@@ -28,7 +28,14 @@ from fieldmon.infestation.clustering import (
     no_evidence,
 )
 from fieldmon.infestation.cohorts import Cohorts
-from fieldmon.infestation.heavier import IN_DOUBT, TOLD, heavier_than, likeliest, odds_times
+from fieldmon.infestation.heavier import (
+    IN_DOUBT,
+    TOLD,
+    doubt_between,
+    heavier_than,
+    likeliest,
+    odds_times,
+)
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import (
     ANYWHERE,
@@ -284,7 +291,13 @@ class TracedPairs:
         And as another share than was told may be infested.
         """
         left = float(np.sqrt(self.unwatched.left))
-        return float(np.hypot(left, IN_DOUBT)) if self.is_heavier else left
+        if self.is_heavier:
+            left = float(np.hypot(left, IN_DOUBT))
+        if not self.others:
+            return left
+        maps = (self, *self.others)
+        likely, expected = np.array([(one.likely, float(one.chance.sum())) for one in maps]).T
+        return float(np.hypot(left, doubt_between(likely, expected)))
 
     @property
     def _variance_since_inspected(self) -> float:

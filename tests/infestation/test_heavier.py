@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.heavier import TOLD, heavier_than, likeliest, odds_times
+from fieldmon.infestation.heavier import (
+    TOLD,
+    doubt_between,
+    heavier_than,
+    likeliest,
+    odds_times,
+)
 from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
@@ -127,6 +133,16 @@ def test_a_treatment_and_a_pest_count_for_every_map():
     treated = belief.treated(np.full(N, 0.1))
     for before, after in zip(maps, (treated, *treated.others), strict=True):
         assert after.chance.sum() < 0.2 * before.chance.sum()
+
+
+def test_while_several_maps_are_possible_the_number_is_in_more_doubt():
+    assert doubt_between(np.zeros(2), np.array([10.0, 10.0])) == 0.0
+    assert doubt_between(np.zeros(2), np.array([5.0, 20.0])) == pytest.approx(np.log(2.0))
+    assert doubt_between(np.array([0.0, -9.0]), np.array([5.0, 20.0])) < 0.02
+    infested = scattered(0.1)
+    belief = inspected(TracedPairs.of(GRID, FLAT), infested, np.arange(30))
+    assert belief.others
+    assert belief.doubt > 1.02 * replace(belief, others=()).doubt
 
 
 def test_what_is_known_for_certain_stays_and_the_rest_is_told_of_more():

@@ -6,6 +6,7 @@ import math
 import queue
 import time
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.ranges import AllowedRange
@@ -89,6 +90,7 @@ class Vda5050Robot:
         east_north = frame.turned(90.0)
         self._places = lambda line_m: east_north.xy_m(frame.lonlat(line_m))
         self._gone_s, self._begun = gone_s, time.monotonic()
+        self._began = datetime.now(UTC)
         self._own_clock, self._heard_at = False, time.monotonic()
         self._clock_behind_s = 0.0
         if self._traffic is not None:
@@ -194,10 +196,16 @@ class Vda5050Robot:
                 return f"The robot has not been heard for {self._patience_s:.0f} s."
             return None
         self._heard_at = time.monotonic()
-        if fatal := [one for one in state["errors"] if one["errorLevel"] in _ENDS]:
-            told = fatal[0].get("errorDescription") or fatal[0]["errorType"]
-            return f"The robot reports an error that it cannot mend: {told}."
-        return state
+        return self._broken(state) or state
+
+    def _broken(self, state: dict[str, Any]) -> str:
+        """Say that the robot cannot go on, if it says so now and not of a day before."""
+        fatal = [one for one in state["errors"] if one["errorLevel"] in _ENDS]
+        is_ours = state["orderId"] == self._known["orderId"] or sent_at(state) >= self._began
+        if not fatal or not is_ours:
+            return ""
+        told = fatal[0].get("errorDescription") or fatal[0]["errorType"]
+        return f"The robot reports an error that it cannot mend: {told}."
 
     def _must_come(self) -> None:
         """Say that a robot was never heard yet; raise `SettingError` once it takes too long."""

@@ -1,7 +1,9 @@
 """Asked and told over a broker: nothing lost, nothing twice, whatever the line does."""
 
+import json
 import threading
 from contextlib import nullcontext
+from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
 
 import numpy as np
@@ -22,6 +24,9 @@ from tests.drive.test_season_day import ON
 from tests.drive.vda5050.conftest import ROBOT
 
 
+MOTOR = {"errorType": "motor", "errorLevel": "FATAL", "errorDescription": "left wheel"}
+
+
 def seen(plant):
     return plant % 5 == 0
 
@@ -31,11 +36,13 @@ def nothing(_other, _errand):
 
 
 def drive(broker, plot, robot, monitor, order_id, mishap=nothing, **fleet):
-    """Drive a day with a stand-in; `mishap` happens after each stop."""
-    said = []
-    other = StandIn(broker, ROBOT, fleet.pop("look", seen), robot.speed_m_s, faster=1e6)
+    """Drive a day with a stand-in; `before` happens before it, and `mishap` after each stop."""
+    said, before = [], fleet.pop("before", lambda _other: None)
+    kind = fleet.pop("kind", StandIn)
+    other = kind(broker, ROBOT, fleet.pop("look", seen), robot.speed_m_s, faster=1e6)
     wire = Wire(broker, "fleet", ROBOT, ("state", "connection"))
     driver = Vda5050Robot(wire, order_id, said.append, **fleet)
+    before(other)
     other.start()
     try:
         with monitor.day() as day:
@@ -115,14 +122,40 @@ def test_a_low_battery_ends_the_day_after_the_plant_in_hand(broker, plot, robot,
 def test_a_fatal_error_ends_the_day_in_its_own_words(broker, plot, robot, monitor):
     def fail(other, errand):
         if errand.number == 2:
-            other.self.errors = [
-                {"errorType": "motor", "errorLevel": "FATAL", "errorDescription": "left wheel"}
-            ]
+            other.self.errors = [MOTOR]
 
     driven, day, _ = drive(broker, plot, robot, monitor, "fatal", fail)
     assert len(driven.stops) == 3
     assert "left wheel" in driven.stuck[0]
     assert len(day.plants) == 2
+
+
+def test_what_a_robot_said_before_the_drive_began_does_not_end_it(broker, plot, robot, monitor):
+    """It died yesterday behind a hill, was mended, and now sends what it had to say then."""
+
+    def yesterday(other):
+        send, then = other.wire.send, datetime.now(UTC) - timedelta(days=1)
+
+        def of_then(kind, data):
+            send(kind, json.dumps(json.loads(data) | {"timestamp": then.isoformat()}).encode())
+
+        other.wire.send = of_then
+        other.self.errors = [MOTOR]
+        other.tell()
+        other.self.errors, other.wire.send = [], send
+
+    driven, day, _ = drive(broker, plot, robot, monitor, "next day", before=yesterday)
+    assert driven.stuck == []
+    assert len(day.plants) > 10
+
+
+def test_a_robot_that_is_broken_when_the_drive_begins_ends_it(broker, plot, robot, monitor):
+    def die(other):
+        other.self.errors = [MOTOR]
+
+    driven, day, _ = drive(broker, plot, robot, monitor, "dead", before=die)
+    assert "left wheel" in driven.stuck[0]
+    assert len(day.plants) == 0
 
 
 def test_a_pause_is_waited_for_and_said(broker, plot, robot, monitor):

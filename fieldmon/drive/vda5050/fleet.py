@@ -105,7 +105,7 @@ class Vda5050Robot:
         update = self._known["orderUpdateId"]
         action = f"{self._known['orderId']}-{update}-{errand.stop.plant}"
         order, node = order_of(errand._replace(line_m=line_m), self._places, self._known, action)
-        said = self._done(order, lambda state: _finished(state, action))
+        said = self._done(order, lambda state: self._finished(state, action))
         # the next update begins at the node where it stands; what was done there is not done again
         self._known["node"] = {**node, "actions": []}
         if isinstance(said, str):
@@ -114,7 +114,7 @@ class Vda5050Robot:
             self._crossing.arrived(errand.stop.plant)
         result = result_of(said)
         found = result.get("found") if said["actionStatus"] == "FINISHED" else None
-        return Visit(found, self._at_s(result.get("day_s")), stuck=self._ended(self._low()))
+        return Visit(found, self._at_s(result.get("day_s")), stuck=self._ended(self._over()))
 
     def home(self, line_m: Float) -> Visit | None:
         """Send the robot back to the gate."""
@@ -146,8 +146,8 @@ class Vda5050Robot:
         while not self._crossing.enter(plant):
             if self._crossing.blocked(plant):
                 return rest_m, "The way is blocked by a robot that moves no more today."
-            if isinstance(state := self._heard_of(), str):
-                return rest_m, state
+            if why := self._wait():
+                return rest_m, why
         return rest_m, None
 
     def _driven(self, line_m: Float) -> dict[str, Any] | str:
@@ -181,31 +181,51 @@ class Vda5050Robot:
             if not self._taken(order) and now - sent > _AGAIN_S:
                 self._wire.send("order", encoded("order", self._header, order))
                 sent = now
-            state = self._heard_of()
-            if isinstance(state, str):
-                return state
-            if state is not None and (found := wanted(state)) is not None and self._taken(order):
+            why = self._wait()
+            # what is reported together with an error was done before it
+            if self._taken(order) and (found := wanted(self._heard)) is not None:
                 return found
+            if why:
+                return why
 
-    def _heard_of(self) -> dict[str, Any] | str | None:
-        """Return the robot's next state, or why the day ends; None: nothing for a moment."""
-        state = self._hear()
-        if state is None:
-            self._must_come()
-            if time.monotonic() - self._heard_at > self._patience_s:
-                return f"The robot has not been heard for {self._patience_s:.0f} s."
-            return None
-        self._heard_at = time.monotonic()
-        return self._broken(state) or state
+    def _wait(self) -> str:
+        """Hear the robot, or nothing for a moment; return why the day ends, if it does."""
+        if self._hear():
+            self._heard_at = time.monotonic()
+            return self._broken()
+        self._must_come()
+        if time.monotonic() - self._heard_at > self._patience_s:
+            return f"The robot has not been heard for {self._patience_s:.0f} s."
+        return ""
 
-    def _broken(self, state: dict[str, Any]) -> str:
+    @property
+    def _heard(self) -> dict[str, Any]:
+        """What the robot said last."""
+        assert self._state is not None  # noqa: S101 - asked once it was heard
+        return self._state
+
+    def _broken(self) -> str:
         """Say that the robot cannot go on, if it says so now and not of a day before."""
+        state = self._heard
         fatal = [one for one in state["errors"] if one["errorLevel"] in _ENDS]
         is_ours = state["orderId"] == self._known["orderId"] or sent_at(state) >= self._began
         if not fatal or not is_ours:
             return ""
         told = fatal[0].get("errorDescription") or fatal[0]["errorType"]
         return f"The robot reports an error that it cannot mend: {told}."
+
+    def _over(self) -> str:
+        """Return why the day ends after the plant in hand; "" if it does not."""
+        return self._broken() or self._low()
+
+    def _finished(self, state: dict[str, Any], action: str) -> dict[str, Any] | None:
+        """Return the state of an action that is over; one that a broken robot let go is not."""
+        over = {"FINISHED"} if self._broken() else {"FINISHED", "FAILED"}
+        for one in state["actionStates"]:
+            if one["actionId"] == action and one["actionStatus"] in over:
+                done: dict[str, Any] = one
+                return done
+        return None
 
     def _must_come(self) -> None:
         """Say that a robot was never heard yet; raise `SettingError` once it takes too long."""
@@ -230,8 +250,8 @@ class Vda5050Robot:
             and state["orderUpdateId"] >= order["orderUpdateId"]
         )
 
-    def _hear(self) -> dict[str, Any] | None:
-        """Return the robot's next state; None: nothing was heard for a moment.
+    def _hear(self) -> bool:
+        """Take the robot's next state; return whether there was one within a moment.
 
         One that is older than what was heard last is passed by: it came late, or twice.
         """
@@ -239,22 +259,22 @@ class Vda5050Robot:
             kind, data = self._wire.heard.get(timeout=_POLL_S)
             message = decoded(kind, data)
         except queue.Empty:
-            return None
+            return False
         except ObservationError as error:
             self._tell(str(error))
-            return None
+            return False
         if kind == "connection":
             if message["connectionState"] != "ONLINE":
                 self._tell("The robot's connection is lost; waiting for it.")
-            return None
+            return False
         if kind != "state" or self._late(message):
-            return None
+            return False
         self._state = message
         if message.get("paused") or message["operatingMode"] != "AUTOMATIC":
             self._tell("The robot is paused, or driven by hand; waiting.")
         else:
             self._told = ""
-        return message
+        return True
 
     def _late(self, message: dict[str, Any]) -> bool:
         return self._state is not None and sent_at(message) < sent_at(self._state)
@@ -266,7 +286,7 @@ class Vda5050Robot:
             self._say(sentence)
 
     def _low(self) -> str:
-        charge = 100.0 if self._state is None else self._state["batteryState"]["batteryCharge"]
+        charge = self._heard["batteryState"]["batteryCharge"]
         if charge >= self._least_battery:
             return ""
         return f"The robot's battery is at {charge:.0f} %: the day ends here. Charge it."
@@ -317,12 +337,3 @@ def live_robot(
         yield Vda5050Robot(wire, order_id, say, traffic=traffic)
     finally:
         wire.close()
-
-
-def _finished(state: dict[str, Any], action: str) -> dict[str, Any] | None:
-    """Return the state of an action that is over, whether it failed or not."""
-    for one in state["actionStates"]:
-        if one["actionId"] == action and one["actionStatus"] in {"FINISHED", "FAILED"}:
-            done: dict[str, Any] = one
-            return done
-    return None

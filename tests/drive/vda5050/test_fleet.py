@@ -23,7 +23,6 @@ from fieldmon.monitoring.settings import MonitoringSettings
 from tests.drive.test_season_day import ON
 from tests.drive.vda5050.conftest import ROBOT
 
-
 MOTOR = {"errorType": "motor", "errorLevel": "FATAL", "errorDescription": "left wheel"}
 
 
@@ -156,6 +155,35 @@ def test_a_robot_that_is_broken_when_the_drive_begins_ends_it(broker, plot, robo
     driven, day, _ = drive(broker, plot, robot, monitor, "dead", before=die)
     assert "left wheel" in driven.stuck[0]
     assert len(day.plants) == 0
+
+
+class Dies(StandIn):
+    """Breaks down at the third plant; `after` or before it has looked there."""
+
+    after, looks = True, 0
+
+    def _do(self, action):
+        super()._do(action)
+        self.looks += 1
+        if self.looks == 3:
+            self.self.errors = [MOTOR]
+            if not self.after:
+                self.self.actions[action["actionId"]]["actionStatus"] = "FAILED"
+
+
+def test_a_result_that_comes_with_a_fatal_error_is_kept(broker, plot, robot, monitor):
+    driven, day, _ = drive(broker, plot, robot, monitor, "with it", kind=Dies)
+    assert "left wheel" in driven.stuck[0]
+    assert len(day.plants) == len(driven.stops) == 3
+    assert day.found.tolist() == [seen(plant) for plant in day.plants.tolist()]
+
+
+def test_a_plant_that_a_robot_broke_down_at_is_not_told_as_one_that_could_not_be_inspected(
+    broker, plot, robot, monitor
+):
+    kind = type("DiesBefore", (Dies,), {"after": False})
+    driven, _, _ = drive(broker, plot, robot, monitor, "before it", kind=kind)
+    assert [one.visit.there for one in driven.stops] == [True, True, False]
 
 
 def test_a_pause_is_waited_for_and_said(broker, plot, robot, monitor):

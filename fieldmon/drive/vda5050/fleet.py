@@ -13,6 +13,7 @@ from fieldmon.compute.ranges import AllowedRange
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.vda5050.crossing import Crossing
 from fieldmon.drive.vda5050.messages import (
+    at_once,
     decoded,
     encoded,
     header_of,
@@ -36,6 +37,9 @@ if TYPE_CHECKING:
 # an order that nobody acknowledged is sent again; robots take the same one once
 _AGAIN_S = 5.0
 _POLL_S = 0.2
+# so often, heard each time, a robot may leave a thing undone
+_MOST_TRIES = 24
+_OVER = {"FINISHED", "FAILED"}
 # errors with which a robot cannot go on with its order; 2.1 has only the last
 _ENDS = {"CRITICAL", "FATAL"}
 _DAY_S = AllowedRange(0.0, 86_400.0)
@@ -78,6 +82,7 @@ class Vda5050Robot:
     ) -> None:
         self._wire, self._say = wire, say
         self._header, self._name = header_of(*wire.robot), wire.robot.serial
+        self._actions_header = header_of(*wire.robot)
         self._known: dict[str, Any] = {"orderId": order_id, "orderUpdateId": -1, "node": None}
         self._patience_s, self._least_battery = patience_s, least_battery
         self._state: dict[str, Any] | None = None
@@ -175,18 +180,104 @@ class Vda5050Robot:
         self, order: dict[str, Any], wanted: Callable[[dict[str, Any]], dict[str, Any] | None]
     ) -> dict[str, Any] | str:
         """Send an order until it is taken; return what is wanted of a state, or why not."""
-        sent, self._heard_at = 0.0, time.monotonic()
+        if order["orderUpdateId"] == 0 and (why := self._made_free()):
+            return why
+
+        def send(tries: int) -> None:
+            if tries and self._is_busy():  # it took up an order of before again
+                self._ask("cancelOrder", f"cancel-{tries}")
+            self._wire.send("order", encoded("order", self._header, order))
+
+        return self._had(send, "taken its order", lambda: self._taken(order), wanted)
+
+    def _made_free(self) -> str:
+        """Let the robot end what is left of an order of before; return why the day ends, if so.
+
+        A robot by the standard refuses an order while it has another one.
+        """
+        why = self._had(
+            lambda _: self._ask("stateRequest", "state"),
+            "told its state",
+            lambda: self._state is not None,
+            lambda state: state,
+        )
+        if isinstance(why, str):
+            return why
+        if (why := self._broken()) or not self._is_busy():
+            return why
+        self._say("The robot still has an order of before; it is asked to end it.")
+        why = self._had(
+            lambda _: self._ask("cancelOrder", "cancel"),
+            "ended its order of before",
+            lambda: self._status("cancel") is not None,
+            lambda state: state if self._status("cancel") in _OVER or not self._is_busy() else None,
+        )
+        return why if isinstance(why, str) else ""
+
+    def _had(
+        self,
+        send: Callable[[int], None],
+        what: str,
+        has: Callable[[], bool],
+        wanted: Callable[[dict[str, Any]], dict[str, Any] | None],
+    ) -> dict[str, Any] | str:
+        """Send something until the robot has it; return what is wanted of a state, or why not.
+
+        Parameters
+        ----------
+        send
+            Told how often it was sent in vain: heard since, the robot did not have it.
+        what
+            What the robot then has done.
+        has
+            Whether the robot has it.
+        wanted
+            What is waited for once it has.
+        """
+        sent, tries, before, said = -math.inf, 0, self._state, ""
+        self._heard_at = time.monotonic()
         while True:
             now = time.monotonic()
-            if not self._taken(order) and now - sent > _AGAIN_S:
-                self._wire.send("order", encoded("order", self._header, order))
-                sent = now
+            if not has() and now - sent > _AGAIN_S:
+                if math.isfinite(sent) and self._state is not before and not self._stands():
+                    tries, last = tries + 1, said
+                    said = f"The robot has not {what}{self._complaint()}."
+                    if tries > _MOST_TRIES:
+                        return said
+                    if said != last:
+                        self._say(said)
+                send(tries)
+                sent, before = now, self._state
             why = self._wait()
             # what is reported together with an error was done before it
-            if self._taken(order) and (found := wanted(self._heard)) is not None:
+            if self._state is not None and has() and (found := wanted(self._state)) is not None:
                 return found
             if why:
                 return why
+
+    def _ask(self, action: str, name: str) -> None:
+        """Ask for an instant action."""
+        body = at_once(action, f"{self._known['orderId']}-{name}")
+        self._wire.send("instantActions", encoded("instantActions", self._actions_header, body))
+
+    def _status(self, name: str) -> str | None:
+        """Return how far an instant action is; None: the robot does not know it."""
+        wanted = f"{self._known['orderId']}-{name}"
+        told = [one["actionStatus"] for one in self._heard["actionStates"]
+                if one["actionId"] == wanted]  # fmt: skip
+        return told[-1] if told else None
+
+    def _is_busy(self) -> bool:
+        """Tell whether something is left of an order that is not of this run."""
+        state = self._heard
+        left = [one for one in state["actionStates"] if one["actionStatus"] not in _OVER]
+        others = state["orderId"] != self._known["orderId"]
+        return others and bool(state["nodeStates"] or state["edgeStates"] or left)
+
+    def _complaint(self) -> str:
+        """Return in words what the robot reports, to be put at the end of a sentence."""
+        told = [one.get("errorDescription") or one["errorType"] for one in self._heard["errors"]]
+        return f"; it reports: {', '.join(told)}" if told else ", and does not say why"
 
     def _wait(self) -> str:
         """Hear the robot, or nothing for a moment; return why the day ends, if it does."""
@@ -220,7 +311,7 @@ class Vda5050Robot:
 
     def _finished(self, state: dict[str, Any], action: str) -> dict[str, Any] | None:
         """Return the state of an action that is over; one that a broken robot let go is not."""
-        over = {"FINISHED"} if self._broken() else {"FINISHED", "FAILED"}
+        over = {"FINISHED"} if self._broken() else _OVER
         for one in state["actionStates"]:
             if one["actionId"] == action and one["actionStatus"] in over:
                 done: dict[str, Any] = one
@@ -270,11 +361,15 @@ class Vda5050Robot:
         if kind != "state" or self._late(message):
             return False
         self._state = message
-        if message.get("paused") or message["operatingMode"] != "AUTOMATIC":
+        if self._stands():
             self._tell("The robot is paused, or driven by hand; waiting.")
         else:
             self._told = ""
         return True
+
+    def _stands(self) -> bool:
+        """Tell whether somebody has stopped the robot."""
+        return bool(self._heard.get("paused")) or self._heard["operatingMode"] != "AUTOMATIC"
 
     def _late(self, message: dict[str, Any]) -> bool:
         return self._state is not None and sent_at(message) < sent_at(self._state)

@@ -137,6 +137,12 @@ def home_order(
     return _order([(line_m, [])], places, known)
 
 
+def at_once(action_type: str, action_id: str) -> dict[str, Any]:
+    """Return what a robot is asked for beside its order: an instant action."""
+    action = {"actionId": action_id, "actionType": action_type, "blockingType": "NONE"}
+    return {"actions": [{**action, "actionParameters": []}]}
+
+
 def _order(
     legs: Sequence[tuple[Float, list[dict[str, Any]]]],
     places: Callable[[Float], Float],

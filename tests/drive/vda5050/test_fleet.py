@@ -157,6 +157,68 @@ def test_a_robot_that_is_broken_when_the_drive_begins_ends_it(broker, plot, robo
     assert len(day.plants) == 0
 
 
+class CrashError(Exception):
+    """The fleet control crashes."""
+
+
+def test_a_robot_by_the_standard_is_driven_on_after_a_crash(broker, plot, robot):
+    """It refuses another order while it has one: that one is ended first."""
+    other = StandIn(broker, ROBOT, seen, robot.speed_m_s, faster=1e6)
+    other.start()
+    told, said = [], []
+
+    def crash(_stop, _errand):
+        told.append(1)
+        if len(told) == 3:
+            raise CrashError
+
+    def run(order_id, watch):
+        wire = Wire(broker, "fleet", ROBOT, ("state", "connection"))
+        who = (robot, Vda5050Robot(wire, order_id, said.append))
+        try:
+            with Monitor(plot, robot=robot).day() as day:
+                return drive_day(day, plot.aisles.for_robot(robot), who, watch)
+        finally:
+            wire.close()
+
+    try:
+        with pytest.raises(CrashError):
+            run("monday", crash)
+        driven = run("monday again", nothing)
+    finally:
+        other.stop()
+    assert said == ["The robot still has an order of before; it is asked to end it."]
+    assert driven.stuck == []
+    assert len(driven.stops) > 10
+
+
+class Refuses(StandIn):
+    """Takes no order for a while, and says why."""
+
+    most = 10**9
+
+    def _take(self, order):
+        self.most -= 1
+        if self.most < 0:
+            super()._take(order)
+        else:
+            self._refuse("validationError", "no map of this plot")
+
+
+@pytest.mark.parametrize("most", [2, 10**9])
+def test_an_order_that_is_refused_is_told_and_given_up_after_a_while(
+    broker, plot, robot, monitor, monkeypatch, most
+):
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._AGAIN_S", 0.05)
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._MOST_TRIES", 4)
+    kind = type("Refuses", (Refuses,), {"most": most})
+    driven, day, said = drive(broker, plot, robot, monitor, f"refused {most}", kind=kind)
+    refusal = "The robot has not taken its order; it reports: no map of this plot."
+    assert said.count(refusal) == 1
+    assert driven.stuck == ([] if most == 2 else [refusal])
+    assert (len(day.plants) > 10) == (most == 2)
+
+
 class Dies(StandIn):
     """Breaks down at the third plant; `after` or before it has looked there."""
 

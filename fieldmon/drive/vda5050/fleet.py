@@ -13,6 +13,7 @@ from fieldmon.compute.ranges import AllowedRange
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.vda5050.crossing import Crossing
 from fieldmon.drive.vda5050.messages import (
+    LATE_S,
     at_once,
     decoded,
     encoded,
@@ -344,7 +345,7 @@ class Vda5050Robot:
     def _hear(self) -> bool:
         """Take the robot's next state; return whether there was one within a moment.
 
-        One that is older than what was heard last is passed by: it came late, or twice.
+        One that came late, or twice, is passed by.
         """
         try:
             kind, data = self._wire.heard.get(timeout=_POLL_S)
@@ -372,7 +373,22 @@ class Vda5050Robot:
         return bool(self._heard.get("paused")) or self._heard["operatingMode"] != "AUTOMATIC"
 
     def _late(self, message: dict[str, Any]) -> bool:
-        return self._state is not None and sent_at(message) < sent_at(self._state)
+        """Tell whether a message came after one that was sent later, or twice; say a clock's jump.
+
+        A robot that was started anew counts from the first, and a clock may be put back: late is
+        only what both say.
+        """
+        if self._state is None:
+            return False
+        back_s = (sent_at(self._state) - sent_at(message)).total_seconds()
+        if message["headerId"] <= self._state["headerId"]:
+            return 0.0 <= back_s <= LATE_S
+        if back_s > LATE_S:
+            self._say(
+                f"The robot's clock jumped back by {back_s:.0f} s; what it says still counts as "
+                "it comes."
+            )
+        return False
 
     def _tell(self, sentence: str) -> None:
         """Say something once, not with every message."""

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 ACTION = "inspectPlant"
 MAP = "map"
+#: what was sent so much before what was heard last is not late: a clock was put back
+LATE_S = 60.0
 _DEVIATION_M = 0.3
 
 

@@ -148,6 +148,50 @@ def test_what_a_robot_said_before_the_drive_began_does_not_end_it(broker, plot, 
     assert len(day.plants) > 10
 
 
+def put_back(other, hours, header=None):
+    """Put a robot's clock back, and, if it is started anew, let it count its messages again."""
+    send = other.wire.send
+
+    def earlier(kind, data, **how):
+        message = json.loads(data)
+        at = datetime.fromisoformat(message["timestamp"]) - timedelta(hours=hours)
+        send(kind, json.dumps(message | {"timestamp": at.isoformat()}).encode(), **how)
+
+    other.wire.send = earlier
+    if header is not None:
+        other._headers["state"]["headerId"] = header
+
+
+@pytest.mark.parametrize("header", [None, 0])
+def test_a_robot_whose_clock_is_put_back_is_heard_on(broker, plot, robot, monitor, header):
+    def mishap(other, errand):
+        if errand.number == 3:
+            put_back(other, 1, header)
+
+    driven, day, said = drive(
+        broker, plot, robot, monitor, f"clock back {header}", mishap, patience_s=2.0
+    )
+    assert driven.stuck == []
+    assert len(day.plants) > 10
+    # of one that was started anew, nobody knows how its clock was before
+    assert ["clock jumped back by 36" in one for one in said] == ([True] if header is None else [])
+
+
+def test_what_came_late_or_twice_is_passed_by():
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "late")
+    at = datetime(2026, 6, 1, 6, tzinfo=UTC)
+    message = lambda k, s: {  # noqa: E731
+        "headerId": k,
+        "timestamp": (at + timedelta(seconds=s)).isoformat(),
+    }
+    driver._state = message(10, 30)
+    assert driver._late(message(10, 30))
+    assert driver._late(message(8, 20))
+    assert not driver._late(message(11, 30))
+    assert not driver._late(message(1, 35))
+    assert not driver._late(message(1, -3600))
+
+
 def test_a_robot_that_is_broken_when_the_drive_begins_ends_it(broker, plot, robot, monitor):
     def die(other):
         other.self.errors = [MOTOR]

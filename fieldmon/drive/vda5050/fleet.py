@@ -118,9 +118,15 @@ class Vda5050Robot:
             return self._not_there(said)
         if self._traffic is not None:
             self._crossing.arrived(errand.stop.plant)
-        result = result_of(said)
-        found = result.get("found") if said["actionStatus"] == "FINISHED" else None
-        return Visit(found, self._at_s(result.get("day_s")), stuck=self._ended(self._over()))
+        result = result_of(said, errand.stop.plant)
+        is_done = said["actionStatus"] == "FINISHED"
+        if is_done and result.wrong:
+            self._say(
+                f"The robot's result of row {errand.stop.row}, plant {errand.stop.number} "
+                f"{result.wrong}: the plant counts as not inspected."
+            )
+        found = result.found if is_done else None
+        return Visit(found, self._at_s(result.day_s), stuck=self._ended(self._over()))
 
     def home(self, line_m: Float) -> Visit | None:
         """Send the robot back to the gate."""

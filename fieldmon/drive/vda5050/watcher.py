@@ -143,7 +143,7 @@ class RobotWatcher:
             over = one["actionStatus"] in {"FINISHED", "FAILED"}
             if over and name not in self._told and 0 <= plant < len(self._grid):
                 seen = one["actionStatus"] == "FINISHED"
-                found = result_of(one).get("found") if seen else None
+                found = result_of(one, plant).found if seen else None
                 self._told[name] = TracedStop(at_s, plant, found)
 
     def _take_order(self, order: dict[str, Any]) -> None:

@@ -5,6 +5,7 @@ import threading
 from contextlib import nullcontext
 from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -261,6 +262,29 @@ def test_an_order_that_is_refused_is_told_and_given_up_after_a_while(
     assert said.count(refusal) == 1
     assert driven.stuck == ([] if most == 2 else [refusal])
     assert (len(day.plants) > 10) == (most == 2)
+
+
+class Mumbles(StandIn):
+    """Says what it found in words of its own."""
+
+    words: ClassVar = ["1", '"yes"', '"infested"', 'true, "plant": 9999']
+
+    def _do(self, action):
+        super()._do(action)
+        if self.words:
+            said = f'{{"found": {self.words.pop(0)}}}'
+            self.self.actions[action["actionId"]]["resultDescription"] = said
+
+
+def test_what_a_robot_says_plainly_is_read_and_the_rest_is_told(broker, plot, robot, monitor):
+    driven, _, said = drive(broker, plot, robot, monitor, "mumbles", kind=Mumbles)
+    assert [one.visit.found for one in driven.stops[:4]] == [True, True, None, None]
+    odd, other = driven.stops[2].stop, driven.stops[3].stop
+    wrong = ["true, false or null as found, but it is 'infested'", "but it names plant 9999"]
+    assert [one in told for one, told in zip(wrong, said, strict=True)] == [True, True]
+    for stop, told in zip((odd, other), said, strict=True):
+        assert told.startswith(f"The robot's result of row {stop.row}, plant {stop.number} must ")
+        assert told.endswith("the plant counts as not inspected.")
 
 
 class Dies(StandIn):

@@ -14,6 +14,7 @@ from fieldmon.drive.vda5050.messages import (
     header_of,
     home_order,
     order_of,
+    result_of,
 )
 from fieldmon.drive.vda5050.rules import problems
 from fieldmon.errors import ObservationError
@@ -103,3 +104,35 @@ def test_what_is_nested_is_looked_at_too():
     message["nodes"][2]["actions"][0]["blockingType"] = "MAYBE"
     del message["edges"][0]["endNodeId"]
     assert len(problems("order", message)) == 2
+
+
+@pytest.mark.parametrize(
+    ("said", "found"),
+    [
+        *(("true", True), ("1", True), ("1.0", True), ('"true"', True), ('" Yes"', True)),
+        *(("false", False), ("0", False), ('"no"', False), ("null", None)),
+    ],
+)
+def test_a_result_that_is_plain_is_read(said, found):
+    result = result_of({"resultDescription": f'{{"found": {said}, "plant": "7"}}'}, 7)
+    assert result == (found, None, "")
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ('{"found": []}', "but it is []"),
+        ('{"found": ""}', "but it is ''"),
+        ('{"found": 2}', "but it is 2"),
+        ('{"found": "infested"}', "true, false or null as found, but it is 'infested'"),
+        ('{"plant": 7}', """must be JSON as {"found": true}, but it is '{"plant": 7}'"""),
+        ("found", "but it is 'found'"),
+        (None, "but it is ''"),
+        ('{"found": true, "plant": 9999}', "must be of plant 7, but it names plant 9999"),
+    ],
+)
+def test_a_result_that_is_not_plain_is_refused_with_what_is_wrong(text, wrong):
+    action = {} if text is None else {"resultDescription": text}
+    result = result_of(action, 7)
+    assert result.found is None
+    assert wrong in result.wrong

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.vda5050.wire import RobotName
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
@@ -183,9 +184,12 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
         _write(driven, on, options, _name(options))
         return
     refuse_what_was_chosen(context, _OF_A_SEASON)
+    from fieldmon.drive.one_drive import one_drive
+
     if _team(options, options.plot):
         return
-    _season(options, options.plot)
+    with one_drive(options.plot, _name(options)):
+        _season(options, options.plot)
 
 
 def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
@@ -231,8 +235,11 @@ def _season(options: DriveOptions, file: Path) -> None:
     settings = season.planned_by(on)
     worker = settings.robot
     aisles = season.plot.aisles.for_robot(worker)
-    made_up = "" if options.robot is Drives.VDA5050 else ", finds made up"
-    today = SeasonDay(season, on, f"{_name(options)}{made_up}")
+    is_real = options.robot is Drives.VDA5050
+    made_up = "" if is_real else ", finds made up"
+    today = SeasonDay(
+        season, on, f"{_name(options)}{made_up}", name=options.serial if is_real else ""
+    )
     tell_assumed(season.assumed(settings))
     tell_past_midnight(on, settings)
     _tell_others(season, on, today.left_out)
@@ -269,6 +276,17 @@ def _team(options: DriveOptions, file: Path) -> bool:
             f"A season's team drives by VDA 5050, but --robot is {options.robot.value}. Give "
             "--robot vda5050; fieldmon stand-in simulates the robots."
         )
+    from fieldmon.drive.one_drive import one_drive
+
+    with one_drive(file, f"a team ({options.manufacturer})"):
+        _team_day(options, season, on, settings)
+    return True
+
+
+def _team_day(
+    options: DriveOptions, season: Season, on: date, settings: MonitoringSettings
+) -> None:
+    """Let a season's team drive what is left of its day, and write what came of it."""
     from fieldmon.cli.team_files import files_of_each
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.team_season import TeamSeason
@@ -310,7 +328,6 @@ def _team(options: DriveOptions, file: Path) -> bool:
         raise KeyboardInterrupt
     if missing:
         raise SettingError(" ".join(missing))
-    return True
 
 
 def _tell_left_out(scouts: list[str]) -> None:

@@ -3,6 +3,7 @@
 import pytest
 
 from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.one_drive import one_drive
 from fieldmon.drive.season_day import SeasonDay
 from fieldmon.errors import ObservationError
 from fieldmon.monitoring import Season
@@ -107,6 +108,14 @@ def test_where_no_broker_answers_it_is_a_sentence(run):
     code, _, err, _ = run(*PLOT, "--robot", "vda5050", "--broker", "127.0.0.1:1")
     assert code == 2
     assert "MQTT broker must answer" in err
+
+
+def test_a_season_that_another_command_drives_is_refused(run, season):
+    with one_drive(season, "fieldmon/A"):
+        code, _, err, _ = run("drive", season, "--date", BEGINS, "--made-up")
+    assert code == 2
+    assert "but fieldmon/A drives season.gpkg now" in err
+    assert len(Season(season).history.inspections) == 0
 
 
 def test_a_team_is_driven_by_its_robots_and_not_by_one_that_is_made_up(run, season):

@@ -406,7 +406,11 @@ class Vda5050Robot:
         charge = self._heard["batteryState"]["batteryCharge"]
         if charge >= self._least_battery:
             return ""
-        return f"The robot's battery is at {charge:.0f} %: the day ends here. Charge it."
+        low = math.floor(10 * charge) / 10  # never rounded up to what would do
+        return (
+            f"The robot's battery is at {low:g} %, under {self._least_battery:g} %: the day ends "
+            "here. Charge it."
+        )
 
     def _at_s(self, told_s: object) -> float:
         """Return the robot's own clock if it says one, which never goes backwards; else ours."""

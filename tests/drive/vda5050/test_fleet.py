@@ -109,6 +109,15 @@ def test_a_clock_that_counts_no_day_is_said_once_and_ours_goes_on(plot, odd):
     assert [odd in one for one in said] == [True]
 
 
+@pytest.mark.parametrize(("charge", "told"), [(14.97, "14.9"), (9, "9")])
+def test_a_battery_that_is_too_low_is_never_rounded_to_one_that_would_do(charge, told):
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "low")
+    driver._state = {"batteryState": {"batteryCharge": charge}}
+    assert driver._low().startswith(f"The robot's battery is at {told} %, under 15 %: ")
+    driver._state = {"batteryState": {"batteryCharge": 15.0}}
+    assert driver._low() == ""
+
+
 def test_a_low_battery_ends_the_day_after_the_plant_in_hand(broker, plot, robot, monitor):
     def drain(other, errand):
         other.self.battery = 10.0 if errand.number >= 3 else 90.0

@@ -186,7 +186,7 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
     refuse_what_was_chosen(context, _OF_A_SEASON)
     from fieldmon.drive.one_drive import one_drive
 
-    if _team(options, options.plot):
+    if _team(context, options, options.plot):
         return
     with one_drive(options.plot, _name(options)):
         _season(options, options.plot)
@@ -262,7 +262,7 @@ def _season(options: DriveOptions, file: Path) -> None:
     _tell_replanned(today.replanned - 1)
 
 
-def _team(options: DriveOptions, file: Path) -> bool:
+def _team(context: typer.Context, options: DriveOptions, file: Path) -> bool:
     """Let a season's team drive its day by VDA 5050, a robot each; return whether it has one."""
     from fieldmon.monitoring import Season
 
@@ -275,6 +275,12 @@ def _team(options: DriveOptions, file: Path) -> bool:
         raise SettingError(
             f"A season's team drives by VDA 5050, but --robot is {options.robot.value}. Give "
             "--robot vda5050; fieldmon stand-in simulates the robots."
+        )
+    if (told := context.get_parameter_source("serial")) and told.name == "COMMANDLINE":
+        names = ", ".join(one.name for one in settings.team)
+        raise SettingError(
+            f"A team's robots have their names as serial numbers ({names}), but --serial was given "
+            "too. Leave it away, or rename them with: fieldmon change --robots"
         )
     from fieldmon.drive.one_drive import one_drive
 

@@ -127,6 +127,14 @@ def test_a_team_is_driven_by_its_robots_and_not_by_one_that_is_made_up(run, seas
     assert season.read_bytes() == kept
 
 
+def test_a_teams_robots_have_their_own_serial_numbers_and_none_is_given(run, season):
+    run("change", season, "--robots", "2")
+    words = ("--robot", "vda5050", "--serial", "A", "--broker", "127.0.0.1:1")
+    code, _, err, _ = run("drive", season, "--date", BEGINS, *words)
+    assert code == 2
+    assert "names as serial numbers (robot-1, robot-2), but --serial was given too" in err
+
+
 def test_a_team_of_scouts_has_nobody_who_drives(run, season, tmp_path):
     (tmp_path / "team.csv").write_text("name,who\nAnn,scout\nDan,scout\n")
     run("change", season, "--robots", "team.csv")

@@ -243,6 +243,7 @@ def _season(options: DriveOptions, file: Path) -> None:
     tell_assumed(season.assumed(settings))
     tell_past_midnight(on, settings)
     _tell_others(season, on, today.left_out)
+    _tell_before(season, on, _name(options), today.at)
     if told := aisles.narrow_sentence():
         typer.echo(told)
     if today.batch is not None:
@@ -358,6 +359,23 @@ def _tell_others(season: Season, on: date, left_out: Sequence[tuple[int, int]]) 
     if None in codes.values():
         said.append("Whoever has a code for the whole plot may be sent to the same plants.")
     typer.echo(" ".join(said), err=True)
+
+
+def _tell_before(season: Season, on: date, name: str, at: int) -> None:
+    """Print that other robots were driven on a day, and where this one is taken to stand."""
+    drives = {
+        one.source.removesuffix(f" {on}")
+        for one in season.batches()
+        if one.kind == "findings" and not one.undone and one.source.endswith(f" {on}")
+    }
+    if others := sorted(other for other in drives - {name} if "/" in other):
+        where = "the gate" if at < 0 else f"plant {at}, where that ended"
+        were = "was" if len(others) == 1 else "were"
+        typer.echo(
+            f"{' and '.join(others)} {were} driven on {on} before. {name} is taken to stand at "
+            f"{where}.",
+            err=True,
+        )
 
 
 def _tell_plan(*, goes_on: bool) -> None:

@@ -1,5 +1,7 @@
 """`fieldmon drive`: a day driven on a plot, or recorded in a season."""
 
+from datetime import date
+
 import pytest
 
 from fieldmon.drive.charged import ChargedRobot
@@ -116,6 +118,19 @@ def test_a_season_that_another_command_drives_is_refused(run, season):
     assert code == 2
     assert "but fieldmon/A drives season.gpkg now" in err
     assert len(Season(season).history.inspections) == 0
+
+
+def test_a_robot_that_goes_on_for_another_is_told_where_it_is_taken_to_stand(run, season):
+    on = date.fromisoformat(BEGINS)
+    day = SeasonDay(Season(season), on, "fieldmon/A", name="A")
+    stop = day.ask()
+    day.tell(found=False)
+    words = ("--date", BEGINS, "--robot", "vda5050", "--broker", "127.0.0.1:1")
+    told = f"fieldmon/A was driven on {BEGINS} before. fieldmon/B is taken to stand at plant "
+    _, _, err, _ = run("drive", season, *words, "--serial", "B")
+    assert f"{told}{stop.plant}, where that ended." in err
+    _, _, err, _ = run("drive", season, *words, "--serial", "A")
+    assert "was driven" not in err
 
 
 def test_a_team_is_driven_by_its_robots_and_not_by_one_that_is_made_up(run, season):

@@ -190,9 +190,9 @@ class Vda5050Robot:
         if order["orderUpdateId"] == 0 and (why := self._made_free()):
             return why
 
-        def send(tries: int) -> None:
-            if tries and self._is_busy():  # it took up an order of before again
-                self._ask("cancelOrder", f"cancel-{tries}")
+        def send(in_vain: int) -> None:
+            if in_vain and self._is_busy():  # what was left of an order of before was heard late
+                self._ask("cancelOrder", f"cancel-{in_vain}")
             self._wire.send("order", encoded("order", self._header, order))
 
         return self._had(send, "taken its order", lambda: self._taken(order), wanted)
@@ -216,7 +216,7 @@ class Vda5050Robot:
         why = self._had(
             lambda _: self._ask("cancelOrder", "cancel"),
             "ended its order of before",
-            lambda: self._status("cancel") is not None,
+            lambda: self._status("cancel") is not None or not self._is_busy(),
             lambda state: state if self._status("cancel") in _OVER or not self._is_busy() else None,
         )
         return why if isinstance(why, str) else ""
@@ -233,7 +233,8 @@ class Vda5050Robot:
         Parameters
         ----------
         send
-            Told how often it was sent in vain: heard since, the robot did not have it.
+            Told how often it was sent in vain: heard since, the robot did not have it; 0: it was
+            not heard since.
         what
             What the robot then has done.
         has
@@ -244,16 +245,17 @@ class Vda5050Robot:
         sent, tries, before, said = -math.inf, 0, self._state, ""
         self._heard_at = time.monotonic()
         while True:
-            now = time.monotonic()
+            now, in_vain = time.monotonic(), 0
             if not has() and now - sent > _AGAIN_S:
                 if math.isfinite(sent) and self._state is not before and not self._stands():
-                    tries, last = tries + 1, said
+                    in_vain = tries = tries + 1
+                    last = said
                     said = f"The robot has not {what}{self._complaint()}."
                     if tries > _MOST_TRIES:
                         return said
                     if said != last:
                         self._say(said)
-                send(tries)
+                send(in_vain)
                 sent, before = now, self._state
             why = self._wait()
             # what is reported together with an error was done before it

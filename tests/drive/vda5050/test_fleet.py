@@ -246,6 +246,33 @@ def test_a_robot_by_the_standard_is_driven_on_after_a_crash(broker, plot, robot)
     assert len(driven.stops) > 10
 
 
+class EndsByItself(StandIn):
+    """Knows no cancelOrder, but has ended its order of before soon."""
+
+    def _do_at_once(self, action):
+        if action["actionType"] == "cancelOrder":
+            self.self.todo, self.self.edges = [], []
+        else:
+            super()._do_at_once(action)
+
+
+def test_a_robot_that_ends_its_order_of_before_by_itself_is_not_asked_on(
+    broker, plot, robot, monitor, monkeypatch
+):
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._AGAIN_S", 0.05)
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._MOST_TRIES", 4)
+
+    def has_one(other):
+        other.self.order_id = "of before"
+        other.self.todo = [{"nodeId": "n2", "sequenceId": 2, "released": False}]
+
+    driven, _, said = drive(
+        broker, plot, robot, monitor, "by itself", kind=EndsByItself, before=has_one
+    )
+    assert driven.stuck == []
+    assert said == ["The robot still has an order of before; it is asked to end it."]
+
+
 class Refuses(StandIn):
     """Takes no order for a while, and says why."""
 

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.vda5050.wire import RobotName
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
@@ -183,9 +184,12 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
         _write(driven, on, options, _name(options))
         return
     refuse_what_was_chosen(context, _OF_A_SEASON)
-    if _team(options, options.plot):
+    from fieldmon.drive.one_drive import one_drive
+
+    if _team(context, options, options.plot):
         return
-    _season(options, options.plot)
+    with one_drive(options.plot, _name(options)):
+        _season(options, options.plot)
 
 
 def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
@@ -231,11 +235,15 @@ def _season(options: DriveOptions, file: Path) -> None:
     settings = season.planned_by(on)
     worker = settings.robot
     aisles = season.plot.aisles.for_robot(worker)
-    made_up = "" if options.robot is Drives.VDA5050 else ", finds made up"
-    today = SeasonDay(season, on, f"{_name(options)}{made_up}")
+    is_real = options.robot is Drives.VDA5050
+    made_up = "" if is_real else ", finds made up"
+    today = SeasonDay(
+        season, on, f"{_name(options)}{made_up}", name=options.serial if is_real else ""
+    )
     tell_assumed(season.assumed(settings))
     tell_past_midnight(on, settings)
     _tell_others(season, on, today.left_out)
+    _tell_before(season, on, _name(options), today.at)
     if told := aisles.narrow_sentence():
         typer.echo(told)
     if today.batch is not None:
@@ -255,7 +263,7 @@ def _season(options: DriveOptions, file: Path) -> None:
     _tell_replanned(today.replanned - 1)
 
 
-def _team(options: DriveOptions, file: Path) -> bool:
+def _team(context: typer.Context, options: DriveOptions, file: Path) -> bool:
     """Let a season's team drive its day by VDA 5050, a robot each; return whether it has one."""
     from fieldmon.monitoring import Season
 
@@ -269,6 +277,23 @@ def _team(options: DriveOptions, file: Path) -> bool:
             f"A season's team drives by VDA 5050, but --robot is {options.robot.value}. Give "
             "--robot vda5050; fieldmon stand-in simulates the robots."
         )
+    if (told := context.get_parameter_source("serial")) and told.name == "COMMANDLINE":
+        names = ", ".join(one.name for one in settings.team)
+        raise SettingError(
+            f"A team's robots have their names as serial numbers ({names}), but --serial was given "
+            "too. Leave it away, or rename them with: fieldmon change --robots"
+        )
+    from fieldmon.drive.one_drive import one_drive
+
+    with one_drive(file, f"a team ({options.manufacturer})"):
+        _team_day(options, season, on, settings)
+    return True
+
+
+def _team_day(
+    options: DriveOptions, season: Season, on: date, settings: MonitoringSettings
+) -> None:
+    """Let a season's team drive what is left of its day, and write what came of it."""
     from fieldmon.cli.team_files import files_of_each
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.team_season import TeamSeason
@@ -310,7 +335,6 @@ def _team(options: DriveOptions, file: Path) -> bool:
         raise KeyboardInterrupt
     if missing:
         raise SettingError(" ".join(missing))
-    return True
 
 
 def _tell_left_out(scouts: list[str]) -> None:
@@ -335,6 +359,23 @@ def _tell_others(season: Season, on: date, left_out: Sequence[tuple[int, int]]) 
     if None in codes.values():
         said.append("Whoever has a code for the whole plot may be sent to the same plants.")
     typer.echo(" ".join(said), err=True)
+
+
+def _tell_before(season: Season, on: date, name: str, at: int) -> None:
+    """Print that other robots were driven on a day, and where this one is taken to stand."""
+    drives = {
+        one.source.removesuffix(f" {on}")
+        for one in season.batches()
+        if one.kind == "findings" and not one.undone and one.source.endswith(f" {on}")
+    }
+    if others := sorted(other for other in drives - {name} if "/" in other):
+        where = "the gate" if at < 0 else f"plant {at}, where that ended"
+        were = "was" if len(others) == 1 else "were"
+        typer.echo(
+            f"{' and '.join(others)} {were} driven on {on} before. {name} is taken to stand at "
+            f"{where}.",
+            err=True,
+        )
 
 
 def _tell_plan(*, goes_on: bool) -> None:

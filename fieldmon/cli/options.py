@@ -177,7 +177,7 @@ Robots = Annotated[
     str | None,
     typer.Option(
         help="How many robots, or a table of robots and scouts (CSV: name, who, hours, speed_km_h, "
-        "look_s, detection, start, lon, lat). Each has a route file of its own."
+        "look_s, detection, width_m and more: docs, teams). Each has a route file of its own."
     ),
 ]
 Contact = Annotated[

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
@@ -14,12 +14,16 @@ from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
     from datetime import datetime, time
 
     from fieldmon.cli.options import WorkerOptions
+    from fieldmon.io.readers.team import StatedMember
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
     from fieldmon.plot.robot import Robot
+
+_Made = TypeVar("_Made")
 
 
 def members_of(
@@ -36,31 +40,66 @@ def members_of(
     if robots.isdecimal():
         return team_of(int(robots), usual_robot), usual
     stated = read_team(Path(robots))
-    starts = [usual if one.start is None else clock(one.start, "start") for one in stated]
-    first = min(starts)
-    members = [
-        TeamMember(
-            one.name,
-            replace(
-                replace(worker, scout=True).robot() if one.scout else usual_robot,
-                **one.settings,  # type: ignore[arg-type]
-            ),
-            one.gate,
-            60.0 * (60 * (start.hour - first.hour) + start.minute - first.minute),
-        )
-        for one, start in zip(stated, starts, strict=True)
+    _must_differ(stated)
+    starts = [
+        usual if one.start is None else _told_at(one, clock, one.start, "start") for one in stated
     ]
+    first = min(starts)
+
+    def member(one: StatedMember, start: time) -> TeamMember:
+        kind = replace(worker, scout=True).robot() if one.scout else usual_robot
+        late_s = 60.0 * (60 * (start.hour - first.hour) + start.minute - first.minute)
+        own = replace(kind, **one.settings)  # type: ignore[arg-type]
+        if one.scout and not own.on_foot:
+            raise SettingError(
+                "a scout's row changes, turns and stops take what scouts take: leave row_change_s, "
+                "turn_180_s and stop_s empty."
+            )
+        return TeamMember(one.name, own, one.gate, late_s)
+
+    members = [_told_at(one, member, one, start) for one, start in zip(stated, starts, strict=True)]
     _tell_team(members, [worker.scout or one.scout for one in stated])
     return tuple(members), first
+
+
+def _told_at(one: StatedMember, make: Callable[..., _Made], *told: object) -> _Made:
+    """Return what is made of a line of a table; what is wrong with it is said with file and line.
+
+    Raises
+    ------
+    SettingError
+        If it cannot be made.
+    """
+    try:
+        return make(*told)
+    except SettingError as error:
+        raise SettingError(f"{one.where}: {error}") from error
+
+
+def _must_differ(stated: Sequence[StatedMember]) -> None:
+    from fieldmon.planning.members import person_key
+
+    known: dict[str, StatedMember] = {}
+    for one in stated:
+        first = known.setdefault(person_key(one.name), one)
+        if first is not one:
+            raise SettingError(
+                f"{one.where}: members of a team must have names of their own, but {one.name} is "
+                f"that of {first.where} too. Change one."
+            )
 
 
 def _tell_team(members: list[TeamMember], on_foot: list[bool]) -> None:
     """Say what a table was taken for: lines may leave out what the options say."""
     said = "; ".join(
-        f"{one.name}, {'scout' if walks else 'robot'}, {one.robot.hours:g} h"
+        f"{one.name}, {'scout' if walks else 'robot'}, {one.robot.hours:g} h{_wide(one.robot)}"
         for one, walks in zip(members, on_foot, strict=True)
     )
     typer.echo(f"seen: The team is {said}.", err=True)
+
+
+def _wide(robot: Robot) -> str:
+    return "" if robot.width_m is None else f", {robot.width_m:g} m wide"
 
 
 def files_of_each(outputs: list[Path] | None, members: tuple[TeamMember, ...]) -> list[list[Path]]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.day_ahead import DayAhead, through
 from fieldmon.monitoring.history import Besides
@@ -44,14 +45,28 @@ class SeasonDay(AskedDay):
         What the batch is called: the robot.
     wishes
         What people want of the day besides.
+    name
+        Who inspects, as the record has it; "": nobody is named.
+
+    Raises
+    ------
+    SettingError
+        If somebody else has a code by that name.
     """
 
     late_s = REPLAN_AFTER_S
 
     def __init__(
-        self, season: Season, on: date, source: str = "robot", wishes: Wishes | None = None
-    ) -> None:
+        self, season: Season, on: date, source: str = "robot", wishes: Wishes | None = None,
+        name: str = "",
+    ) -> None:  # fmt: skip
         codes = season.codes_on(on)
+        if name and person_key(name) in map(person_key, codes):
+            raise SettingError(
+                f"A robot must be called otherwise than those with a code for {on}, but both are "
+                f"called {name}. End that code, or give the robot another --serial."
+            )
+        self._name = name
         #: first and last row of each part that is left to somebody
         self.left_out = tuple(rows for rows in codes.values() if rows is not None)
         self._season, self._on = season, on
@@ -113,7 +128,7 @@ class SeasonDay(AskedDay):
     def _take(self, stop: PlantToInspect, found: bool | None, now_s: float) -> None:  # noqa: FBT001
         clock = grid_clock(self._season.plot.grid)
         at_s = clock.second_after(self._on, self.begun_s, now_s)
-        one = as_inspection(stop.plant, found, (self._on, at_s))
+        one = as_inspection(stop.plant, found, (self._on, at_s), self._name)
         self._season.record(one, self._source, into=self.batch)
 
     def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001

@@ -1,8 +1,11 @@
 """`fieldmon drive`: a day driven on a plot, or recorded in a season."""
 
+from datetime import date
+
 import pytest
 
 from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.one_drive import one_drive
 from fieldmon.drive.season_day import SeasonDay
 from fieldmon.errors import ObservationError
 from fieldmon.monitoring import Season
@@ -109,6 +112,27 @@ def test_where_no_broker_answers_it_is_a_sentence(run):
     assert "MQTT broker must answer" in err
 
 
+def test_a_season_that_another_command_drives_is_refused(run, season):
+    with one_drive(season, "fieldmon/A"):
+        code, _, err, _ = run("drive", season, "--date", BEGINS, "--made-up")
+    assert code == 2
+    assert "but fieldmon/A drives season.gpkg now" in err
+    assert len(Season(season).history.inspections) == 0
+
+
+def test_a_robot_that_goes_on_for_another_is_told_where_it_is_taken_to_stand(run, season):
+    on = date.fromisoformat(BEGINS)
+    day = SeasonDay(Season(season), on, "fieldmon/A", name="A")
+    stop = day.ask()
+    day.tell(found=False)
+    words = ("--date", BEGINS, "--robot", "vda5050", "--broker", "127.0.0.1:1")
+    told = f"fieldmon/A was driven on {BEGINS} before. fieldmon/B is taken to stand at plant "
+    _, _, err, _ = run("drive", season, *words, "--serial", "B")
+    assert f"{told}{stop.plant}, where that ended." in err
+    _, _, err, _ = run("drive", season, *words, "--serial", "A")
+    assert "was driven" not in err
+
+
 def test_a_team_is_driven_by_its_robots_and_not_by_one_that_is_made_up(run, season):
     run("change", season, "--robots", "2")
     kept = season.read_bytes()
@@ -116,6 +140,14 @@ def test_a_team_is_driven_by_its_robots_and_not_by_one_that_is_made_up(run, seas
     assert code == 2
     assert "Give --robot vda5050" in err
     assert season.read_bytes() == kept
+
+
+def test_a_teams_robots_have_their_own_serial_numbers_and_none_is_given(run, season):
+    run("change", season, "--robots", "2")
+    words = ("--robot", "vda5050", "--serial", "A", "--broker", "127.0.0.1:1")
+    code, _, err, _ = run("drive", season, "--date", BEGINS, *words)
+    assert code == 2
+    assert "names as serial numbers (robot-1, robot-2), but --serial was given too" in err
 
 
 def test_a_team_of_scouts_has_nobody_who_drives(run, season, tmp_path):

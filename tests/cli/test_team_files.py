@@ -1,13 +1,16 @@
 """A team's season on the command line: one route file each, and several findings at once."""
 
+from datetime import time
 from pathlib import Path
 
 import pytest
 
-from fieldmon.cli.team_files import files_of_each
+from fieldmon.cli.options import WorkerOptions
+from fieldmon.cli.team_files import files_of_each, members_of
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import Season
 from fieldmon.planning.members import TeamMember
+from fieldmon.plot.robot import Robot
 from tests.cli.estate import BEGINS, MITES, ZIP, filled_in
 
 
@@ -63,6 +66,33 @@ def test_a_team_without_time_to_reach_a_plant_is_told_so(run, season):
     assert code == 2
     assert "nobody has" in err
     assert not files
+
+
+def members(tmp_path, text):
+    (tmp_path / "team.csv").write_text(text)
+    return members_of(str(tmp_path / "team.csv"), time(6), WorkerOptions())[0]
+
+
+def test_each_of_a_table_has_its_own_width_and_the_rest_is_usual(tmp_path, capsys):
+    wide, usual = members(tmp_path, "name,width_m,length_m\nwide,1.4,2\nusual,,\n")
+    assert (wide.robot.width_m, wide.robot.length_m) == (1.4, 2.0)
+    assert usual.robot == Robot()
+    assert "wide, robot, 12 h, 1.4 m wide; usual, robot, 12 h." in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("name,start\na,\nb,25:00\n", "line 3: start must be a time as HH:MM, but it is '25:00'"),
+        ("name,start\na,6.30\n", "line 2: start must be a time as HH:MM, but it is '6.30'"),
+        ("name\nAnn\nb\n ann\n", "line 4: members of .* but ann is that of .*csv, line 2 too"),
+        ("name,length_m\na,2\n", "line 2: A robot whose length is known must have a width too"),
+        ("name,who,stop_s\nAnn,scout,2\n", "line 2: a scout's row changes, turns and stops take"),
+    ],
+)
+def test_what_is_wrong_in_a_table_is_said_with_file_and_line(tmp_path, text, said):
+    with pytest.raises(SettingError, match=f"team.csv, {said}"):
+        members(tmp_path, text)
 
 
 def test_a_file_is_named_as_any_other_of_a_name():

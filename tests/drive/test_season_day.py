@@ -69,6 +69,19 @@ def test_a_day_is_one_batch_and_holds_every_plant(season):
     assert len(season.history.inspections) == 0
 
 
+def test_who_inspected_is_in_the_record_and_goes_on_as_one_who_is_not_named(season):
+    day = SeasonDay(season, ON, "fieldmon/r2 ", name="r2")
+    for _ in range(3):
+        stop = day.ask()
+        day.tell(found=False)
+    assert season.history.inspections.who.tolist() == ["r2"] * 3
+    again = SeasonDay(season, ON, "fieldmon/r2 ", name="r2")
+    assert (again.goes_on, again.at) == (True, stop.plant)
+    scouts.let_in(season, "R2", (1, 2))
+    with pytest.raises(SettingError, match="but both are called r2"):
+        SeasonDay(season, ON, "fieldmon/r2 ", name="r2")
+
+
 def test_a_robot_enters_where_people_may_not_be_yet_and_who_walks_does_not(season):
     wait = Application("oil", reentry_hours=48.0, ended=time(5))
     season.treat(ON, 0.0, application=wait)

@@ -6,12 +6,15 @@ import math
 import queue
 import time
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.ranges import AllowedRange
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.vda5050.crossing import Crossing
 from fieldmon.drive.vda5050.messages import (
+    LATE_S,
+    at_once,
     decoded,
     encoded,
     header_of,
@@ -35,6 +38,9 @@ if TYPE_CHECKING:
 # an order that nobody acknowledged is sent again; robots take the same one once
 _AGAIN_S = 5.0
 _POLL_S = 0.2
+# so often, heard each time, a robot may leave a thing undone
+_MOST_TRIES = 24
+_OVER = {"FINISHED", "FAILED"}
 # errors with which a robot cannot go on with its order; 2.1 has only the last
 _ENDS = {"CRITICAL", "FATAL"}
 _DAY_S = AllowedRange(0.0, 86_400.0)
@@ -77,6 +83,7 @@ class Vda5050Robot:
     ) -> None:
         self._wire, self._say = wire, say
         self._header, self._name = header_of(*wire.robot), wire.robot.serial
+        self._actions_header = header_of(*wire.robot)
         self._known: dict[str, Any] = {"orderId": order_id, "orderUpdateId": -1, "node": None}
         self._patience_s, self._least_battery = patience_s, least_battery
         self._state: dict[str, Any] | None = None
@@ -89,6 +96,7 @@ class Vda5050Robot:
         east_north = frame.turned(90.0)
         self._places = lambda line_m: east_north.xy_m(frame.lonlat(line_m))
         self._gone_s, self._begun = gone_s, time.monotonic()
+        self._began = datetime.now(UTC)
         self._own_clock, self._heard_at = False, time.monotonic()
         self._clock_behind_s = 0.0
         if self._traffic is not None:
@@ -103,16 +111,22 @@ class Vda5050Robot:
         update = self._known["orderUpdateId"]
         action = f"{self._known['orderId']}-{update}-{errand.stop.plant}"
         order, node = order_of(errand._replace(line_m=line_m), self._places, self._known, action)
-        said = self._done(order, lambda state: _finished(state, action))
+        said = self._done(order, lambda state: self._finished(state, action))
         # the next update begins at the node where it stands; what was done there is not done again
         self._known["node"] = {**node, "actions": []}
         if isinstance(said, str):
             return self._not_there(said)
         if self._traffic is not None:
             self._crossing.arrived(errand.stop.plant)
-        result = result_of(said)
-        found = result.get("found") if said["actionStatus"] == "FINISHED" else None
-        return Visit(found, self._at_s(result.get("day_s")), stuck=self._ended(self._low()))
+        result = result_of(said, errand.stop.plant)
+        is_done = said["actionStatus"] == "FINISHED"
+        if is_done and result.wrong:
+            self._say(
+                f"The robot's result of row {errand.stop.row}, plant {errand.stop.number} "
+                f"{result.wrong}: the plant counts as not inspected."
+            )
+        found = result.found if is_done else None
+        return Visit(found, self._at_s(result.day_s), stuck=self._ended(self._over()))
 
     def home(self, line_m: Float) -> Visit | None:
         """Send the robot back to the gate."""
@@ -144,8 +158,8 @@ class Vda5050Robot:
         while not self._crossing.enter(plant):
             if self._crossing.blocked(plant):
                 return rest_m, "The way is blocked by a robot that moves no more today."
-            if isinstance(state := self._heard_of(), str):
-                return rest_m, state
+            if why := self._wait():
+                return rest_m, why
         return rest_m, None
 
     def _driven(self, line_m: Float) -> dict[str, Any] | str:
@@ -173,31 +187,145 @@ class Vda5050Robot:
         self, order: dict[str, Any], wanted: Callable[[dict[str, Any]], dict[str, Any] | None]
     ) -> dict[str, Any] | str:
         """Send an order until it is taken; return what is wanted of a state, or why not."""
-        sent, self._heard_at = 0.0, time.monotonic()
-        while True:
-            now = time.monotonic()
-            if not self._taken(order) and now - sent > _AGAIN_S:
-                self._wire.send("order", encoded("order", self._header, order))
-                sent = now
-            state = self._heard_of()
-            if isinstance(state, str):
-                return state
-            if state is not None and (found := wanted(state)) is not None and self._taken(order):
-                return found
+        if order["orderUpdateId"] == 0 and (why := self._made_free()):
+            return why
 
-    def _heard_of(self) -> dict[str, Any] | str | None:
-        """Return the robot's next state, or why the day ends; None: nothing for a moment."""
-        state = self._hear()
-        if state is None:
-            self._must_come()
-            if time.monotonic() - self._heard_at > self._patience_s:
-                return f"The robot has not been heard for {self._patience_s:.0f} s."
-            return None
+        def send(in_vain: int) -> None:
+            if in_vain and self._is_busy():  # what was left of an order of before was heard late
+                self._ask("cancelOrder", f"cancel-{in_vain}")
+            self._wire.send("order", encoded("order", self._header, order))
+
+        return self._had(send, "taken its order", lambda: self._taken(order), wanted)
+
+    def _made_free(self) -> str:
+        """Let the robot end what is left of an order of before; return why the day ends, if so.
+
+        A robot by the standard refuses an order while it has another one.
+        """
+        why = self._had(
+            lambda _: self._ask("stateRequest", "state"),
+            "told its state",
+            lambda: self._state is not None,
+            lambda state: state,
+        )
+        if isinstance(why, str):
+            return why
+        if (why := self._broken()) or not self._is_busy():
+            return why
+        self._say("The robot still has an order of before; it is asked to end it.")
+        why = self._had(
+            lambda _: self._ask("cancelOrder", "cancel"),
+            "ended its order of before",
+            lambda: self._status("cancel") is not None or not self._is_busy(),
+            lambda state: state if self._status("cancel") in _OVER or not self._is_busy() else None,
+        )
+        return why if isinstance(why, str) else ""
+
+    def _had(
+        self,
+        send: Callable[[int], None],
+        what: str,
+        has: Callable[[], bool],
+        wanted: Callable[[dict[str, Any]], dict[str, Any] | None],
+    ) -> dict[str, Any] | str:
+        """Send something until the robot has it; return what is wanted of a state, or why not.
+
+        Parameters
+        ----------
+        send
+            Told how often it was sent in vain: heard since, the robot did not have it; 0: it was
+            not heard since.
+        what
+            What the robot then has done.
+        has
+            Whether the robot has it.
+        wanted
+            What is waited for once it has.
+        """
+        sent, tries, before, said = -math.inf, 0, self._state, ""
         self._heard_at = time.monotonic()
-        if fatal := [one for one in state["errors"] if one["errorLevel"] in _ENDS]:
-            told = fatal[0].get("errorDescription") or fatal[0]["errorType"]
-            return f"The robot reports an error that it cannot mend: {told}."
-        return state
+        while True:
+            now, in_vain = time.monotonic(), 0
+            if not has() and now - sent > _AGAIN_S:
+                if math.isfinite(sent) and self._state is not before and not self._stands():
+                    in_vain = tries = tries + 1
+                    last = said
+                    said = f"The robot has not {what}{self._complaint()}."
+                    if tries > _MOST_TRIES:
+                        return said
+                    if said != last:
+                        self._say(said)
+                send(in_vain)
+                sent, before = now, self._state
+            why = self._wait()
+            # what is reported together with an error was done before it
+            if self._state is not None and has() and (found := wanted(self._state)) is not None:
+                return found
+            if why:
+                return why
+
+    def _ask(self, action: str, name: str) -> None:
+        """Ask for an instant action."""
+        body = at_once(action, f"{self._known['orderId']}-{name}")
+        self._wire.send("instantActions", encoded("instantActions", self._actions_header, body))
+
+    def _status(self, name: str) -> str | None:
+        """Return how far an instant action is; None: the robot does not know it."""
+        wanted = f"{self._known['orderId']}-{name}"
+        told = [one["actionStatus"] for one in self._heard["actionStates"]
+                if one["actionId"] == wanted]  # fmt: skip
+        return told[-1] if told else None
+
+    def _is_busy(self) -> bool:
+        """Tell whether something is left of an order that is not of this run."""
+        state = self._heard
+        left = [one for one in state["actionStates"] if one["actionStatus"] not in _OVER]
+        others = state["orderId"] != self._known["orderId"]
+        return others and bool(state["nodeStates"] or state["edgeStates"] or left)
+
+    def _complaint(self) -> str:
+        """Return in words what the robot reports, to be put at the end of a sentence."""
+        told = [one.get("errorDescription") or one["errorType"] for one in self._heard["errors"]]
+        return f"; it reports: {', '.join(told)}" if told else ", and does not say why"
+
+    def _wait(self) -> str:
+        """Hear the robot, or nothing for a moment; return why the day ends, if it does."""
+        if self._hear():
+            self._heard_at = time.monotonic()
+            return self._broken()
+        self._must_come()
+        if time.monotonic() - self._heard_at > self._patience_s:
+            return f"The robot has not been heard for {self._patience_s:.0f} s."
+        return ""
+
+    @property
+    def _heard(self) -> dict[str, Any]:
+        """What the robot said last."""
+        assert self._state is not None  # noqa: S101 - asked once it was heard
+        return self._state
+
+    def _broken(self) -> str:
+        """Say that the robot cannot go on, if it says so now and not of a day before."""
+        state = self._heard
+        fatal = [one for one in state["errors"] if one["errorLevel"] in _ENDS]
+        is_ours = state["orderId"] == self._known["orderId"] or sent_at(state) >= self._began
+        if not fatal or not is_ours:
+            return ""
+        told = fatal[0].get("errorDescription") or fatal[0]["errorType"]
+        return f"The robot reports an error that it cannot mend: {told}."
+
+    def _over(self) -> str:
+        """Return why the day ends after the plant in hand; "" if it does not."""
+        return self._broken() or self._low()
+
+    def _finished(self, state: dict[str, Any], action: str) -> dict[str, Any] | None:
+        """Return the state of an action that is over; one that a broken robot let go is not."""
+        over = {"FINISHED"} if self._broken() else _OVER
+        for one in state["actionStates"]:
+            if one["actionId"] == action and one["actionStatus"] in over:
+                done: dict[str, Any] = one
+                return done
+        return None
 
     def _must_come(self) -> None:
         """Say that a robot was never heard yet; raise `SettingError` once it takes too long."""
@@ -222,34 +350,53 @@ class Vda5050Robot:
             and state["orderUpdateId"] >= order["orderUpdateId"]
         )
 
-    def _hear(self) -> dict[str, Any] | None:
-        """Return the robot's next state; None: nothing was heard for a moment.
+    def _hear(self) -> bool:
+        """Take the robot's next state; return whether there was one within a moment.
 
-        One that is older than what was heard last is passed by: it came late, or twice.
+        One that came late, or twice, is passed by.
         """
         try:
             kind, data = self._wire.heard.get(timeout=_POLL_S)
             message = decoded(kind, data)
         except queue.Empty:
-            return None
+            return False
         except ObservationError as error:
             self._tell(str(error))
-            return None
+            return False
         if kind == "connection":
             if message["connectionState"] != "ONLINE":
                 self._tell("The robot's connection is lost; waiting for it.")
-            return None
+            return False
         if kind != "state" or self._late(message):
-            return None
+            return False
         self._state = message
-        if message.get("paused") or message["operatingMode"] != "AUTOMATIC":
+        if self._stands():
             self._tell("The robot is paused, or driven by hand; waiting.")
         else:
             self._told = ""
-        return message
+        return True
+
+    def _stands(self) -> bool:
+        """Tell whether somebody has stopped the robot."""
+        return bool(self._heard.get("paused")) or self._heard["operatingMode"] != "AUTOMATIC"
 
     def _late(self, message: dict[str, Any]) -> bool:
-        return self._state is not None and sent_at(message) < sent_at(self._state)
+        """Tell whether a message came after one that was sent later, or twice; say a clock's jump.
+
+        A robot that was started anew counts from the first, and a clock may be put back: late is
+        only what both say.
+        """
+        if self._state is None:
+            return False
+        back_s = (sent_at(self._state) - sent_at(message)).total_seconds()
+        if message["headerId"] <= self._state["headerId"]:
+            return 0.0 <= back_s <= LATE_S
+        if back_s > LATE_S:
+            self._say(
+                f"The robot's clock jumped back by {back_s:.0f} s; what it says still counts as "
+                "it comes."
+            )
+        return False
 
     def _tell(self, sentence: str) -> None:
         """Say something once, not with every message."""
@@ -258,10 +405,14 @@ class Vda5050Robot:
             self._say(sentence)
 
     def _low(self) -> str:
-        charge = 100.0 if self._state is None else self._state["batteryState"]["batteryCharge"]
+        charge = self._heard["batteryState"]["batteryCharge"]
         if charge >= self._least_battery:
             return ""
-        return f"The robot's battery is at {charge:.0f} %: the day ends here. Charge it."
+        low = math.floor(10 * charge) / 10  # never rounded up to what would do
+        return (
+            f"The robot's battery is at {low:g} %, under {self._least_battery:g} %: the day ends "
+            "here. Charge it."
+        )
 
     def _at_s(self, told_s: object) -> float:
         """Return the robot's own clock if it says one, which never goes backwards; else ours."""
@@ -309,12 +460,3 @@ def live_robot(
         yield Vda5050Robot(wire, order_id, say, traffic=traffic)
     finally:
         wire.close()
-
-
-def _finished(state: dict[str, Any], action: str) -> dict[str, Any] | None:
-    """Return the state of an action that is over, whether it failed or not."""
-    for one in state["actionStates"]:
-        if one["actionId"] == action and one["actionStatus"] in {"FINISHED", "FAILED"}:
-            done: dict[str, Any] = one
-            return done
-    return None

@@ -6,7 +6,7 @@ import copy
 import json
 from datetime import UTC, datetime
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.drive.vda5050.rules import problems
 from fieldmon.drive.vda5050.versions import USUAL, VERSIONS, as_heard, as_sent, known_version
@@ -24,7 +24,11 @@ if TYPE_CHECKING:
 
 ACTION = "inspectPlant"
 MAP = "map"
+#: what was sent so much before what was heard last is not late: a clock was put back
+LATE_S = 60.0
 _DEVIATION_M = 0.3
+# words for true and false
+_PLAIN = {"true": 1, "yes": 1, "1": 1, "false": 0, "no": 0, "0": 0}
 
 
 def encoded(kind: str, header: dict[str, Any], body: dict[str, Any]) -> bytes:
@@ -123,7 +127,7 @@ def order_of(
             {"key": "plant", "value": errand.stop.plant},
             {"key": "row", "value": errand.stop.row},
             {"key": "number", "value": errand.stop.number},
-            {"key": "seconds", "value": errand.stop.inspect_s},
+            {"key": "seconds", "value": round(errand.stop.inspect_s, 3)},
         ],
     }
     return _order([(errand.line_m, [look]), *((line, []) for _, line in errand.ahead)],
@@ -135,6 +139,12 @@ def home_order(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return an order for the way back to the gate, and its last node."""
     return _order([(line_m, [])], places, known)
+
+
+def at_once(action_type: str, action_id: str) -> dict[str, Any]:
+    """Return what a robot is asked for beside its order: an instant action."""
+    action = {"actionId": action_id, "actionType": action_type, "blockingType": "NONE"}
+    return {"actions": [{**action, "actionParameters": []}]}
 
 
 def _order(
@@ -191,12 +201,47 @@ def _edge(a: dict[str, Any], b: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def result_of(action: dict[str, Any]) -> dict[str, Any]:
-    """Return what a robot said of an action; empty if nothing of it can be read."""
+class Result(NamedTuple):
+    """What a robot said of a plant.
+
+    Parameters
+    ----------
+    found
+        Whether it is infested; None: it could not be inspected, or nothing of it can be read.
+    day_s
+        When, by the robot's own clock, as it said it; None: it did not.
+    wrong
+        What must hold and does not, as the end of a sentence; "" if all is plain.
+    """
+
+    found: bool | None = None
+    day_s: object = None
+    wrong: str = ""
+
+
+def result_of(action: dict[str, Any], plant: int) -> Result:
+    """Return what a robot said of a plant that it was ordered to inspect.
+
+    Examples
+    --------
+    >>> result_of({"resultDescription": '{"found": "yes", "day_s": 41.1}'}, 7)
+    Result(found=True, day_s=41.1, wrong='')
+    >>> result_of({"resultDescription": '{"found": true, "plant": 8}'}, 7).wrong
+    'must be of plant 7, but it names plant 8'
+    """
+    text = action.get("resultDescription", "")
     try:
-        said = json.loads(action.get("resultDescription") or "{}")
-    except ValueError:
-        return {}
-    if not isinstance(said, dict) or not isinstance(said.get("found"), bool | None):
-        return {}
-    return said
+        said = json.loads(text)
+    except (ValueError, RecursionError):
+        said = None
+    if not isinstance(said, dict) or "found" not in said:
+        return Result(wrong=f'must be JSON as {{"found": true}}, but it is {text[:40]!r}')
+    told = said.get("plant", plant)
+    if told != plant and str(told).strip() != str(plant):
+        return Result(wrong=f"must be of plant {plant}, but it names plant {str(told)[:20]}")
+    found, at_s = said["found"], said.get("day_s")
+    if isinstance(found, str):
+        found = _PLAIN.get(found.strip().casefold(), found)
+    if found is None or (isinstance(found, bool | int | float) and found in {0, 1}):
+        return Result(None if found is None else bool(found), at_s)
+    return Result(None, at_s, f"must have true, false or null as found, but it is {found!r:.40}")

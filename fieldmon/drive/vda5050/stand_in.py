@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.drive.vda5050.messages import MAP, decoded, encoded, header_of
+from fieldmon.drive.vda5050.versions import AT_ONCE
 from fieldmon.drive.vda5050.wire import Wire
 from fieldmon.errors import ObservationError
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 # the standard wants a state every 30 s at least
 _STATE_EVERY_S = 5.0
+# so many actions done at once are known, so that none is done twice
+_KNOWN = 20
 
 
 @dataclass
@@ -37,7 +40,9 @@ class _Self:
     todo: list[dict[str, Any]] = field(default_factory=list)
     edges: list[dict[str, Any]] = field(default_factory=list)
     actions: dict[str, dict[str, Any]] = field(default_factory=dict)
+    at_once: dict[str, dict[str, Any]] = field(default_factory=dict)
     errors: list[dict[str, Any]] = field(default_factory=list)
+    refusals: list[dict[str, Any]] = field(default_factory=list)
     battery: float = 100.0
     paused: bool = False
 
@@ -112,7 +117,7 @@ class StandIn:
             "paused": me.paused,
             "nodeStates": [_part(one, "nodeId") for one in me.todo],
             "edgeStates": [_part(one, "edgeId") for one in me.edges],
-            "actionStates": list(me.actions.values()),
+            "actionStates": [*me.actions.values(), *me.at_once.values()],
             "agvPosition": {
                 "x": place[0],
                 "y": place[1],
@@ -122,7 +127,7 @@ class StandIn:
             },
             "batteryState": {"batteryCharge": me.battery, "charging": False},
             "operatingMode": "AUTOMATIC",
-            "errors": me.errors,
+            "errors": [*me.errors, *me.refusals],
             "information": [
                 {"infoType": "day_s", "infoLevel": "INFO", "infoDescription": f"{me.day_s:.1f}"}
             ],
@@ -145,18 +150,48 @@ class StandIn:
             self._take(message)
         elif kind == "instantActions":
             for one in message["actions"]:
-                if one["actionType"] in {"startPause", "stopPause"}:
-                    self.self.paused = one["actionType"] == "startPause"
+                self._do_at_once(one)
         self.tell()
 
+    def _do_at_once(self, action: dict[str, Any]) -> None:
+        """Do what cannot wait, once: pause, go on, end the order, or just tell."""
+        me, name = self.self, action["actionType"]
+        if action["actionId"] in me.at_once:
+            return
+        status = "FINISHED" if name in AT_ONCE else "FAILED"
+        if name in {"startPause", "stopPause"}:
+            me.paused = name == "startPause"
+        elif name == "cancelOrder" and not me.todo:
+            status = "FAILED"
+            self._refuse("noOrderToCancel", "there is no order to cancel")
+        elif name == "cancelOrder":
+            me.todo, me.edges = [], []
+            for one in me.actions.values():
+                if one["actionStatus"] == "WAITING":
+                    one["actionStatus"] = "FAILED"
+        me.at_once[action["actionId"]] = _action(action, status)
+        if len(me.at_once) > _KNOWN:
+            del me.at_once[next(iter(me.at_once))]
+
+    def _refuse(self, kind: str, why: str) -> None:
+        """Say why something is not done, until the next order is taken."""
+        one = {"errorType": kind, "errorLevel": "WARNING", "errorDescription": why}
+        self.self.refusals = [one]
+
     def _take(self, order: dict[str, Any]) -> None:
-        """Take an order or an update of it; one that came before, or twice, changes nothing."""
+        """Take an order or an update of it; one that came before, or twice, changes nothing.
+
+        As the standard has it, another order is refused while there is something left of one.
+        """
         me = self.self
+        if order["orderId"] != me.order_id and me.todo:
+            self._refuse("orderError", f"order {me.order_id} is not done yet")
+            return
         if order["orderId"] != me.order_id:
             me.order_id, me.update, me.sequence, me.actions = order["orderId"], -1, -1, {}
         if order["orderUpdateId"] <= me.update:
             return
-        me.update = order["orderUpdateId"]
+        me.update, me.refusals = order["orderUpdateId"], []
         me.todo = [one for one in order["nodes"] if one["sequenceId"] > me.sequence]
         me.edges = [one for one in order["edges"] if one["sequenceId"] > me.sequence]
         for node in me.todo:

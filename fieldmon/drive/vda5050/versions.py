@@ -19,6 +19,9 @@ USUAL = "2.1"
 #: by version: what stands in a header, and what topics begin with
 VERSIONS = {"2.1": ("2.1.0", "uagv/v2"), "3.0": ("3.0.0", "vda5050/v3")}
 
+#: actions that a robot is asked for beside its order, and does at once
+AT_ONCE = {"startPause", "stopPause", "stateRequest", "cancelOrder"}
+
 
 class _Field(NamedTuple):
     """A field that has another name, or another form, in 3.0.
@@ -112,7 +115,9 @@ def as_sent(kind: str, message: Message, version: str) -> Message:
                 if one.later is not None:
                     inside[one.later] = one.written(_in_other_words(value, one.words))
     if kind == "state":
-        message.setdefault("instantActionStates", [])
+        told = message["actionStates"]
+        message["actionStates"] = [one for one in told if one.get("actionType") not in AT_ONCE]
+        message["instantActionStates"] = [one for one in told if one.get("actionType") in AT_ONCE]
     return message
 
 
@@ -123,6 +128,8 @@ def as_heard(kind: str, message: Message, version: str) -> Message:
     """
     if version == USUAL:
         return message
+    if kind == "state":  # 2.1 has one list of both
+        message["actionStates"] = [*message["actionStates"], *message.pop("instantActionStates")]
     for one in reversed(MAP_OF_FIELDS[kind]):
         back = {later: now for now, later in one.words.items() if now != "AUTOACK"}
         for inside in _places(message, one.where):

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import queue
 import time
+from datetime import timedelta
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fieldmon.drive.trace import Trace, TracedStop, thinned
 from fieldmon.drive.track import Track
-from fieldmon.drive.vda5050.messages import ACTION, decoded, result_of, sent_at
+from fieldmon.drive.vda5050.messages import ACTION, LATE_S, decoded, result_of, sent_at
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ class RobotWatcher:
         self._east_north = grid.frame.turned(90.0)
         self._track, self._placed_s = Track(), -1.0
         self._begun: datetime | None = None
+        self._last_s = 0.0
         self._plants: dict[str, int] = {}
         self._told: dict[str, TracedStop] = {}
         self._standing, self._said = WAITING, ""
@@ -117,7 +119,12 @@ class RobotWatcher:
     def _second(self, at: datetime) -> float:
         if self._begun is None:
             self._begun = at
-        return (at - self._begun).total_seconds()
+        at_s = (at - self._begun).total_seconds()
+        if at_s < self._last_s - LATE_S:  # its clock was put back
+            self._begun -= timedelta(seconds=self._last_s - at_s)
+            at_s = self._last_s
+        self._last_s = max(at_s, self._last_s)
+        return at_s
 
     def _take_place(self, place: dict[str, Any] | None, at_s: float) -> None:
         if place is not None and place["positionInitialized"] and at_s > self._placed_s:
@@ -136,7 +143,7 @@ class RobotWatcher:
             over = one["actionStatus"] in {"FINISHED", "FAILED"}
             if over and name not in self._told and 0 <= plant < len(self._grid):
                 seen = one["actionStatus"] == "FINISHED"
-                found = result_of(one).get("found") if seen else None
+                found = result_of(one, plant).found if seen else None
                 self._told[name] = TracedStop(at_s, plant, found)
 
     def _take_order(self, order: dict[str, Any]) -> None:

@@ -90,7 +90,8 @@ class Wire:
     """One end of a robot's topics; needs ``pip install fieldmon[robot]``.
 
     Whatever is sent while there is no connection is sent when there is one again (at least once).
-    Once it is made it hears: what others send from then on comes to it.
+    Once it is made it hears: what others send from then on comes to it, and nothing of before but
+    whether somebody is connected.
 
     Parameters
     ----------
@@ -124,8 +125,20 @@ class Wire:
         #: when a message of each kind came last, by `time.monotonic`
         self.heard_at: dict[str, float] = {}
         self.robot, self._topic = robot, robot.topic
-        self._hears = [f"{self._topic}/{kind}" for kind in hears]
-        client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2, client_id=name, clean_session=False)
+        #: called whenever there is a connection again
+        self.connected: Callable[[], None] = lambda: None
+        # what a broker kept for one of this name is of before: it is told to forget it
+        self.client: Any = self._client(mqtt, broker, name, clean=True)
+        self._join(broker, [])
+        self.close()
+        self.client = self._client(mqtt, broker, name, clean=False)
+        if will is not None:
+            self.client.will_set(f"{self._topic}/{will[0]}", will[1], qos=1, retain=True)
+        self._join(broker, [f"{self._topic}/{kind}" for kind in hears])
+
+    def _client(self, mqtt: Any, broker: Broker, name: str, *, clean: bool) -> Any:  # noqa: ANN401 - loaded late
+        """Return an end of this name that is not connected yet."""
+        client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2, client_id=name, clean_session=clean)
         client.on_message = self._on_message
         client.on_connect, client.on_subscribe = self._on_connect, self._on_subscribe
         client.on_socket_open = _at_once
@@ -134,20 +147,19 @@ class Wire:
             client.username_pw_set(broker.user, broker.password)
         if broker.encrypted:
             client.tls_set()
-        if will is not None:
-            client.will_set(f"{self._topic}/{will[0]}", will[1], qos=1, retain=True)
-        self.client: Any = client
-        #: called whenever there is a connection again
-        self.connected: Callable[[], None] = lambda: None
-        self._answered, self._refused = threading.Event(), ""
+        return client
+
+    def _join(self, broker: Broker, hears: list[str]) -> None:
+        """Connect; return once the broker has let one in, and topics are heard."""
+        self._hears, self._answered, self._refused = hears, threading.Event(), ""
         try:
-            client.connect(broker.host, broker.port, _KEEP_ALIVE_S)
+            self.client.connect(broker.host, broker.port, _KEEP_ALIVE_S)
         except OSError as error:
             raise SettingError(
                 f"An MQTT broker must answer at {broker.host}, port {broker.port}, but none does "
                 f"({error}). Start one (docs: drive), or give --broker HOST:PORT."
             ) from error
-        client.loop_start()
+        self.client.loop_start()
         if not self._answered.wait(_ANSWERS_S):
             self._refused = f"it said nothing for {_ANSWERS_S:.0f} s"
         if self._refused:
@@ -189,10 +201,10 @@ class Wire:
         self._answered.set()
 
     def _on_message(self, _client: object, _data: object, message: Any) -> None:  # noqa: ANN401
-        # a broker keeps what a session of this name asked for before, also of another robot
-        if message.topic not in self._hears:
-            return
         kind = message.topic.rpartition("/")[2]
+        # of what was said before, only whether somebody is there still holds
+        if message.retain and kind != "connection":
+            return
         self.heard_at[kind] = time.monotonic()
         self.heard.put((kind, message.payload))
 

@@ -14,7 +14,6 @@ from fieldmon.plot.robot import broken_rule
 if TYPE_CHECKING:
     from pathlib import Path
 
-COLUMNS = ("name", "who", "hours", "speed_km_h", "look_s", "detection", "start", "lon", "lat")
 #: columns that are settings of `Robot`, how many of their units make one of the setting's, and
 #: the unit
 SETTINGS = {
@@ -22,9 +21,15 @@ SETTINGS = {
     "speed_km_h": ("speed_m_s", 3.6, "km/h"),
     "look_s": ("look_s", 1.0, "s"),
     "detection": ("detection", 1.0, ""),
+    "width_m": ("width_m", 1.0, "m"),
+    "length_m": ("length_m", 1.0, "m"),
+    "row_change_s": ("row_change_s", 1.0, "s"),
+    "turn_180_s": ("turn_180_s", 1.0, "s"),
+    "stop_s": ("stop_s", 1.0, "s"),
 }
+COLUMNS = ("name", "who", *SETTINGS, "start", "lon", "lat")
 #: columns that hold no thousands
-_MOST = {"hours": 24.0, "lon": 180.0, "lat": 90.0}
+_MOST = {"hours": 24.0, "lon": 180.0, "lat": 90.0, "width_m": 10.0, "length_m": 10.0}
 
 
 class StatedMember(NamedTuple):
@@ -42,6 +47,8 @@ class StatedMember(NamedTuple):
         Local time of day at which it starts, as ``HH:MM``.
     gate
         ``(lon, lat)`` where its day starts and ends.
+    where
+        File and line, for sentences.
     """
 
     name: str
@@ -49,6 +56,7 @@ class StatedMember(NamedTuple):
     settings: dict[str, float]
     start: str | None
     gate: tuple[float, float] | None
+    where: str
 
 
 def read_team(path: Path) -> tuple[StatedMember, ...]:
@@ -113,7 +121,7 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
         )
     number = {
         name: _number(values[name], name, where)
-        for name in ("hours", "speed_km_h", "look_s", "detection", "lon", "lat")
+        for name in (*SETTINGS, "lon", "lat")
         if values.get(name)
     }
     if ("lon" in number) != ("lat" in number):
@@ -139,7 +147,8 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
                 )
             )
         number[setting] = value / units
-    return StatedMember(values["name"], who == "scout", number, values.get("start") or None, gate)
+    start = values.get("start") or None
+    return StatedMember(values["name"], who == "scout", number, start, gate, where)
 
 
 def _number(text: str, name: str, where: str) -> float:

@@ -1,8 +1,11 @@
 """Asked and told over a broker: nothing lost, nothing twice, whatever the line does."""
 
+import json
 import threading
 from contextlib import nullcontext
+from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -21,6 +24,8 @@ from fieldmon.monitoring.settings import MonitoringSettings
 from tests.drive.test_season_day import ON
 from tests.drive.vda5050.conftest import ROBOT
 
+MOTOR = {"errorType": "motor", "errorLevel": "FATAL", "errorDescription": "left wheel"}
+
 
 def seen(plant):
     return plant % 5 == 0
@@ -31,11 +36,13 @@ def nothing(_other, _errand):
 
 
 def drive(broker, plot, robot, monitor, order_id, mishap=nothing, **fleet):
-    """Drive a day with a stand-in; `mishap` happens after each stop."""
-    said = []
-    other = StandIn(broker, ROBOT, fleet.pop("look", seen), robot.speed_m_s, faster=1e6)
+    """Drive a day with a stand-in; `before` happens before it, and `mishap` after each stop."""
+    said, before = [], fleet.pop("before", lambda _other: None)
+    kind = fleet.pop("kind", StandIn)
+    other = kind(broker, ROBOT, fleet.pop("look", seen), robot.speed_m_s, faster=1e6)
     wire = Wire(broker, "fleet", ROBOT, ("state", "connection"))
     driver = Vda5050Robot(wire, order_id, said.append, **fleet)
+    before(other)
     other.start()
     try:
         with monitor.day() as day:
@@ -102,6 +109,15 @@ def test_a_clock_that_counts_no_day_is_said_once_and_ours_goes_on(plot, odd):
     assert [odd in one for one in said] == [True]
 
 
+@pytest.mark.parametrize(("charge", "told"), [(14.97, "14.9"), (9, "9")])
+def test_a_battery_that_is_too_low_is_never_rounded_to_one_that_would_do(charge, told):
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "low")
+    driver._state = {"batteryState": {"batteryCharge": charge}}
+    assert driver._low().startswith(f"The robot's battery is at {told} %, under 15 %: ")
+    driver._state = {"batteryState": {"batteryCharge": 15.0}}
+    assert driver._low() == ""
+
+
 def test_a_low_battery_ends_the_day_after_the_plant_in_hand(broker, plot, robot, monitor):
     def drain(other, errand):
         other.self.battery = 10.0 if errand.number >= 3 else 90.0
@@ -115,14 +131,225 @@ def test_a_low_battery_ends_the_day_after_the_plant_in_hand(broker, plot, robot,
 def test_a_fatal_error_ends_the_day_in_its_own_words(broker, plot, robot, monitor):
     def fail(other, errand):
         if errand.number == 2:
-            other.self.errors = [
-                {"errorType": "motor", "errorLevel": "FATAL", "errorDescription": "left wheel"}
-            ]
+            other.self.errors = [MOTOR]
 
     driven, day, _ = drive(broker, plot, robot, monitor, "fatal", fail)
     assert len(driven.stops) == 3
     assert "left wheel" in driven.stuck[0]
     assert len(day.plants) == 2
+
+
+def test_what_a_robot_said_before_the_drive_began_does_not_end_it(broker, plot, robot, monitor):
+    """It died yesterday behind a hill, was mended, and now sends what it had to say then."""
+
+    def yesterday(other):
+        send, then = other.wire.send, datetime.now(UTC) - timedelta(days=1)
+
+        def of_then(kind, data):
+            send(kind, json.dumps(json.loads(data) | {"timestamp": then.isoformat()}).encode())
+
+        other.wire.send = of_then
+        other.self.errors = [MOTOR]
+        other.tell()
+        other.self.errors, other.wire.send = [], send
+
+    driven, day, _ = drive(broker, plot, robot, monitor, "next day", before=yesterday)
+    assert driven.stuck == []
+    assert len(day.plants) > 10
+
+
+def put_back(other, hours, header=None):
+    """Put a robot's clock back, and, if it is started anew, let it count its messages again."""
+    send = other.wire.send
+
+    def earlier(kind, data, **how):
+        message = json.loads(data)
+        at = datetime.fromisoformat(message["timestamp"]) - timedelta(hours=hours)
+        send(kind, json.dumps(message | {"timestamp": at.isoformat()}).encode(), **how)
+
+    other.wire.send = earlier
+    if header is not None:
+        other._headers["state"]["headerId"] = header
+
+
+@pytest.mark.parametrize("header", [None, 0])
+def test_a_robot_whose_clock_is_put_back_is_heard_on(broker, plot, robot, monitor, header):
+    def mishap(other, errand):
+        if errand.number == 3:
+            put_back(other, 1, header)
+
+    driven, day, said = drive(
+        broker, plot, robot, monitor, f"clock back {header}", mishap, patience_s=2.0
+    )
+    assert driven.stuck == []
+    assert len(day.plants) > 10
+    # of one that was started anew, nobody knows how its clock was before
+    assert ["clock jumped back by 36" in one for one in said] == ([True] if header is None else [])
+
+
+def test_what_came_late_or_twice_is_passed_by():
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "late")
+    at = datetime(2026, 6, 1, 6, tzinfo=UTC)
+    message = lambda k, s: {  # noqa: E731
+        "headerId": k,
+        "timestamp": (at + timedelta(seconds=s)).isoformat(),
+    }
+    driver._state = message(10, 30)
+    assert driver._late(message(10, 30))
+    assert driver._late(message(8, 20))
+    assert not driver._late(message(11, 30))
+    assert not driver._late(message(1, 35))
+    assert not driver._late(message(1, -3600))
+
+
+def test_a_robot_that_is_broken_when_the_drive_begins_ends_it(broker, plot, robot, monitor):
+    def die(other):
+        other.self.errors = [MOTOR]
+
+    driven, day, _ = drive(broker, plot, robot, monitor, "dead", before=die)
+    assert "left wheel" in driven.stuck[0]
+    assert len(day.plants) == 0
+
+
+class CrashError(Exception):
+    """The fleet control crashes."""
+
+
+def test_a_robot_by_the_standard_is_driven_on_after_a_crash(broker, plot, robot):
+    """It refuses another order while it has one: that one is ended first."""
+    other = StandIn(broker, ROBOT, seen, robot.speed_m_s, faster=1e6)
+    other.start()
+    told, said = [], []
+
+    def crash(_stop, _errand):
+        told.append(1)
+        if len(told) == 3:
+            raise CrashError
+
+    def run(order_id, watch):
+        wire = Wire(broker, "fleet", ROBOT, ("state", "connection"))
+        who = (robot, Vda5050Robot(wire, order_id, said.append))
+        try:
+            with Monitor(plot, robot=robot).day() as day:
+                return drive_day(day, plot.aisles.for_robot(robot), who, watch)
+        finally:
+            wire.close()
+
+    try:
+        with pytest.raises(CrashError):
+            run("monday", crash)
+        driven = run("monday again", nothing)
+    finally:
+        other.stop()
+    assert said == ["The robot still has an order of before; it is asked to end it."]
+    assert driven.stuck == []
+    assert len(driven.stops) > 10
+
+
+class EndsByItself(StandIn):
+    """Knows no cancelOrder, but has ended its order of before soon."""
+
+    def _do_at_once(self, action):
+        if action["actionType"] == "cancelOrder":
+            self.self.todo, self.self.edges = [], []
+        else:
+            super()._do_at_once(action)
+
+
+def test_a_robot_that_ends_its_order_of_before_by_itself_is_not_asked_on(
+    broker, plot, robot, monitor, monkeypatch
+):
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._AGAIN_S", 0.05)
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._MOST_TRIES", 4)
+
+    def has_one(other):
+        other.self.order_id = "of before"
+        other.self.todo = [{"nodeId": "n2", "sequenceId": 2, "released": False}]
+
+    driven, _, said = drive(
+        broker, plot, robot, monitor, "by itself", kind=EndsByItself, before=has_one
+    )
+    assert driven.stuck == []
+    assert said == ["The robot still has an order of before; it is asked to end it."]
+
+
+class Refuses(StandIn):
+    """Takes no order for a while, and says why."""
+
+    most = 10**9
+
+    def _take(self, order):
+        self.most -= 1
+        if self.most < 0:
+            super()._take(order)
+        else:
+            self._refuse("validationError", "no map of this plot")
+
+
+@pytest.mark.parametrize("most", [2, 10**9])
+def test_an_order_that_is_refused_is_told_and_given_up_after_a_while(
+    broker, plot, robot, monitor, monkeypatch, most
+):
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._AGAIN_S", 0.05)
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._MOST_TRIES", 4)
+    kind = type("Refuses", (Refuses,), {"most": most})
+    driven, day, said = drive(broker, plot, robot, monitor, f"refused {most}", kind=kind)
+    refusal = "The robot has not taken its order; it reports: no map of this plot."
+    assert said.count(refusal) == 1
+    assert driven.stuck == ([] if most == 2 else [refusal])
+    assert (len(day.plants) > 10) == (most == 2)
+
+
+class Mumbles(StandIn):
+    """Says what it found in words of its own."""
+
+    words: ClassVar = ["1", '"yes"', '"infested"', 'true, "plant": 9999']
+
+    def _do(self, action):
+        super()._do(action)
+        if self.words:
+            said = f'{{"found": {self.words.pop(0)}}}'
+            self.self.actions[action["actionId"]]["resultDescription"] = said
+
+
+def test_what_a_robot_says_plainly_is_read_and_the_rest_is_told(broker, plot, robot, monitor):
+    driven, _, said = drive(broker, plot, robot, monitor, "mumbles", kind=Mumbles)
+    assert [one.visit.found for one in driven.stops[:4]] == [True, True, None, None]
+    odd, other = driven.stops[2].stop, driven.stops[3].stop
+    wrong = ["true, false or null as found, but it is 'infested'", "but it names plant 9999"]
+    assert [one in told for one, told in zip(wrong, said, strict=True)] == [True, True]
+    for stop, told in zip((odd, other), said, strict=True):
+        assert told.startswith(f"The robot's result of row {stop.row}, plant {stop.number} must ")
+        assert told.endswith("the plant counts as not inspected.")
+
+
+class Dies(StandIn):
+    """Breaks down at the third plant; `after` or before it has looked there."""
+
+    after, looks = True, 0
+
+    def _do(self, action):
+        super()._do(action)
+        self.looks += 1
+        if self.looks == 3:
+            self.self.errors = [MOTOR]
+            if not self.after:
+                self.self.actions[action["actionId"]]["actionStatus"] = "FAILED"
+
+
+def test_a_result_that_comes_with_a_fatal_error_is_kept(broker, plot, robot, monitor):
+    driven, day, _ = drive(broker, plot, robot, monitor, "with it", kind=Dies)
+    assert "left wheel" in driven.stuck[0]
+    assert len(day.plants) == len(driven.stops) == 3
+    assert day.found.tolist() == [seen(plant) for plant in day.plants.tolist()]
+
+
+def test_a_plant_that_a_robot_broke_down_at_is_not_told_as_one_that_could_not_be_inspected(
+    broker, plot, robot, monitor
+):
+    kind = type("DiesBefore", (Dies,), {"after": False})
+    driven, _, _ = drive(broker, plot, robot, monitor, "before it", kind=kind)
+    assert [one.visit.there for one in driven.stops] == [True, True, False]
 
 
 def test_a_pause_is_waited_for_and_said(broker, plot, robot, monitor):

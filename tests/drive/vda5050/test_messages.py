@@ -14,6 +14,7 @@ from fieldmon.drive.vda5050.messages import (
     header_of,
     home_order,
     order_of,
+    result_of,
 )
 from fieldmon.drive.vda5050.rules import problems
 from fieldmon.errors import ObservationError
@@ -47,6 +48,14 @@ def test_the_way_to_the_plant_is_released_and_what_comes_after_is_not():
     )
     told = {one["key"]: one["value"] for one in look["actionParameters"]}
     assert told == {"plant": 7, "row": 2, "number": 3, "seconds": 41.0}
+
+
+def test_an_order_says_seconds_as_people_do():
+    stop = STOP._replace(inspect_s=130.0 - 88.87)
+    order, _ = order_of(errand()._replace(stop=stop), as_it_is, FIRST, "a1")
+    told = order["nodes"][-1]["actions"][0]["actionParameters"]
+    assert stop.inspect_s != 41.13
+    assert [one["value"] for one in told if one["key"] == "seconds"] == [41.13]
 
 
 def test_an_update_begins_at_the_last_released_node_and_goes_on_counting():
@@ -103,3 +112,35 @@ def test_what_is_nested_is_looked_at_too():
     message["nodes"][2]["actions"][0]["blockingType"] = "MAYBE"
     del message["edges"][0]["endNodeId"]
     assert len(problems("order", message)) == 2
+
+
+@pytest.mark.parametrize(
+    ("said", "found"),
+    [
+        *(("true", True), ("1", True), ("1.0", True), ('"true"', True), ('" Yes"', True)),
+        *(("false", False), ("0", False), ('"no"', False), ("null", None)),
+    ],
+)
+def test_a_result_that_is_plain_is_read(said, found):
+    result = result_of({"resultDescription": f'{{"found": {said}, "plant": "7"}}'}, 7)
+    assert result == (found, None, "")
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ('{"found": []}', "but it is []"),
+        ('{"found": ""}', "but it is ''"),
+        ('{"found": 2}', "but it is 2"),
+        ('{"found": "infested"}', "true, false or null as found, but it is 'infested'"),
+        ('{"plant": 7}', """must be JSON as {"found": true}, but it is '{"plant": 7}'"""),
+        ("found", "but it is 'found'"),
+        (None, "but it is ''"),
+        ('{"found": true, "plant": 9999}', "must be of plant 7, but it names plant 9999"),
+    ],
+)
+def test_a_result_that_is_not_plain_is_refused_with_what_is_wrong(text, wrong):
+    action = {} if text is None else {"resultDescription": text}
+    result = result_of(action, 7)
+    assert result.found is None
+    assert wrong in result.wrong

@@ -2,13 +2,13 @@
 
 import ast
 
-from fieldmon.drive.vda5050.messages import encoded, header_of
+from fieldmon.drive.vda5050.messages import at_once, encoded, header_of
 from fieldmon.drive.vda5050.stand_in import StandIn
 from tests.drive.vda5050.conftest import ROBOT
 from tests.paths import ROOT
 
 
-def order(update, *places, first=0):
+def order(update, *places, first=0, name="o"):
     nodes = [
         {
             "nodeId": f"n{first + 2 * k}",
@@ -19,7 +19,7 @@ def order(update, *places, first=0):
         }
         for k, x in enumerate(places)
     ]
-    body = {"orderId": "o", "orderUpdateId": update, "nodes": nodes, "edges": []}
+    body = {"orderId": name, "orderUpdateId": update, "nodes": nodes, "edges": []}
     return encoded("order", header_of(*ROBOT), body)
 
 
@@ -40,6 +40,32 @@ def test_orders_are_driven_once_and_in_their_order(broker):
     assert (robot.self.place, robot.self.day_s) == ((15.0, 0.0), 15.0)
     drive(robot, order(0, 0.0, 10.0))  # late
     assert robot.self.place == (15.0, 0.0)
+    robot.wire.close()
+
+
+def ask(robot, action, name):
+    data = encoded("instantActions", header_of(*ROBOT), at_once(action, name))
+    robot.wire.heard.put(("instantActions", data))
+    robot._hear()
+    return robot.self.at_once[name]["actionStatus"]
+
+
+def test_another_order_is_refused_until_the_one_before_is_done_or_cancelled(broker):
+    robot = StandIn(broker, ROBOT, lambda plant: False, speed_m_s=1.0, faster=1e9)  # noqa: ARG005
+    refused = lambda: [one["errorType"] for one in robot.self.refusals]  # noqa: E731
+    assert ask(robot, "cancelOrder", "c0") == "FAILED"
+    assert refused() == ["noOrderToCancel"]
+    for name in ("o", "p"):
+        robot.wire.heard.put(("order", order(0, 0.0, 10.0, name=name)))
+        robot._hear()
+    assert (robot.self.order_id, refused()) == ("o", ["orderError"])
+    assert ask(robot, "cancelOrder", "c1") == "FINISHED"
+    assert robot.self.todo == []
+    robot.wire.heard.put(("order", order(0, 0.0, 10.0, name="p")))
+    robot._hear()
+    assert (robot.self.order_id, refused()) == ("p", [])
+    ask(robot, "cancelOrder", "c1")  # twice
+    assert len(robot.self.todo) == 2
     robot.wire.close()
 
 

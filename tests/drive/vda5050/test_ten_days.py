@@ -48,7 +48,8 @@ class Mishaps:
         send = fleet._wire.send
 
         def remembered(kind, data, **how):
-            self.orders.append(data)
+            if kind == "order":
+                self.orders.append(data)
             send(kind, data, **how)
 
         fleet._wire.send = remembered

@@ -54,6 +54,17 @@ def test_fields_have_the_names_of_the_tables():
     assert broken == {"connectionState": "CONNECTION_BROKEN"}
 
 
+def test_what_is_done_at_once_is_told_apart_in_3_0_only():
+    ended = {"actionId": "c", "actionType": "cancelOrder", "actionStatus": "FINISHED"}
+    actions = [*STATE["actionStates"], ended]
+    header = header_of("fieldmon", "r1", "3.0")
+    data = encoded("state", header, STATE | {"actionStates": actions})
+    message = json.loads(data)
+    assert [one["actionId"] for one in message["actionStates"]] == ["a0"]
+    assert message["instantActionStates"] == [ended]
+    assert decoded("state", data)["actionStates"] == actions
+
+
 def test_the_stricter_radius_of_an_ellipse_is_taken():
     order = as_sent("order", copy.deepcopy(ORDER), "3.0")
     order["nodes"][0]["nodePosition"]["allowedDeviationXY"]["b"] = 0.1

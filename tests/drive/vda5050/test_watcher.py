@@ -26,7 +26,8 @@ class Heard:
     def put(self, kind, body, at=None):
         message = encoded(kind, self.header, body)
         if at is not None:
-            said = json.loads(message) | {"timestamp": f"2026-04-06T06:00:{at:06.3f}Z"}
+            at = at if isinstance(at, str) else f"00:{at:06.3f}"
+            said = json.loads(message) | {"timestamp": f"2026-04-06T06:{at}Z"}
             message = json.dumps(said).encode()
         self.heard.put((kind, message))
         self.heard_at[kind] = time.monotonic()
@@ -87,6 +88,14 @@ def test_what_comes_late_or_twice_changes_nothing(wire, watcher, plot):
     watcher.take()
     assert watcher.trace().stops == before.stops
     np.testing.assert_array_equal(watcher.trace().poses, before.poses)
+
+
+def test_a_robot_whose_clock_is_put_back_is_seen_to_go_on(wire, watcher):
+    for at, place in ((1800.0, (0.0, 0.0)), (1802.0, (1.0, 0.0)), (4.0, (2.0, 0.0)), (7, (3, 0))):
+        wire.put("state", state(place), f"{int(at // 60):02}:{at % 60:06.3f}")
+    watcher.take()
+    # the second at which it was put back is not known
+    np.testing.assert_allclose(watcher.trace().poses[:, 0], [0.0, 2.0, 5.0])
 
 
 def test_a_lost_connection_a_pause_and_an_error_are_told(wire, watcher):

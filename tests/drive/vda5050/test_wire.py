@@ -57,6 +57,25 @@ def test_who_is_made_hears_what_is_sent_from_then_on(broker):
         other.close()
 
 
+def test_what_a_broker_kept_of_before_is_not_heard(broker):
+    other = Wire(broker, "sends overnight", ROBOT, ())
+    Wire(broker, "away", ROBOT, ("order", "state", "connection")).close()
+    other.send("order", b"of yesterday")
+    other.send("state", b"kept by the broker", kept=True)
+    other.send("connection", b"is there", kept=True)
+    # both have arrived once somebody else hears what came after them
+    witness = Wire(broker, "witness", ROBOT, ("connection",))
+    assert witness.heard.get(timeout=180) == ("connection", b"is there")
+    one = Wire(broker, "away", ROBOT, ("order", "state", "connection"))
+    other.send("order", b"of today")
+    heard = [one.heard.get(timeout=180) for _ in range(2)]
+    assert sorted(heard) == [("connection", b"is there"), ("order", b"of today")]
+    other.client.publish(f"{ROBOT.topic}/state", b"", qos=1, retain=True).wait_for_publish(180)
+    other.client.publish(f"{ROBOT.topic}/connection", b"", qos=1, retain=True).wait_for_publish(180)
+    for each in (one, other, witness):
+        each.close()
+
+
 @pytest.fixture
 def wary(broker_program):
     """Return a broker that lets nobody in without a password."""

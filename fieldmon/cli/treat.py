@@ -53,7 +53,11 @@ ReEntry = Annotated[
 Began = Annotated[str | None, typer.Option("--began", help="Local time at which it began, HH:MM.")]
 Ended = Annotated[
     str | None,
-    typer.Option("--ended", help="Local time at which it ended; else the end of the day."),
+    typer.Option(
+        "--ended",
+        help="Local time at which it ended: what was inspected later counts after it; else the end "
+        "of the day.",
+    ),
 ]
 
 

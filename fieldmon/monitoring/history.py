@@ -196,16 +196,20 @@ class Treatment:
     Parameters
     ----------
     day
-        Day of the season. It works after that day's inspections.
+        Day of the season.
     plants
         ``(n,)`` whether each plant was treated.
     efficacy
         Chance that an infested plant is clean afterwards.
+    second
+        Seconds since that day's midnight at which it was over: what was inspected later on that day
+        counts after it. Infinite where nobody said: it works after all of the day's inspections.
     """
 
     day: int
     plants: NDArray[np.bool_]
     efficacy: float
+    second: float = np.inf
 
     def __post_init__(self) -> None:
         must_be("The efficacy of a treatment must be a chance in 0..1", self.efficacy, Real,
@@ -344,18 +348,31 @@ class History:
     ) -> Belief:
         """Return what is believed after a day, and after inspections `later` in its work."""
         rows = self._rows_of(day)
-        which = rows if later is None else np.append(np.arange(rows.start, rows.stop), later)
+        which = np.append(np.arange(rows.start, rows.stop), [] if later is None else later)
+        which = which.astype(np.int64)[self.inspections.result[which.astype(np.int64)] != SKIPPED]
+        second = self.inspections.second[which] + np.where(self.days[which] > day, DAY_S, 0.0)
+        today = [one for one in self.treatments if one.day == day]
+        believed = morning
+        for treatment in sorted(today, key=lambda one: one.second):
+            # who was inspected without a time was so before it
+            late = second > treatment.second
+            believed = self._inspected(believed, which[~late])
+            which, second = which[late], second[late]
+            # who infested whom ends here: what it says of today's finds counts before
+            believed = in_hindsight(believed, self.night(day)).treated(
+                np.where(treatment.plants, 1 - treatment.efficacy, 1.0)
+            )
+        return self._inspected(believed, which)
+
+    def inspected_after(self, treatment: Treatment) -> NDArray[np.bool_]:
+        """Return which of the inspections of a treatment's day count after it, ``(k,)``."""
+        late: NDArray[np.bool_] = self.on(treatment.day).second > treatment.second
+        return late
+
+    def _inspected(self, believed: Belief, which: NDArray[np.signedinteger]) -> Belief:
+        """Return what is believed after some inspections, in their order."""
         done, detection = self.inspections.take(which), self.detections[which]
-        inspected = done.result != SKIPPED
-        done, detection = done.take(inspected), detection[inspected]
-        believed = self.belief.evening(morning, done.plant, done.result == FOUND, detection)
-        for treatment in self.treatments:
-            if treatment.day == day:
-                # who infested whom ends here: what it says of today's finds counts before
-                believed = in_hindsight(believed, self.night(day)).treated(
-                    np.where(treatment.plants, 1 - treatment.efficacy, 1.0)
-                )
-        return believed
+        return self.belief.evening(believed, done.plant, done.result == FOUND, detection)
 
     def mean_detection(self, day: int) -> float:
         """Return what the inspections up to the evening of a day were told to find, on average.

@@ -169,7 +169,9 @@ def _causes(history: History, day: int) -> str:
     first, told = history.first_morning, history.detections[: len(done)]
     said = history.belief, history.begins
     treated = [
-        digest(one.day, one.plants, one.efficacy) for one in history.treatments if one.day < day
+        digest(one.day, one.plants, one.efficacy, one.second, history.inspected_after(one))
+        for one in history.treatments
+        if one.day < day
     ]
     pest = () if history.pest_in_weather is None else history.pest_in_weather.content
     return digest(

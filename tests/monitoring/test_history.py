@@ -1,5 +1,6 @@
 """What was done on a plot, day by day, and what that says each morning."""
 
+from dataclasses import replace
 from datetime import date
 from itertools import pairwise
 
@@ -30,6 +31,7 @@ DONE = Inspections.of(
     second=np.array([21_700.0, 21_800.0, np.nan, np.nan, np.nan, 22_000.0]),
 )
 HISTORY = History(PLOT.grid, BEGINS, MORNING, DONE)
+ALL = np.ones(N, np.bool_)
 SHIFT = Shift(PLOT.aisles, Robot(hours=2.0))
 
 
@@ -69,6 +71,41 @@ def test_an_evening_is_its_morning_after_the_days_findings_and_treatments():
     wanted = known.treated(np.where(plants, 0.25, 1.0))
     np.testing.assert_array_equal(treated.evening(MORNING, 0).chance, wanted.chance)
     np.testing.assert_array_equal(treated.evening(MORNING, 3).chance, MORNING.chance)
+
+
+def test_what_was_inspected_after_a_treatment_of_the_day_counts_after_it():
+    done = Inspections.of(
+        np.array([5, 6, 7, 8]), np.array([FOUND] * 4), np.datetime64(BEGINS),
+        second=np.array([21_600.0, 30_000.0, 43_200.0, np.nan]),
+    )  # fmt: skip
+    at_7, at_10 = Treatment(0, ALL, 0.75, 25_200.0), Treatment(0, ALL, 0.5, 36_000.0)
+    history = History(PLOT.grid, BEGINS, MORNING, done, (at_10, at_7))
+
+    def looked(believed, *plants):
+        found = np.ones(len(plants), bool)
+        return believed.learn(np.array(plants, np.int32), found, Learning(history.detection))
+
+    # without a time: before the first treatment of the day
+    wanted = looked(MORNING, 5, 8).treated(np.full(N, 0.25))
+    wanted = looked(looked(wanted, 6).treated(np.full(N, 0.5)), 7)
+    np.testing.assert_array_equal(history.evening(MORNING, 0).chance, wanted.chance)
+    left = BeliefSettings(treated=False)
+    flagged = replace(history, belief=left).evening(MORNING, 0).chance[[5, 6, 7, 8]]
+    assert flagged == pytest.approx([0.125, 0.5, 1.0, 0.125], abs=0.01)
+
+
+def test_an_inspection_past_midnight_counts_after_what_was_treated_before_it():
+    done = Inspections.of(
+        np.array([5, 6]), np.array([FOUND, FOUND]), np.datetime64(BEGINS) + np.array([0, 1]),
+        second=np.array([82_800.0, 1_800.0]),
+    )  # fmt: skip
+    shift = Shift(PLOT.aisles, Robot(hours=4.0), starts_s=79_200.0)
+    left = BeliefSettings(treated=False)
+    at_11 = Treatment(0, ALL, 0.75, 84_600.0)
+    history = History(PLOT.grid, BEGINS, MORNING, done, (at_11,), left)
+    assert history.scene(shift, 0, MORNING).chance[[5, 6]] == pytest.approx([0.25, 1.0], abs=0.01)
+    untold = replace(history, treatments=(Treatment(0, ALL, 0.75),))
+    assert untold.scene(shift, 0, MORNING).chance[[5, 6]] == pytest.approx([0.25] * 2, abs=0.01)
 
 
 def test_the_next_morning_comes_of_the_evening_by_the_spread_that_is_believed():

@@ -193,7 +193,7 @@ def changes(choices: Choices) -> tuple[str, list[str]]:
     ]
     expected = {"now": about(now.expected), "before": about(before.expected)}
     said.append(texts.CHANGED_OUT.format(day=said_day(since), **expected))
-    said += map(in_words, flagged_said(chosen_day.flagged(choices))[:1])
+    said += map(in_words, flagged_said(chosen_day.flagged(choices)))
     spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (str(since), choices.day)]
     if spots[0] != spots[1]:
         said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))

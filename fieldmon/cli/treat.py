@@ -160,7 +160,7 @@ def treat(options: TreatOptions) -> None:
         f"Treatment noted as batch {done.batch}; about {estimate(ahead.expected)} plants are "
         f"believed infested now ({ahead.low:,} to {ahead.high:,})."
     )
-    for sentence in flagged_said(now.flagged)[:1]:
+    for sentence in flagged_said(now.flagged):
         typer.echo(sentence)
     _say_what_follows(kept, done.batch, learnt=options.efficacy is None)
 

@@ -43,8 +43,6 @@ def found_pct(found: int, left: float) -> float:
 def flagged_said(flagged: float) -> list[Worded]:
     """Return what is to be said beside an estimate of what was not found yet, if anything.
 
-    The second sentence is for where the chance that the plot is clean is told too.
-
     Parameters
     ----------
     flagged
@@ -57,7 +55,6 @@ def flagged_said(flagged: float) -> list[Worded]:
             "About {n} more plants, which were found and only flagged, are still infested.",
             n=estimate(flagged),
         ),
-        worded("The chance that the plot is clean leaves these out."),
     ]
 
 

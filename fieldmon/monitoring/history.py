@@ -410,8 +410,14 @@ class History:
         return _Last()
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
-        # what was found is known: it is not out there any more
-        return estimate_of(self.grid, self.in_hindsight(morning, day), found=self._flagged(day))
+        return not_found_yet(self.grid, self.in_hindsight(morning, day), self._flagged(day))
+
+    def infested(self, morning: Belief, day: int) -> PlotEstimate:
+        """Return how many plants are infested after a day's work: not found yet, and flagged."""
+        flagged = self._flagged(day)
+        if flagged is None or not flagged.any():
+            return self.estimate(morning, day)
+        return infested_in_all(self.grid, self.in_hindsight(morning, day), flagged)
 
     def _flagged(self, day: int) -> NDArray[np.bool_] | None:
         """Return ``(n,)`` which plants were found infested until a day; None: they are treated."""
@@ -655,6 +661,35 @@ def in_sight(belief: Belief) -> Belief:
 def in_hindsight(evening: Belief, night: Spread) -> Belief:
     """Return what is believed of an evening as its finds say of others, before a night."""
     return evening.in_hindsight(night) if isinstance(evening, TracedPairs) else evening
+
+
+def infested_in_all(
+    grid: PlantGrid, believed: Belief, flagged: NDArray[np.bool_] | None, sure: float = 0.9
+) -> PlotEstimate:
+    """Return how many plants are infested: not found yet, and `flagged` ``(n,)`` (None: none).
+
+    With one of which it is certain the plot is not clean. A treatment leaves them in doubt.
+    """
+    certain = None if flagged is None else flagged & (believed.chance > KNOWN)
+    made = estimate_of(grid, believed, sure, certain)
+    return made.beside(made.found)
+
+
+def not_found_yet(
+    grid: PlantGrid, believed: Belief, flagged: NDArray[np.bool_] | None, sure: float = 0.9
+) -> PlotEstimate:
+    """Return how many plants are infested beside the `flagged`; all is as in `infested_in_all`.
+
+    The chance that the plot is clean is of all plants, those that are flagged among them.
+    """
+    # what was found is known: it is not out there any more
+    made = estimate_of(grid, believed, sure, flagged)
+    if flagged is None or not made.found:
+        return made
+    if (believed.chance[flagged] > KNOWN).any():
+        return replace(made, chance_clean=0.0)
+    clean = infested_in_all(grid, believed, flagged, sure).chance_clean
+    return replace(made, chance_clean=clean)
 
 
 def made_by(inspections: Inspections, who: str | Besides | None) -> Inspections:

@@ -140,6 +140,22 @@ def test_finds_left_alone_are_known_and_so_no_longer_counted_as_out_there():
     assert HISTORY.flagged(MORNING, 0) == 0.0, "treated"
 
 
+def test_a_plot_with_a_plant_known_to_be_infested_is_not_clean():
+    n_found, believed = 40, BeliefSettings(treated=False)
+    some = np.arange(n_found, dtype=np.int32)
+    nowhere = PairApproximation.of(PLOT.grid, np.full(N, 1e-6))
+    found = Inspections.of(some, np.full(n_found, FOUND), np.datetime64(BEGINS))
+    left = History(PLOT.grid, BEGINS, nowhere, found, belief=believed)
+    assert left.estimate(nowhere, 0).chance_clean == 0.0
+    together = left.infested(nowhere, 0)
+    assert together == left.estimate(nowhere, 0).beside(n_found)
+    # a treatment leaves them in doubt: they may all be clean
+    sprayed = replace(left, treatments=(Treatment(0, ALL, 0.98),))
+    clean = sprayed.estimate(nowhere, 0).chance_clean
+    assert clean == sprayed.infested(nowhere, 0).chance_clean
+    assert 0.3 < clean < 0.6
+
+
 def test_the_scene_of_a_day_stands_where_and_when_its_last_inspection_was_made():
     scene = HISTORY.scene(SHIFT, 4, MORNING)
     assert (scene.at, scene.day) == (5, 4)

@@ -44,4 +44,3 @@ def test_the_season_says_how_many_plants_are_only_flagged(season_app, monkeypatc
     go(season_app, "season")
     assert not season_app.exception
     assert "About 20 more plants, which were found and only flagged" in texts_of(season_app)
-    assert "leaves these out." in texts_of(season_app)

@@ -822,7 +822,7 @@ LEAST, MOST = "at least (90 %)", "at most (90 %)"
 EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval that holds 90 %."
 CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Share found"
 DETECTED_HELP = (
-    "Plants found so far, in percent of these and of those still infested. Plants that a treatment "
+    "Plants found so far, in percent of these and of those not found yet. Plants that a treatment "
     "cleaned before anybody found them are in neither: the share rises with it."
 )
 INSPECTED_EVER = "Inspected so far"
@@ -977,7 +977,7 @@ EFFECTS_TREATED = (
 TREAT_BUTTON, TREATED = "Note the treatment", "Treatment noted."
 TREATED_BEFORE = "This treatment was noted already; nothing changed."
 ROW_AGES, DAYS_SINCE, ROW_AXIS = "Days since each row was inspected", "days", "row"
-OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "still infested (expected)", "inspected", "day"
+OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "infested, not found yet (expected)", "inspected", "day"
 ROW_NEVER, ROW_TODAY = "never", "today"
 EVERY_ROW = "Every row was inspected."
 NEVER_ROWS = Plural(

@@ -138,7 +138,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     from fieldmon.infestation.learnt import worth_saying
     from fieldmon.monitoring.day_figures import flagged_said
 
-    ahead = now.estimate
+    still, ahead = now.infested, now.estimate
     yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
     yield f"  inspected that day     {now.inspected_today:6,}, {now.found_today:,} found infested"
     yield (
@@ -153,15 +153,15 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         )
     yield from _planned_only(season, now.on)
     yield (
-        f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low:,} to {ahead.high:,} "
+        f"  still infested         {estimate(still.expected):>6} ({still.low:,} to {still.high:,} "
         "with a chance of 90 %)"
     )
-    for said in flagged_said(now.flagged):
+    for said in flagged_said(ahead, now.flagged):
         yield f"  {'':22} {said}"
     least, most = now.detection_range_pct
     yield (
         f"  share found            {now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %) of "
-        "found and still there"
+        "found and not found yet"
     )
     yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
     since = "learnt so far" if now.inspected else "believed at first"

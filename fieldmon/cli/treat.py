@@ -155,12 +155,12 @@ def treat(options: TreatOptions) -> None:
         return
     tell_not_come(on_day, kept.plot.field, "the day of the treatment")
     now = kept.status(on_day)
-    ahead = now.estimate
+    still = now.infested
     typer.echo(
-        f"Treatment noted as batch {done.batch}; about {estimate(ahead.expected)} plants are "
-        f"believed infested now ({ahead.low:,} to {ahead.high:,})."
+        f"Treatment noted as batch {done.batch}; about {estimate(still.expected)} plants are "
+        f"believed infested now ({still.low:,} to {still.high:,})."
     )
-    for sentence in flagged_said(now.flagged):
+    for sentence in flagged_said(now.estimate, now.flagged):
         typer.echo(sentence)
     _say_what_follows(kept, done.batch, learnt=options.efficacy is None)
 

@@ -11,6 +11,7 @@ import numpy as np
 from fieldmon.compute.wording import Worded, estimate, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.monitoring.transactions import get_meta, set_meta
 from fieldmon.samplers.base import NEVER
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.history import History
 
 
@@ -40,11 +40,13 @@ def found_pct(found: int, left: float) -> float:
     return 100.0 * found / everything if everything else 100.0
 
 
-def flagged_said(flagged: float) -> list[Worded]:
-    """Return what is to be said beside an estimate of what was not found yet, if anything.
+def flagged_said(left: DayFigures | PlotEstimate, flagged: float) -> list[Worded]:
+    """Return what is to be said beside how many are still infested, if any of them are flagged.
 
     Parameters
     ----------
+    left
+        How many are infested and not found yet.
     flagged
         How many plants that were found are still infested (`Status.flagged`).
     """
@@ -52,10 +54,11 @@ def flagged_said(flagged: float) -> list[Worded]:
         return []
     return [
         worded(
-            "About {n} more plants, which were found and only flagged, are still infested.",
-            n=estimate(flagged),
-        ),
-    ]
+            "Of those still infested, about {left} ({low:,} to {high:,}) are not found yet, and "
+            "{n} were found and only flagged.",
+            left=estimate(left.expected), low=left.low, high=left.high, n=estimate(flagged),
+        )
+    ]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,11 @@ class DayFigures:
         """Return the figures of a day from what was done and what is believed."""
         done = progress.inspected_today, progress.found_today
         return cls(on, *done, estimate.expected, estimate.low, estimate.high, estimate.chance_clean)
+
+    @property
+    def estimate(self) -> PlotEstimate:
+        """How many are infested and not found yet."""
+        return PlotEstimate(self.expected, self.low, self.high, self.chance_clean)
 
     def share_found_pct(self, found: int) -> tuple[float, float, float]:
         """Return `found` plants in percent of those and of what is left: guess, low and high."""

@@ -417,7 +417,11 @@ class History:
         flagged = self._flagged(day)
         if flagged is None or not flagged.any():
             return self.estimate(morning, day)
-        return infested_in_all(self.grid, self.in_hindsight(morning, day), flagged)
+        believed = self.in_hindsight(morning, day)
+        if (believed.chance[flagged] > KNOWN).all():
+            left = self.estimate(morning, day)
+            return left.beside(left.found)
+        return infested_in_all(self.grid, believed, flagged)
 
     def _flagged(self, day: int) -> NDArray[np.bool_] | None:
         """Return ``(n,)`` which plants were found infested until a day; None: they are treated."""

@@ -49,6 +49,8 @@ def test_a_season_says_what_it_said(season, capsys):
         since = [line for line in said if line.startswith(new)]
         assert len(since) == 1
         said.remove(since[0])
+    how = "Say it as its label does", "It names no product"
+    said = [line for line in said if not any(one in line for one in how)]
     flagged = ("were found and only flagged.",)
     planned = "  planned, not recorded  2026-04-09", "  Record it; if nobody went, record one stop"
     for new, there in (

@@ -777,6 +777,7 @@ HISTORY_STOP = "Stop {n:,} of {all:,} on the day's route, at {time}."
 HISTORY_NO_STOP = "Not on the day's route."
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
+HISTORY_SPRAYED, HISTORY_SPRAYED_WITH = "treated", "treated with {product}"
 HERE, HERE_RESULTS = "**Row {row}, plant {plant}**", {0: "Record as clean", 1: "Record as found"}
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
 

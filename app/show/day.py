@@ -14,6 +14,7 @@ from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.day_figures import flagged_said
 from fieldmon.planning.bound_wording import PROVED, share_above
 from fieldmon.planning.explain import explain
+from fieldmon.planning.skips import nothing_left_in_words
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import sentences
 
@@ -130,7 +131,8 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
     if told := plan.route.aisles.narrow_sentence():
         st.warning(in_words(told))
     is_said = len(plan.route) or cautions.are_all_closed(choices, plan)
-    said = "" if is_said else texts.NO_STOPS
+    known = nothing_left_in_words(plan.scene)
+    said = "" if is_said else texts.NO_STOPS if known is None else in_words(known)
     if choices.season is not None:
         if len(plan.route) and _is_of_nobody(choices):
             st.info(texts.ROUTE_OF_NOBODY)

@@ -35,6 +35,21 @@ def test_a_day_from_plan_to_status(run, season, tmp_path):
     assert "chance it is clean" in out
 
 
+@pytest.mark.parametrize("robots", ["1", "2"])
+def test_where_every_plant_is_known_and_flagged_the_day_is_not_called_too_short(
+    run, season, robots
+):
+    run("change", season, "--flag-only", "--robots", robots)
+    kept, first = Season(season), date.fromisoformat(BEGINS)
+    plants = np.arange(len(kept.plot.grid))
+    kept.record(Inspections.of(plants, np.ones(len(plants), int), np.datetime64(first)), "x")
+    code, _, err, _ = run("plan", season, "--date", first + timedelta(days=1), "-o", "r.csv")
+    assert code == 2
+    said = f"Every plant is known: all {len(plants):,} were found and only flagged. Nothing is left"
+    assert said in " ".join(err.split())
+    assert "long enough" not in err
+
+
 def test_it_is_said_by_what_a_past_day_is_planned_and_how_to_plan_it_otherwise(run, season):
     kept, first = Season(season), date.fromisoformat(BEGINS)
     for day, hours in ((0, 2), (2, 1)):

@@ -21,6 +21,7 @@ from tests.app.driving import apart
 from tests.monitoring.seasons import BEGINS, a_season
 
 PLANT = 17
+SOAP = texts.isolated("Soap")
 
 
 @pytest.fixture
@@ -102,15 +103,19 @@ def test_treatments_stand_among_the_inspections_of_the_plant(said, season, tmp_p
     tap(choices, PLANT)
     plant_history.show(choices)
     found_at_10_01, lines = 2, apart(said[-1]).splitlines()
-    assert lines[found_at_10_01 + 1 :] == ["- Wed 8 Apr 10:01: **found**",
-                                           "- Wed 8 Apr 10:30: **treated with \u2068Soap\u2069**"]  # fmt: skip
+    assert lines[found_at_10_01 + 1 :] == [
+        "- Wed 8 Apr 10:01: **found**",
+        f"- Wed 8 Apr 10:30: **treated with {SOAP}**",
+    ]
     assert lines[found_at_10_01] == "- Tue 7 Apr: **treated**"
     assert len(lines) == 5
     tap(choices, PLANT + 1)
     plant_history.show(choices)
     assert apart(said[-1]).splitlines() == [
-        "- Tue 7 Apr: **treated**", "- Wed 8 Apr 10:30: **treated with \u2068Soap\u2069**", "Never inspected."
-    ]  # fmt: skip
+        "- Tue 7 Apr: **treated**",
+        f"- Wed 8 Apr 10:30: **treated with {SOAP}**",
+        "Never inspected.",
+    ]
 
 
 def test_a_chance_of_nothing_after_a_find_is_explained(said, season, monkeypatch):

@@ -12,7 +12,8 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import FOUND, SKIPPED
+from fieldmon.io.parse.result_words import says_gone
 from fieldmon.monitoring import photos
 from fieldmon.pests.weather import DAY_S
 from fieldmon.plot.grid import plant_at, row_label
@@ -186,6 +187,8 @@ def _events(choices: Choices, plant: int) -> list[str]:
     days, lines = done.date.tolist(), []
     for k, second in enumerate(done.second.tolist()):
         result = texts.HISTORY_RESULTS[int(done.result[k])]
+        if done.result[k] == SKIPPED and says_gone(str(done.notes[k])):
+            result = texts.RESULTS_OF[3]
         lines.append(_line(choices, days[k], second, result))
     treated = [one for one in season.treatments() if one.place.plants[plant]]
     for one in reversed(treated):  # those behind first: places before them stay what they are

@@ -849,7 +849,9 @@ RECORD_FILE_IN = (
 )
 TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
-RESULT, COUNT, RESULTS_OF = "Result", "Count", {0: "clean", 1: "found", 2: "could not inspect"}
+RESULT, COUNT, RESULTS_OF = "Result", "Count", {
+    0: "clean", 1: "found", 2: "could not inspect", 3: "gone (pulled out)",
+}  # fmt: skip
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
 RECORD_REST = (
     "Say how many stops were done, from the first: they are recorded as clean, unless marked as "

@@ -151,6 +151,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
             f"  could not be inspected {now.skipped:6,} last time, {now.left_out:,} of them left "
             "out of the next day's plan"
         )
+    yield from _gone(season, now)
     yield from _planned_only(season, now.on)
     yield (
         f"  still infested         {estimate(still.expected):>6} ({still.low:,} to {still.high:,} "
@@ -188,6 +189,12 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"
         for h in range(min(len(spots), 3))
     )
+
+
+def _gone(season: Season, now: Status) -> Iterator[str]:
+    """Yield how many plants do not stand there any more, if any."""
+    if n := int(season.history.gone(now.day).sum()):
+        yield f"  gone                   {n:6,} pulled out: plans leave them out"
 
 
 def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import Worded, estimate, worded
+from fieldmon.compute.wording import Worded, estimate, figure, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.plot_estimate import PlotEstimate
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.history import History
 
 
+# so near to a whole number are chances of plants that are known to be infested
+_CERTAIN = 0.01
 # by which rules the figures of days were worked out, and from which day on
 _RULES = "rules of figures"
 
@@ -52,11 +54,14 @@ def flagged_said(left: DayFigures | PlotEstimate, flagged: float) -> list[Worded
     """
     if round(flagged, 1) == 0.0:
         return []
+    # of those that are certain it is a count
+    is_count = abs(flagged - round(flagged)) < _CERTAIN
+    n = figure(round(flagged)) if is_count else estimate(flagged)
     return [
         worded(
             "Of those still infested, about {left} ({low:,} to {high:,}) are not found yet, and "
             "{n} were found and only flagged.",
-            left=estimate(left.expected), low=left.low, high=left.high, n=estimate(flagged),
+            left=estimate(left.expected), low=left.low, high=left.high, n=n,
         )
     ]  # fmt: skip
 

@@ -28,6 +28,7 @@ from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.io.parse.result_words import says_gone
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import Skips, without_flagged, without_skipped
@@ -362,7 +363,12 @@ class History:
             believed = in_hindsight(believed, self.night(day)).treated(
                 np.where(treatment.plants, 1 - treatment.efficacy, 1.0)
             )
-        return self._inspected(believed, which)
+        believed = self._inspected(believed, which)
+        # its infestation is gone with it
+        if (pulled := self.gone(day) & ~self.gone(day - 1)).any():
+            left = np.where(pulled, 0.0, 1.0)
+            believed = in_hindsight(believed, self.night(day)).treated(left)
+        return believed
 
     def inspected_after(self, treatment: Treatment) -> NDArray[np.bool_]:
         """Return which of the inspections of a treatment's day count after it, ``(k,)``."""
@@ -424,8 +430,8 @@ class History:
         return infested_in_all(self.grid, believed, flagged)
 
     def _flagged(self, day: int) -> NDArray[np.bool_] | None:
-        """Return ``(n,)`` which plants were found infested until a day; None: they are treated."""
-        return None if self.belief.treated else self.states(day) == PRESENT
+        """Return ``(n,)`` which plants there are that were found until a day; None: all treated."""
+        return None if self.belief.treated else (self.states(day) == PRESENT) & ~self.gone(day)
 
     def found_and_left(self, evening: Belief, day: int) -> NDArray[np.bool_] | None:
         """Return the plants of which it is certain that they are infested; None: all are treated.
@@ -476,9 +482,32 @@ class History:
     def skips(self, day: int) -> Skips:
         """Return how often in a row each plant was skipped, up to the evening of a day."""
         done = self.until(day)
-        skipped = done.result == SKIPPED
+        skipped = (done.result == SKIPPED) & ~self.gone(day)[done.plant]
         days = self.days[: len(done)][skipped]
         return Skips.of(done.plant[skipped], days, self.last_inspected(day))
+
+    @cached_property
+    def says_gone(self) -> NDArray[np.bool_]:
+        """Which inspections say that the plant does not stand there any more, ``(k,)``."""
+        gone = self.inspections.result == SKIPPED
+        gone[gone] = [says_gone(str(note)) for note in self.inspections.notes[gone]]
+        return gone
+
+    def gone(self, day: int) -> NDArray[np.bool_]:
+        """Return ``(n,)`` which plants are gone by the evening of a day.
+
+        They were said to be, and nobody inspected the place since.
+        """
+        until = np.searchsorted(self.days, day + 1)
+        says = self.says_gone[:until]
+        if not says.any():
+            return np.zeros(len(self.grid), np.bool_)
+        plant, at = self.inspections.plant[:until], np.arange(until)
+        inspected = self.inspections.result[:until] != SKIPPED
+        last, last_gone = np.full((2, len(self.grid)), -1)
+        np.maximum.at(last, plant[inspected], at[inspected])
+        np.maximum.at(last_gone, plant[says], at[says])
+        return last_gone > last
 
     def states(self, day: int) -> NDArray[np.int8]:
         """Return ``(n,)`` up to `day`: 1 found infested, 0 only looked clean, -1 never seen."""
@@ -531,6 +560,7 @@ class History:
         last = self.last_inspected(day)
         # nobody is sent to a plant twice a day, not even a closed one
         last[self.on(day).plant] = last[self.inspections.plant[later]] = day
+        last[self.gone(day)] = day
         trail = self._trail(shift, day, who)
         today = made_by(self.worked(shift, day, who), who)
         resting = resting_place(robot, trail)

@@ -177,7 +177,7 @@ def _causes(history: History, day: int) -> str:
     return digest(
         *pest,
         *(rules(), first.chance, first.pair_chance, _learnt_before(first), said, day, treated),
-        *(done.plant, done.result, done.date, told),
+        *(done.plant, done.result, done.date, told, history.says_gone[: len(done)]),
     )
 
 

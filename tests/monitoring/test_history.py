@@ -156,6 +156,35 @@ def test_a_plot_with_a_plant_known_to_be_infested_is_not_clean():
     assert 0.3 < clean < 0.6
 
 
+def test_a_plant_that_is_gone_is_not_infested_nor_asked_for_until_it_is_inspected_again():
+    flagged = BeliefSettings(treated=False)
+    first = TracedPairs.of(PLOT.grid, np.full(N, 0.02))
+    done = Inspections.of(
+        np.array([5, 6, 5, 8, 5]), np.array([FOUND, FOUND, SKIPPED, SKIPPED, FOUND]),
+        np.datetime64(BEGINS) + np.array([0, 0, 1, 1, 5]),
+        notes=np.array(["", "", "gone: rotten", "locked", ""], object),
+    )  # fmt: skip
+    history = History(PLOT.grid, BEGINS, first, done, belief=flagged)
+    mornings = [first]
+    for day in range(6):
+        mornings.append(history.night_after(mornings[-1], day))
+    gone = [np.flatnonzero(history.gone(day)).tolist() for day in (0, 1, 4, 5)]
+    assert gone == [[], [5], [5], []]
+    assert history.flagged(mornings[0], 0) == pytest.approx(2.0, abs=0.01)
+    assert history.flagged(mornings[1], 1) == pytest.approx(1.0, abs=0.01)
+    assert history.evening(mornings[1], 1).chance[[5, 6]] == pytest.approx([0.0, 1.0], abs=1e-3)
+    assert history.flagged(mornings[5], 5) == pytest.approx(2.0, abs=0.01)
+    for day in (2, 3, 4):
+        scene = history.scene(SHIFT, day, mornings[day])
+        assert scene.last_inspected[5] == day
+        assert scene.flagged[[5, 6]].tolist() == [False, True]
+    # one that could not be inspected comes back, one that is gone does not
+    assert np.flatnonzero(history.skips(1).times).tolist() == [8]
+    assert (history.evening(mornings[4], 4).chance[6], history.states(4)[5]) == (
+        pytest.approx(1.0, abs=0.01), FOUND
+    )  # fmt: skip
+
+
 def test_the_scene_of_a_day_stands_where_and_when_its_last_inspection_was_made():
     scene = HISTORY.scene(SHIFT, 4, MORNING)
     assert (scene.at, scene.day) == (5, 4)

@@ -274,7 +274,10 @@ def test_a_morning_is_named_by_all_that_it_follows_from_and_by_nothing_after_it(
     causes = [
         treated(8), treated(8, plants=6), treated(8, efficacy=0.7), treated(7), looked(8),
         timed(30_000.0, 30_001.0), timed(30_000.0, 29_999.0), timed(30_001.0, 29_999.0),
-        looked(8, plant=np.array([2])), looked(8, result=np.array([1])), looked(7),
+        looked(8, plant=np.array([2])),
+        looked(8, result=np.array([2])),
+        looked(8, result=np.array([2]), notes=np.array(["gone"], object)),
+        looked(8, result=np.array([1])), looked(7),
         replace(history, detection=0.7),
         replace(history, belief=replace(history.belief, treated=False)),
         replace(history, belief=replace(history.belief, spread=Spread(0.3))),

@@ -507,7 +507,8 @@ class History:
         last, last_gone = np.full((2, len(self.grid)), -1)
         np.maximum.at(last, plant[inspected], at[inspected])
         np.maximum.at(last_gone, plant[says], at[says])
-        return last_gone > last
+        is_gone: NDArray[np.bool_] = last_gone > last
+        return is_gone
 
     def states(self, day: int) -> NDArray[np.int8]:
         """Return ``(n,)`` up to `day`: 1 found infested, 0 only looked clean, -1 never seen."""

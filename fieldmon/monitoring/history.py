@@ -489,7 +489,7 @@ class History:
     @cached_property
     def says_gone(self) -> NDArray[np.bool_]:
         """Which inspections say that the plant does not stand there any more, ``(k,)``."""
-        gone = self.inspections.result == SKIPPED
+        gone: NDArray[np.bool_] = self.inspections.result == SKIPPED
         gone[gone] = [says_gone(str(note)) for note in self.inspections.notes[gone]]
         return gone
 

@@ -16,6 +16,7 @@ from fieldmon.errors import ContradictionError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
+from fieldmon.io.parse.result_words import GONE
 from fieldmon.monitoring.brought_findings import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
@@ -41,6 +42,8 @@ _LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
 #: what a season's file calls what was typed in here, whatever the page's language
 TYPED_IN, _ROUTE_TABLE = "typed in", "route table"
 # the forms
+#: said of a plant that could not be inspected as it is not there any more
+_PULLED_OUT = 3
 _ONE, _ROUTE, _FILE = "one_plant", "route", "file"
 # row and number of the plant that was tapped: no name of another row is meant by them
 _TAPPED = "one_tapped"
@@ -99,8 +102,8 @@ def _show_one(choices: Choices) -> None:
         show(left.number_input, texts.HISTORY_ROW, 0, None, box="one_row")
     show(right.number_input, texts.HISTORY_PLANT, 0, None, box="one_plant")
     show(
-        st.segmented_control, texts.RESULT, [FOUND, CLEAN, SKIPPED], box="one_result",
-        format_func=texts.RESULTS_OF.__getitem__,
+        st.segmented_control, texts.RESULT, [FOUND, CLEAN, SKIPPED, _PULLED_OUT],
+        box="one_result", format_func=texts.RESULTS_OF.__getitem__,
     )  # fmt: skip
     show(st.number_input, texts.COUNT, 0, None, box="one_count")
     acting.at_press(texts.RECORD_BUTTON, _record_one, choices, key="record_one", boxes=boxes)
@@ -118,9 +121,11 @@ def _record_one(choices: Choices) -> str:
         else plant_meant(grid, f"{row}", int(number))
     )
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
+    note = GONE if result == _PULLED_OUT else ""
     results = Inspections.of(
-        np.array([plant]), np.array([result]), np.datetime64(choices.day), count=counted
-    )
+        np.array([plant]), np.array([SKIPPED if note else result]), np.datetime64(choices.day),
+        count=counted, notes=np.array([note], object),
+    )  # fmt: skip
     return said_of(recorded(choices, results, TYPED_IN, _ONE))
 
 

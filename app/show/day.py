@@ -10,11 +10,11 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
-from fieldmon.compute.wording import joined
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.day_figures import flagged_said
 from fieldmon.planning.bound_wording import PROVED, share_above
 from fieldmon.planning.explain import explain
+from fieldmon.planning.skips import nothing_left_in_words
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import sentences
 
@@ -131,7 +131,8 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
     if told := plan.route.aisles.narrow_sentence():
         st.warning(in_words(told))
     is_said = len(plan.route) or cautions.are_all_closed(choices, plan)
-    said = "" if is_said else texts.NO_STOPS
+    known = nothing_left_in_words(plan.scene)
+    said = "" if is_said else texts.NO_STOPS if known is None else in_words(known)
     if choices.season is not None:
         if len(plan.route) and _is_of_nobody(choices):
             st.info(texts.ROUTE_OF_NOBODY)
@@ -158,8 +159,9 @@ def _is_of_nobody(choices: Choices) -> bool:
 def beside_figures(choices: Choices) -> None:
     """Say what a season's figures leave out: flagged plants, and what was found again."""
     progress = chosen_day.progress(choices)
-    if said := flagged_said(chosen_day.flagged(choices)):
-        st.caption(in_words(joined(" ", said)))
+    left = chosen_day.figures(choices, choices.day)
+    for said in flagged_said(left, chosen_day.flagged(choices)):
+        st.caption(in_words(said))
     if (finds := progress.finds) > (plants := progress.found):
         st.caption(texts.FOUND_AGAIN.format(finds=finds, plants=plants, again=finds - plants))
 
@@ -191,9 +193,10 @@ def changes(choices: Choices) -> tuple[str, list[str]]:
         texts.CHANGED_TREATED.format(n=chosen_day.treated(choices, str(day)), day=said_day(day))
         for day in sorted(treated)
     ]
-    expected = {"now": about(now.expected), "before": about(before.expected)}
+    still = [chosen_day.still_infested(choices, day).expected for day in (str(since), choices.day)]
+    expected = {"now": about(still[1]), "before": about(still[0])}
     said.append(texts.CHANGED_OUT.format(day=said_day(since), **expected))
-    said += map(in_words, flagged_said(chosen_day.flagged(choices))[:1])
+    said += map(in_words, flagged_said(now, chosen_day.flagged(choices)))
     spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (str(since), choices.day)]
     if spots[0] != spots[1]:
         said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))

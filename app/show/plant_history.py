@@ -12,8 +12,10 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import FOUND, SKIPPED
+from fieldmon.io.parse.result_words import says_gone
 from fieldmon.monitoring import photos
+from fieldmon.pests.weather import DAY_S
 from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.named_rows import plant_meant
 
@@ -24,6 +26,8 @@ from .map_view import MapAnswers
 from .maps import plant_layers
 
 if TYPE_CHECKING:
+    from datetime import date
+
     from fieldmon.plot.grid import PlantGrid
 
     from ..state.choices import Choices
@@ -111,7 +115,7 @@ def show(choices: Choices) -> None:
     st.markdown(_on_route(choices, plant))
     if _taken_as_treated(choices, plant):
         st.caption(texts.HISTORY_TREATED)
-    st.markdown("\n".join(_inspections(choices, plant)))
+    st.markdown("\n".join(_events(choices, plant)))
     _show_photos(choices, plant)
 
 
@@ -173,17 +177,37 @@ def _taken_as_treated(choices: Choices, plant: int) -> bool:
     return bool(season.history.states(season.settings.day(choices.on))[plant] == FOUND)
 
 
-def _inspections(choices: Choices, plant: int) -> list[str]:
+def _events(choices: Choices, plant: int) -> list[str]:
+    """Return what was found on a plant and with what it was treated, in the order of days."""
     season = choices.season
     if season is None:
         return [texts.HISTORY_NEVER]
     done = season.history.inspections
-    own = np.flatnonzero(done.plant == plant)
-    lines = []
-    for k in own.tolist():
-        second = done.second[k]
-        at = "" if np.isnan(second) else f" {int(second) // 3600:02d}:{int(second) // 60 % 60:02d}"
-        day = choices.units.said_day(done.date[k].item(), choices.on)
+    done = done.take(done.plant == plant)
+    days, lines = done.date.tolist(), []
+    for k, second in enumerate(done.second.tolist()):
         result = texts.HISTORY_RESULTS[int(done.result[k])]
-        lines.append(texts.HISTORY_LINE.format(day=day, time=at, result=result))
-    return lines or [texts.HISTORY_NEVER]
+        if done.result[k] == SKIPPED and says_gone(str(done.notes[k])):
+            result = texts.RESULTS_OF[3]
+        lines.append(_line(choices, days[k], second, result))
+    treated = [one for one in season.treatments() if one.place.plants[plant]]
+    for one in reversed(treated):  # those behind first: places before them stay what they are
+        product, over_s = one.application.product, one.application.over_s
+        said = texts.HISTORY_SPRAYED
+        if product:
+            said = texts.HISTORY_SPRAYED_WITH.format(product=texts.isolated(product))
+        later = [
+            day > one.on or (day == one.on and second > over_s)
+            for day, second in zip(days, done.second.tolist(), strict=True)
+        ]
+        at = later.index(True) if True in later else len(days)
+        lines.insert(at, _line(choices, one.on, over_s, said))
+    return lines if len(done) else [*lines, texts.HISTORY_NEVER]
+
+
+def _line(choices: Choices, on: date, second: float, what: str) -> str:
+    """Return what was done on a day, with its time where that is known and of this day."""
+    known = second < DAY_S
+    at = f" {int(second) // 3600:02d}:{int(second) // 60 % 60:02d}" if known else ""
+    day = choices.units.said_day(on, choices.on)
+    return texts.HISTORY_LINE.format(day=day, time=at, result=what)

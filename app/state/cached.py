@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.monitoring import DayFigures, KeptMessage, PlannedAndDone, Progress, Season
     from fieldmon.monitoring.advice import Advice, AdviceSettings
@@ -216,6 +217,12 @@ def day_figures(key: str, revision: str, day: str, _season: Season) -> DayFigure
 def progress(key: str, revision: str, day: str, _season: Season) -> Progress:
     """Return how far the inspections are after a day of a season."""
     return _season.progress(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_DAYS)
+def still_infested(key: str, revision: str, day: str, _season: Season) -> PlotEstimate:
+    """Return how many plants are still infested after a day of a season, flagged ones too."""
+    return _season.still_infested(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=_MAPS)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring import DayFigures, PlannedAndDone, Progress
     from fieldmon.monitoring.told_detection import ToldOtherwise
     from fieldmon.planning.plan import DayPlan
@@ -211,6 +212,11 @@ def n_done(choices: Choices) -> int:
     """Return how many plants whoever is shown told of on the day, inspected or not."""
     told = choices.season.history.inspections.on(choices.on)
     return len(np.unique(made_by(told, choices.who).plant))
+
+
+def still_infested(choices: Choices, day: str) -> PlotEstimate:
+    """Return how many plants are still infested after a day, flagged ones among them."""
+    return cached.still_infested(choices.key, choices.revision, day, choices.season)
 
 
 def flagged(choices: Choices) -> float:

@@ -113,7 +113,7 @@ def _of_season(name: str, season: Season) -> PlotState:
     # nothing is known of a season before its first day
     on = max(today, season.settings.begins)
     of = season.key, season.revision, str(on), season
-    expected = cached.day_figures(*of).expected + cached.flagged(*of)
+    expected = cached.still_infested(*of).expected
     seen = days_since(season, today)
     return PlotState(name, name, season.plot.field.boundary, None, seen, expected)
 

@@ -49,8 +49,9 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
     detected, least, most = (number(one, ".0f") for one in shares)
     star = " *" if assumptions.of(choices) else ""
     with st.container(horizontal=True):
-        low, high = (number(one, ",") for one in (now.low, now.high))
-        expected = f"{about(now.expected)} ({low}–{high})"
+        still = chosen_day.still_infested(choices, choices.day)
+        low, high = (number(one, ",") for one in (still.low, still.high))
+        expected = f"{about(still.expected)} ({low}–{high})"
         st.metric(f"{texts.EXPECTED_LEFT}{star}", expected,
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
         st.metric(texts.FOUND_EVER, number(progress.found, ","), width="content")

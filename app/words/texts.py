@@ -767,6 +767,7 @@ HISTORY_STOP = "Stop {n:,} of {all:,} on the day's route, at {time}."
 HISTORY_NO_STOP = "Not on the day's route."
 HISTORY_NEVER = "Never inspected."
 HISTORY_LINE = "- {day}{time}: **{result}**"
+HISTORY_SPRAYED, HISTORY_SPRAYED_WITH = "treated", "treated with {product}"
 HERE, HERE_RESULTS = "**Row {row}, plant {plant}**", {0: "Record as clean", 1: "Record as found"}
 HISTORY_RESULTS = {0: "clean", 1: "found", 2: "could not inspect"}
 
@@ -812,7 +813,7 @@ LEAST, MOST = "at least (90 %)", "at most (90 %)"
 EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval that holds 90 %."
 CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Share found"
 DETECTED_HELP = (
-    "Plants found so far, in percent of these and of those still infested. Plants that a treatment "
+    "Plants found so far, in percent of these and of those not found yet. Plants that a treatment "
     "cleaned before anybody found them are in neither: the share rises with it."
 )
 INSPECTED_EVER = "Inspected so far"
@@ -838,7 +839,9 @@ RECORD_FILE_IN = (
 )
 TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
-RESULT, COUNT, RESULTS_OF = "Result", "Count", {0: "clean", 1: "found", 2: "could not inspect"}
+RESULT, COUNT, RESULTS_OF = "Result", "Count", {
+    0: "clean", 1: "found", 2: "could not inspect", 3: "gone (pulled out)",
+}  # fmt: skip
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
 RECORD_REST = (
     "Say how many stops were done, from the first: they are recorded as clean, unless marked as "
@@ -967,7 +970,7 @@ EFFECTS_TREATED = (
 TREAT_BUTTON, TREATED = "Note the treatment", "Treatment noted."
 TREATED_BEFORE = "This treatment was noted already; nothing changed."
 ROW_AGES, DAYS_SINCE, ROW_AXIS = "Days since each row was inspected", "days", "row"
-OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "still infested (expected)", "inspected", "day"
+OUT_AXIS, INSPECTED_AXIS, DATE_AXIS = "infested, not found yet (expected)", "inspected", "day"
 ROW_NEVER, ROW_TODAY = "never", "today"
 EVERY_ROW = "Every row was inspected."
 NEVER_ROWS = Plural(

@@ -17,6 +17,7 @@ from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from datetime import date
     from pathlib import Path
 
@@ -66,6 +67,7 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
         raise _nobody_may_enter(on, off)
     _tell_skipped((today,))
     if not len(route):
+        _refuse_nothing_left((today,))
         if left_h := today.scene.seconds_left / 3600:
             _tell_left_off(options, off, on_foot=True)
         raise SettingError(
@@ -83,6 +85,15 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     _tell_detection(season, on)
     write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
     write_chance_map(options.chance_map, season.plot, season.evening(on))
+
+
+def _refuse_nothing_left(days: Sequence[DayPlan]) -> None:
+    """Refuse a day on which every plant is known: no hours would help."""
+    from fieldmon.planning.skips import nothing_left_in_words
+
+    said = [nothing_left_in_words(today.scene) for today in days]
+    if said and said[0] is not None and all(said):
+        raise SettingError(said[0])
 
 
 class _LeftOff(NamedTuple):
@@ -198,6 +209,7 @@ def _plan_team(
     if not any(len(today.route) for today in days):
         if off.all_closed and not options.enter_treated:
             raise _nobody_may_enter(on, off)
+        _refuse_nothing_left(days)
         _tell_left_off(options, off, on_foot=True)
         raise SettingError(
             f"Somebody must have time to reach another plant and come back, but nobody has on "

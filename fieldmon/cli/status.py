@@ -140,7 +140,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     from fieldmon.infestation.learnt import worth_saying
     from fieldmon.monitoring.day_figures import flagged_said
 
-    ahead = now.estimate
+    still, ahead = now.infested, now.estimate
     yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
     yield f"  inspected that day     {now.inspected_today:6,}, {now.found_today:,} found infested"
     yield (
@@ -153,17 +153,18 @@ def lines(season: Season, now: Status) -> Iterator[str]:
             f"  could not be inspected {now.skipped:6,} last time, {now.left_out:,} of them left "
             "out of the next day's plan"
         )
+    yield from _gone(season, now)
     yield from _planned_only(season, now.on)
     yield (
-        f"  expected still there   {estimate(ahead.expected):>6} ({ahead.low:,} to {ahead.high:,} "
+        f"  still infested         {estimate(still.expected):>6} ({still.low:,} to {still.high:,} "
         "with a chance of 90 %)"
     )
-    for said in flagged_said(now.flagged):
+    for said in flagged_said(ahead, now.flagged):
         yield f"  {'':22} {said}"
     least, most = now.detection_range_pct
     yield (
         f"  share found            {now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %) of "
-        "found and still there"
+        "found and not found yet"
     )
     yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
     since = "learnt so far" if now.inspected else "believed at first"
@@ -191,6 +192,12 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"
         for h in range(min(len(spots), 3))
     )
+
+
+def _gone(season: Season, now: Status) -> Iterator[str]:
+    """Yield how many plants do not stand there any more, if any."""
+    if n := int(season.history.gone(now.day).sum()):
+        yield f"  gone                   {n:6,} pulled out: plans leave them out"
 
 
 def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:

@@ -53,7 +53,11 @@ ReEntry = Annotated[
 Began = Annotated[str | None, typer.Option("--began", help="Local time at which it began, HH:MM.")]
 Ended = Annotated[
     str | None,
-    typer.Option("--ended", help="Local time at which it ended; else the end of the day."),
+    typer.Option(
+        "--ended",
+        help="Local time at which it ended: what was inspected later counts after it; else the end "
+        "of the day.",
+    ),
 ]
 
 
@@ -151,12 +155,12 @@ def treat(options: TreatOptions) -> None:
         return
     tell_not_come(on_day, kept.plot.field, "the day of the treatment")
     now = kept.status(on_day)
-    ahead = now.estimate
+    still = now.infested
     typer.echo(
-        f"Treatment noted as batch {done.batch}; about {estimate(ahead.expected)} plants are "
-        f"believed infested now ({ahead.low:,} to {ahead.high:,})."
+        f"Treatment noted as batch {done.batch}; about {estimate(still.expected)} plants are "
+        f"believed infested now ({still.low:,} to {still.high:,})."
     )
-    for sentence in flagged_said(now.flagged)[:1]:
+    for sentence in flagged_said(now.estimate, now.flagged):
         typer.echo(sentence)
     _say_what_follows(kept, done.batch, learnt=options.efficacy is None)
 

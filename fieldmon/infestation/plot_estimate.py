@@ -89,7 +89,7 @@ class PlotEstimate:
             )
         return (
             f"About {self.expected:,.0f} plants are infested ({within}) beside the {self.found:,} "
-            f"that were found and only flagged; the chance that there is no other is {clean}."
+            f"that were found and only flagged; the chance that the plot is clean is {clean}."
         )
 
 

@@ -7,6 +7,7 @@ quantity, machinery, weather.
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.decisions.doses import WATER_L_HA
 from fieldmon.decisions.labels import checked_waits
 from fieldmon.errors import SettingError
+from fieldmon.pests.weather import DAY_S
 
 if TYPE_CHECKING:
     from datetime import time
@@ -115,6 +117,18 @@ class Application:
     def ends_next_day(self) -> bool:
         """Whether it ended on the day after: earlier in the day than it began."""
         return self.began is not None and self.ended is not None and self.ended < self.began
+
+    @property
+    def over_s(self) -> float:
+        """Seconds since midnight of its day at which it was over; infinite where nobody said.
+
+        Where only its beginning was said, that counts.
+        """
+        at = self.began if self.ended is None else self.ended
+        if at is None:
+            return math.inf
+        of_day = at.hour * 3600.0 + at.minute * 60.0 + at.second
+        return of_day + (DAY_S if self.ends_next_day else 0.0)
 
     def by_label(self, label: ProductLabel | None) -> Application:
         """Return it with what nobody said of waiting and group taken from the product's label."""

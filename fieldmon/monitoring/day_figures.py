@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import Worded, estimate, worded
+from fieldmon.compute.wording import Worded, estimate, figure, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.monitoring.transactions import get_meta, set_meta
 from fieldmon.samplers.base import NEVER
 
@@ -20,10 +21,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.history import History
 
 
+# so near to a whole number are chances of plants that are known to be infested
+_CERTAIN = 0.01
 # by which rules the figures of days were worked out, and from which day on
 _RULES = "rules of figures"
 
@@ -40,25 +42,28 @@ def found_pct(found: int, left: float) -> float:
     return 100.0 * found / everything if everything else 100.0
 
 
-def flagged_said(flagged: float) -> list[Worded]:
-    """Return what is to be said beside an estimate of what was not found yet, if anything.
-
-    The second sentence is for where the chance that the plot is clean is told too.
+def flagged_said(left: DayFigures | PlotEstimate, flagged: float) -> list[Worded]:
+    """Return what is to be said beside how many are still infested, if any of them are flagged.
 
     Parameters
     ----------
+    left
+        How many are infested and not found yet.
     flagged
         How many plants that were found are still infested (`Status.flagged`).
     """
     if round(flagged, 1) == 0.0:
         return []
+    # of those that are certain it is a count
+    is_count = abs(flagged - round(flagged)) < _CERTAIN
+    n = figure(round(flagged)) if is_count else estimate(flagged)
     return [
         worded(
-            "About {n} more plants, which were found and only flagged, are still infested.",
-            n=estimate(flagged),
-        ),
-        worded("The chance that the plot is clean leaves these out."),
-    ]
+            "Of those still infested, about {left} ({low:,} to {high:,}) are not found yet, and "
+            "{n} were found and only flagged.",
+            left=estimate(left.expected), low=left.low, high=left.high, n=n,
+        )
+    ]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -92,6 +97,11 @@ class DayFigures:
         """Return the figures of a day from what was done and what is believed."""
         done = progress.inspected_today, progress.found_today
         return cls(on, *done, estimate.expected, estimate.low, estimate.high, estimate.chance_clean)
+
+    @property
+    def estimate(self) -> PlotEstimate:
+        """How many are infested and not found yet."""
+        return PlotEstimate(self.expected, self.low, self.high, self.chance_clean)
 
     def share_found_pct(self, found: int) -> tuple[float, float, float]:
         """Return `found` plants in percent of those and of what is left: guess, low and high."""

@@ -28,6 +28,7 @@ from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.io.parse.result_words import says_gone
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import Skips, without_flagged, without_skipped
@@ -196,16 +197,20 @@ class Treatment:
     Parameters
     ----------
     day
-        Day of the season. It works after that day's inspections.
+        Day of the season.
     plants
         ``(n,)`` whether each plant was treated.
     efficacy
         Chance that an infested plant is clean afterwards.
+    second
+        Seconds since that day's midnight at which it was over: what was inspected later on that day
+        counts after it. Infinite where nobody said: it works after all of the day's inspections.
     """
 
     day: int
     plants: NDArray[np.bool_]
     efficacy: float
+    second: float = np.inf
 
     def __post_init__(self) -> None:
         must_be("The efficacy of a treatment must be a chance in 0..1", self.efficacy, Real,
@@ -344,18 +349,36 @@ class History:
     ) -> Belief:
         """Return what is believed after a day, and after inspections `later` in its work."""
         rows = self._rows_of(day)
-        which = rows if later is None else np.append(np.arange(rows.start, rows.stop), later)
-        done, detection = self.inspections.take(which), self.detections[which]
-        inspected = done.result != SKIPPED
-        done, detection = done.take(inspected), detection[inspected]
-        believed = self.belief.evening(morning, done.plant, done.result == FOUND, detection)
-        for treatment in self.treatments:
-            if treatment.day == day:
-                # who infested whom ends here: what it says of today's finds counts before
-                believed = in_hindsight(believed, self.night(day)).treated(
-                    np.where(treatment.plants, 1 - treatment.efficacy, 1.0)
-                )
+        which = np.append(np.arange(rows.start, rows.stop), [] if later is None else later)
+        which = which.astype(np.int64)[self.inspections.result[which.astype(np.int64)] != SKIPPED]
+        second = self.inspections.second[which] + np.where(self.days[which] > day, DAY_S, 0.0)
+        today = [one for one in self.treatments if one.day == day]
+        believed = morning
+        for treatment in sorted(today, key=lambda one: one.second):
+            # who was inspected without a time was so before it
+            late = second > treatment.second
+            believed = self._inspected(believed, which[~late])
+            which, second = which[late], second[late]
+            # who infested whom ends here: what it says of today's finds counts before
+            believed = in_hindsight(believed, self.night(day)).treated(
+                np.where(treatment.plants, 1 - treatment.efficacy, 1.0)
+            )
+        believed = self._inspected(believed, which)
+        # its infestation is gone with it
+        if (pulled := self.gone(day) & ~self.gone(day - 1)).any():
+            left = np.where(pulled, 0.0, 1.0)
+            believed = in_hindsight(believed, self.night(day)).treated(left)
         return believed
+
+    def inspected_after(self, treatment: Treatment) -> NDArray[np.bool_]:
+        """Return which of the inspections of a treatment's day count after it, ``(k,)``."""
+        late: NDArray[np.bool_] = self.on(treatment.day).second > treatment.second
+        return late
+
+    def _inspected(self, believed: Belief, which: NDArray[np.signedinteger]) -> Belief:
+        """Return what is believed after some inspections, in their order."""
+        done, detection = self.inspections.take(which), self.detections[which]
+        return self.belief.evening(believed, done.plant, done.result == FOUND, detection)
 
     def mean_detection(self, day: int) -> float:
         """Return what the inspections up to the evening of a day were told to find, on average.
@@ -393,12 +416,22 @@ class History:
         return _Last()
 
     def _estimate(self, morning: Belief, day: int) -> PlotEstimate:
-        # what was found is known: it is not out there any more
-        return estimate_of(self.grid, self.in_hindsight(morning, day), found=self._flagged(day))
+        return not_found_yet(self.grid, self.in_hindsight(morning, day), self._flagged(day))
+
+    def infested(self, morning: Belief, day: int) -> PlotEstimate:
+        """Return how many plants are infested after a day's work: not found yet, and flagged."""
+        flagged = self._flagged(day)
+        if flagged is None or not flagged.any():
+            return self.estimate(morning, day)
+        believed = self.in_hindsight(morning, day)
+        if (believed.chance[flagged] > KNOWN).all():
+            left = self.estimate(morning, day)
+            return left.beside(left.found)
+        return infested_in_all(self.grid, believed, flagged)
 
     def _flagged(self, day: int) -> NDArray[np.bool_] | None:
-        """Return ``(n,)`` which plants were found infested until a day; None: they are treated."""
-        return None if self.belief.treated else self.states(day) == PRESENT
+        """Return ``(n,)`` which plants there are that were found until a day; None: all treated."""
+        return None if self.belief.treated else (self.states(day) == PRESENT) & ~self.gone(day)
 
     def found_and_left(self, evening: Belief, day: int) -> NDArray[np.bool_] | None:
         """Return the plants of which it is certain that they are infested; None: all are treated.
@@ -449,9 +482,33 @@ class History:
     def skips(self, day: int) -> Skips:
         """Return how often in a row each plant was skipped, up to the evening of a day."""
         done = self.until(day)
-        skipped = done.result == SKIPPED
+        skipped = (done.result == SKIPPED) & ~self.gone(day)[done.plant]
         days = self.days[: len(done)][skipped]
         return Skips.of(done.plant[skipped], days, self.last_inspected(day))
+
+    @cached_property
+    def says_gone(self) -> NDArray[np.bool_]:
+        """Which inspections say that the plant does not stand there any more, ``(k,)``."""
+        gone: NDArray[np.bool_] = self.inspections.result == SKIPPED
+        gone[gone] = [says_gone(str(note)) for note in self.inspections.notes[gone]]
+        return gone
+
+    def gone(self, day: int) -> NDArray[np.bool_]:
+        """Return ``(n,)`` which plants are gone by the evening of a day.
+
+        They were said to be, and nobody inspected the place since.
+        """
+        until = np.searchsorted(self.days, day + 1)
+        says = self.says_gone[:until]
+        if not says.any():
+            return np.zeros(len(self.grid), np.bool_)
+        plant, at = self.inspections.plant[:until], np.arange(until)
+        inspected = self.inspections.result[:until] != SKIPPED
+        last, last_gone = np.full((2, len(self.grid)), -1)
+        np.maximum.at(last, plant[inspected], at[inspected])
+        np.maximum.at(last_gone, plant[says], at[says])
+        is_gone: NDArray[np.bool_] = last_gone > last
+        return is_gone
 
     def states(self, day: int) -> NDArray[np.int8]:
         """Return ``(n,)`` up to `day`: 1 found infested, 0 only looked clean, -1 never seen."""
@@ -504,6 +561,7 @@ class History:
         last = self.last_inspected(day)
         # nobody is sent to a plant twice a day, not even a closed one
         last[self.on(day).plant] = last[self.inspections.plant[later]] = day
+        last[self.gone(day)] = day
         trail = self._trail(shift, day, who)
         today = made_by(self.worked(shift, day, who), who)
         resting = resting_place(robot, trail)
@@ -638,6 +696,35 @@ def in_sight(belief: Belief) -> Belief:
 def in_hindsight(evening: Belief, night: Spread) -> Belief:
     """Return what is believed of an evening as its finds say of others, before a night."""
     return evening.in_hindsight(night) if isinstance(evening, TracedPairs) else evening
+
+
+def infested_in_all(
+    grid: PlantGrid, believed: Belief, flagged: NDArray[np.bool_] | None, sure: float = 0.9
+) -> PlotEstimate:
+    """Return how many plants are infested: not found yet, and `flagged` ``(n,)`` (None: none).
+
+    With one of which it is certain the plot is not clean. A treatment leaves them in doubt.
+    """
+    certain = None if flagged is None else flagged & (believed.chance > KNOWN)
+    made = estimate_of(grid, believed, sure, certain)
+    return made.beside(made.found)
+
+
+def not_found_yet(
+    grid: PlantGrid, believed: Belief, flagged: NDArray[np.bool_] | None, sure: float = 0.9
+) -> PlotEstimate:
+    """Return how many plants are infested beside the `flagged`; all is as in `infested_in_all`.
+
+    The chance that the plot is clean is of all plants, those that are flagged among them.
+    """
+    # what was found is known: it is not out there any more
+    made = estimate_of(grid, believed, sure, flagged)
+    if flagged is None or not made.found:
+        return made
+    if (believed.chance[flagged] > KNOWN).any():
+        return replace(made, chance_clean=0.0)
+    clean = infested_in_all(grid, believed, flagged, sure).chance_clean
+    return replace(made, chance_clean=clean)
 
 
 def made_by(inspections: Inspections, who: str | Besides | None) -> Inspections:

@@ -32,7 +32,7 @@ from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.monitoring.history import BeliefSettings, in_hindsight, in_sight
+from fieldmon.monitoring.history import BeliefSettings, in_hindsight, in_sight, not_found_yet
 from fieldmon.planning.plan import plan_in
 from fieldmon.planning.skips import Skips, without_flagged, without_skipped
 from fieldmon.plot.grid import row_label
@@ -275,7 +275,7 @@ class Monitor:
         >>> made.low < made.expected < made.high, round(made.chance_clean, 2)
         (True, 0.0)
         """
-        return estimate_of(self.plot.grid, self._told, sure, self._left)
+        return not_found_yet(self.plot.grid, self._told, self._left, sure)
 
     @checked
     def verdict(self, level: float, sure: float = 0.9) -> MapVerdict:

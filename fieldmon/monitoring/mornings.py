@@ -170,13 +170,15 @@ def _causes(history: History, day: int) -> str:
     first, told = history.first_morning, history.detections[: len(done)]
     said = history.belief, history.begins
     treated = [
-        digest(one.day, one.plants, one.efficacy) for one in history.treatments if one.day < day
+        digest(one.day, one.plants, one.efficacy, one.second, history.inspected_after(one))
+        for one in history.treatments
+        if one.day < day
     ]
     pest = () if history.pest_in_weather is None else history.pest_in_weather.content
     return digest(
         *pest,
         *(rules(), first.chance, first.pair_chance, _learnt_before(first), said, day, treated),
-        *(done.plant, done.result, done.date, told),
+        *(done.plant, done.result, done.date, told, history.says_gone[: len(done)]),
     )
 
 

@@ -599,5 +599,6 @@ def newest_day(db: sqlite3.Connection) -> int:
 
 
 def _same_treatment(one: Treatment, other: Treatment) -> bool:
-    same_time = (one.day, one.efficacy) == (other.day, other.efficacy)
-    return same_time and np.array_equal(one.plants, other.plants)
+    names = "day", "efficacy", "second"
+    alike = all(getattr(one, name) == getattr(other, name) for name in names)
+    return alike and np.array_equal(one.plants, other.plants)

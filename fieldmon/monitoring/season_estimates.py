@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
+    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.advice import Advice
     from fieldmon.monitoring.open_season import SeasonContents
     from fieldmon.monitoring.told_detection import ToldOtherwise
@@ -147,6 +148,13 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             history = contents.history
         return history.forecast(morning, day)  # others may plan meanwhile
+
+    def still_infested(self, on: date) -> PlotEstimate:
+        """Return how many plants are still infested after a day: not found yet, and flagged."""
+        if self._now().settings.belief.treated:
+            return self.day_figures(on).estimate  # it stands in the file
+        with self._asked(on) as (contents, morning, day):
+            return contents.history.infested(morning, day)
 
     def flagged(self, on: date) -> float:
         """Return how many of the plants found up to `on` are only flagged and still infested."""

@@ -60,7 +60,10 @@ class SeasonTreatments(OpenSeason):
         product: str = "", *, application: Application | None = None,
         plants: NDArray[np.generic] | Sequence[Any] | None = None,
     ) -> Recorded:  # fmt: skip
-        """Note that a part of the plot was treated, after the day's work.
+        """Note that a part of the plot was treated.
+
+        What was inspected on that day after `application` ended counts after it; of one without
+        times nothing.
 
         Parameters
         ----------

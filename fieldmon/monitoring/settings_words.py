@@ -87,7 +87,8 @@ def telling_anew(
 
 
 def _still_there(season: Season, on: date) -> str:
-    left = season.status(on).estimate
+    # with those found and only flagged: else a change of them would seem to find or lose plants
+    left = season.still_infested(on)
     return worded(
         "{expected} ({low:,} to {high:,})",
         expected=estimate(left.expected), low=left.low, high=left.high,

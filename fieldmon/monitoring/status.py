@@ -47,6 +47,8 @@ class Status:
         How many of those are left out of the next day's plan.
     estimate
         How many are infested and not found yet, as believed.
+    infested
+        How many are still infested in all: not found yet, and flagged.
     flagged
         How many of the plants found are still infested, as expected: they were flagged only.
     learnt
@@ -79,6 +81,7 @@ class Status:
     skipped: int
     left_out: int
     estimate: PlotEstimate
+    infested: PlotEstimate
     flagged: float
     learnt: tuple[Learnt, ...]
     days_since: NDArray[np.float64]
@@ -97,6 +100,7 @@ class Status:
             skipped=int(np.count_nonzero(skips.times)),
             left_out=int(np.count_nonzero(skips.left_out(day + 1))),
             estimate=history.estimate(morning, day),
+            infested=history.infested(morning, day),
             flagged=history.flagged(morning, day),
             learnt=history.learnt(morning, day),
             hot_spots=hot_spots(history.grid, history.known(day)),

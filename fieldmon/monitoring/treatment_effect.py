@@ -18,6 +18,7 @@ from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, figure, joined, worded
 from fieldmon.decisions.labels import plain_name
 from fieldmon.infestation.inspections import FOUND, SKIPPED
+from fieldmon.pests.weather import DAY_S
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -35,6 +36,9 @@ PRIOR_PLANTS = 4.0
 WINDOW_DAYS = 21
 _SURE = 0.9
 _UNSEEN = np.int8(-1)
+# moments, in seconds: a day with what goes on past midnight, and inspections without a time before
+# all treatments of their day
+_NEVER_S, _ROOM_S, _UNTIMED_S = 2.0 * DAY_S, 3.0 * DAY_S, -2.0
 
 
 @dataclass(frozen=True)
@@ -193,30 +197,37 @@ def _before_and_after(
 ) -> tuple[Results, Results, NDArray[np.bool_]]:
     """Return each plant's last result before a treatment and its first after it, and who is out.
 
-    ``(n,)`` each, -1: none. A treatment works after its day's inspections. Results from beyond
-    another treatment of the same plant tell nothing of this one.
+    ``(n,)`` each, -1: none. A treatment works after the inspections of its day that were made by
+    when it was over, see `Treatment`. Results from beyond another treatment of the same plant tell
+    nothing of this one.
     """
-    n = len(history.grid)
-    first, last = np.full(n, one.day - WINDOW_DAYS), np.full(n, min(one.day + WINDOW_DAYS, on))
+    n, over = len(history.grid), _over(one)
+    first = np.full(n, (one.day - WINDOW_DAYS) * _ROOM_S + _UNTIMED_S)
+    last = np.full(n, min(one.day + WINDOW_DAYS, on) * _ROOM_S + _NEVER_S)
     treated = one.place.plants.copy()
     for other in all_of_them:
-        if other.day < one.day:
-            first[other.place.plants] = np.maximum(first[other.place.plants], other.day + 1)
-        elif other.day > one.day:
-            last[other.place.plants] = np.minimum(last[other.place.plants], other.day)
-        elif other is not one:
-            treated |= other.place.plants
-    seen = history.inspections.result != SKIPPED
-    plant, result, day = (
-        column[seen]
-        for column in (history.inspections.plant, history.inspections.result, history.days)
-    )
+        plants, its_over = other.place.plants, _over(other)
+        if its_over < over:
+            first[plants] = np.maximum(first[plants], its_over)
+        elif its_over > over:
+            last[plants] = np.minimum(last[plants], its_over)
+        if other.day == one.day:
+            treated |= plants
+    done = history.inspections
+    seen = done.result != SKIPPED
+    plant, result = done.plant[seen], done.result[seen]
+    at = history.days[seen] * _ROOM_S + np.nan_to_num(done.second[seen], nan=_UNTIMED_S + 1.0)
     before, after = np.full(n, _UNSEEN), np.full(n, _UNSEEN)
-    early = (day >= first[plant]) & (day <= one.day)
+    early = (at > first[plant]) & (at <= over)
     before[plant[early]] = result[early]  # they are in order: the last one stays
-    late = np.flatnonzero((day > one.day) & (day <= last[plant]))[::-1]
+    late = np.flatnonzero((at > over) & (at <= last[plant]))[::-1]
     after[plant[late]] = result[late]
     return before, after, treated
+
+
+def _over(one: KeptTreatment) -> float:
+    """Return the moment at which a treatment was over: later inspections are after it."""
+    return one.day * _ROOM_S + min(one.application.over_s, _NEVER_S)
 
 
 def _posterior(said: float, still: int, n: int, detection: float) -> tuple[float, float, float]:

@@ -109,7 +109,7 @@ class KeptTreatment:
     @property
     def believed(self) -> Treatment:
         """Return it as the belief takes it."""
-        return Treatment(self.day, self.place.plants, self.efficacy)
+        return Treatment(self.day, self.place.plants, self.efficacy, self.application.over_s)
 
 
 def store(

@@ -120,6 +120,24 @@ def left_out_in_words(scene: Scene, *routes: Route) -> tuple[Worded, ...]:
     return tuple(said)
 
 
+def nothing_left_in_words(scene: Scene) -> Worded | None:
+    """Return that every plant that could be inspected is known and flagged; None: it is not so."""
+    if scene.flagged is None or (scene.last_inspected != scene.day).any():
+        return None
+    n, every = int(np.count_nonzero(scene.flagged)), len(scene.flagged)
+    if n == every:
+        return worded(
+            "Every plant is known: all {n:,} were found and only flagged. Nothing is left to "
+            "inspect until they are treated.",
+            n=n,
+        )
+    return worded(
+        "Nothing is left to inspect: {plants} were found and only flagged, and all others were "
+        "inspected on this day or are left out of it.",
+        plants=counted(n, "plant"),
+    )
+
+
 def _still_out(left_out: NDArray[np.bool_] | None, routes: tuple[Route, ...]) -> int:
     """Return how many of some plants ``(n,)`` are on none of these routes."""
     if left_out is None:

@@ -154,14 +154,14 @@ def season_report(season: Season, on: date, units: Units) -> Report:
 
 
 def _stands(facts: _Facts) -> Iterator[Block]:
-    status, ahead = facts.status, facts.status.estimate
+    status, ahead, still = facts.status, facts.status.estimate, facts.status.infested
     said = [
         worded(words.STANDS,
-            expected=estimate(ahead.expected), low=ahead.low, high=ahead.high,
+            expected=estimate(still.expected), low=still.low, high=still.high,
             found=counted(status.found, "plant"),
         )
     ]  # fmt: skip
-    said += flagged_said(status.flagged)
+    said += flagged_said(ahead, status.flagged)
     if ahead.chance_clean >= 0.005:
         said.append(worded(words.STANDS_CLEAN, chance=ahead.chance_clean))
     if len(status.hot_spots):
@@ -187,14 +187,14 @@ def _left_out(all_of: Sized, most: int, rest: str) -> tuple[str, ...]:
 
 
 def _figures(facts: _Facts) -> KeyFigures:
-    status, ahead = facts.status, facts.status.estimate
+    status, ahead, still = facts.status, facts.status.estimate, facts.status.infested
     low, high = found_pct(status.found, ahead.high), found_pct(status.found, ahead.low)
     finds = sum(one.found for one in facts.days)
     twice = worded(words.FOUND_TWICE, n=finds) if finds != status.found else ""
     return KeyFigures(
         (
-            KeyFigure(words.STILL, estimate(ahead.expected),
-                      worded(words.INTERVAL, low=figure(ahead.low), high=figure(ahead.high))),
+            KeyFigure(words.STILL, estimate(still.expected),
+                      worded(words.INTERVAL, low=figure(still.low), high=figure(still.high))),
             KeyFigure(words.FOUND_SO_FAR, figure(status.found), twice),
             KeyFigure(words.SHARE_FOUND, figure(status.detection_pct, ".0f", " %"),
                       worded(words.INTERVAL, low=figure(low, ".0f"),

@@ -87,12 +87,12 @@ ROWS_UNSEEN = "Never inspected: {rows}."
 ROWS_LATE = "Not inspected for a week or more: {rows}."
 ROWS_ALL = "Every row was inspected within the last week."
 CHART_INSPECTED, CHART_FOUND = "Plants inspected a day", "Plants found a day"
-CHART_SHARE = "Share found, of found and still infested, % (line), and its 90 % interval"
-CHART_STILL = "Still infested and not found, as expected (line), and its 90 % interval"
+CHART_SHARE = "Share found, of found and not found yet, % (line), and its 90 % interval"
+CHART_STILL = "Infested and not found yet, as expected (line), and its 90 % interval"
 CHART_TREATED = "treated"
 CHART_ALT = "Chart by day: {title}."
 DAYS = "Day by day"
-DAY_COLUMNS = ("day", "inspected", "found", "still infested (90 %)", "share found")
+DAY_COLUMNS = ("day", "inspected", "found", "not found yet (90 %)", "share found")
 DAYS_REST = "... and {n} earlier; the season's file holds all."
 HOT_LIST = "Hot spots"
 HOT_MEANS = (
@@ -166,7 +166,7 @@ MEANINGS = (
         "some kinds it holds less often."
     ),
     (
-        "The share found is of plants found and those still infested: it rises, too, when a "
+        "The share found is of plants found and those not found yet: it rises, too, when a "
         "treatment cleans plants that nobody found."
     ),
     "A hot spot is where finds cluster more than chance allows, three or more; false ones: 5 %.",

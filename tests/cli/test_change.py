@@ -2,12 +2,16 @@
 
 from datetime import timedelta
 
+import numpy as np
 import pytest
 
 from fieldmon.cli.status import lines
 from fieldmon.compute.wording import estimate
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.history import BeliefSettings
 from tests.cli.estate import ZIP
+from tests.monitoring.seasons import a_season
 
 
 def test_choices_can_be_changed(run, season):
@@ -102,6 +106,19 @@ def test_whether_finds_are_treated_or_only_flagged_is_chosen(run, season):
         code, _, err, _ = run("change", season, option)
         assert code == 0, err
         assert Season(season).settings.belief.treated is treated
+
+
+def test_what_finds_become_is_told_of_all_that_are_infested_before_and_after(run, tmp_path):
+    kept = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
+    on = kept.settings.begins
+    kept.record(Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(on)), "x")
+    before = kept.still_infested(on)
+    assert before.low >= 20
+    out = run("change", kept.path, "--treat-finds")[1]
+    after = kept.still_infested(on)
+    assert after.expected < before.expected - 19
+    assert f"after {on} {estimate(after.expected)} ({after.low:,} to {after.high:,})" in out
+    assert f"it was {estimate(before.expected)} ({before.low:,} to {before.high:,})." in out
 
 
 def test_what_is_usual_where_nothing_is_known_is_told_when_a_season_begins_and_later(run, tmp_path):

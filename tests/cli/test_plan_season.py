@@ -35,6 +35,44 @@ def test_a_day_from_plan_to_status(run, season, tmp_path):
     assert "chance it is clean" in out
 
 
+def test_a_plant_that_was_pulled_out_is_recorded_by_file_and_no_treatment_stands(
+    run, season, tmp_path
+):
+    run("change", season, "--flag-only")
+    kept, first = Season(season), date.fromisoformat(BEGINS)
+    kept.record(Inspections.of(np.arange(3), np.ones(3, int), np.datetime64(first)), "x")
+    after = first + timedelta(days=1)
+    line, number = (of[:3].tolist() for of in kept.label)
+    (tmp_path / "gone.csv").write_text(
+        f"row,number,found,date,who\n{line[1]},{number[1]},pulled out,{after},Ana\n"
+    )
+    code, _, err, _ = run("record", season, tmp_path / "gone.csv")
+    assert code == 0, err
+    out = run("status", season, "--date", after)[1]
+    assert "gone                        1 pulled out: plans leave them out" in out
+    assert "not found yet, and 2 were found and only flagged." in out
+    assert "could not be inspected" not in out
+    assert 1 not in Season(season).plan(after + timedelta(days=1)).route.plant
+    assert Season(season).treatments() == ()
+    run("undo", season)
+    assert not Season(season).history.gone(1).any()
+
+
+@pytest.mark.parametrize("robots", ["1", "2"])
+def test_where_every_plant_is_known_and_flagged_the_day_is_not_called_too_short(
+    run, season, robots
+):
+    run("change", season, "--flag-only", "--robots", robots)
+    kept, first = Season(season), date.fromisoformat(BEGINS)
+    plants = np.arange(len(kept.plot.grid))
+    kept.record(Inspections.of(plants, np.ones(len(plants), int), np.datetime64(first)), "x")
+    code, _, err, _ = run("plan", season, "--date", first + timedelta(days=1), "-o", "r.csv")
+    assert code == 2
+    said = f"Every plant is known: all {len(plants):,} were found and only flagged. Nothing is left"
+    assert said in " ".join(err.split())
+    assert "long enough" not in err
+
+
 def test_it_is_said_by_what_a_past_day_is_planned_and_how_to_plan_it_otherwise(run, season):
     kept, first = Season(season), date.fromisoformat(BEGINS)
     for day, hours in ((0, 2), (2, 1)):

@@ -1,5 +1,6 @@
 """`fieldmon status`: where a season stands."""
 
+import re
 from dataclasses import replace
 from datetime import timedelta
 
@@ -23,7 +24,7 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
     now = kept.status(kept.last_date())
     ahead = f"  forecast               {kept.forecast(now.on).sentence()}"
     assert out.splitlines() == [*lines(kept, now), ahead]
-    assert "share found                 0 % (0 to 0 %) of found and still there" in out
+    assert "share found                 0 % (0 to 0 %) of found and not found yet" in out
     assert f"{now.plants:,} plants (0 %), 0 found infested" in out
     assert all(one.sentence() in out for one in now.learnt)
     assert "believed at first      An inspection finds 84 % of what is there" in out
@@ -37,7 +38,7 @@ def test_thousands_are_parted_in_every_number_of_a_status(season):
     now = kept.status(kept.last_date())
     many = {"plants": 12345, "inspected": 6543, "found": 2345, "finds": 3456}
     estimate = PlotEstimate(1207.6, 237, 3688, 0.0)
-    said = "\n".join(lines(kept, replace(now, **many, estimate=estimate)))
+    said = "\n".join(lines(kept, replace(now, **many, infested=estimate)))
     assert "    1,208 (237 to 3,688 with" in said
     assert " 6,543 of 12,345 plants (53 %), 2,345 found infested (3,456 finds: some again)" in said
 
@@ -49,10 +50,14 @@ def test_plants_only_flagged_are_told_beside_those_not_found(run, tmp_path):
         Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(kept.settings.begins)), "x"
     )
     out = run("status", file)[1]
-    assert "About 20 more plants, which were found and only flagged, are still infested." in out
+    assert "are not found yet, and 20 were found and only flagged." in out
+    # the forecast begins with as many
+    still = re.search(r"still infested +(\d+) ", out)[1]
+    assert int(still) > 20
+    assert f"now {still};" in out
     words = ["--efficacy", "0.5", "--date", kept.settings.begins]
     treated = run("treat", file, *words)[1]
-    assert "About 10 more plants, which were found and only flagged, are still" in treated
+    assert "are not found yet, and 10 were found and only flagged." in treated
 
 
 def test_planned_days_of_which_nothing_is_recorded_are_told_the_last_three(tmp_path, monkeypatch):

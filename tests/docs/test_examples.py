@@ -122,7 +122,9 @@ def test_the_season_of_the_tutorial_comes_out_as_it_says(folder, run, capsys, mo
     inspected, plants, found = re.search(
         r"so far +([\d,]+) of ([\d,]+) plants .* ([\d,]+) found", said
     ).groups()
-    expected, low, high = re.search(r"still there +([\d.,]+) \(([\d,]+) to ([\d,]+)", said).groups()
+    expected, low, high = re.search(
+        r"still infested +([\d.,]+) \(([\d,]+) to ([\d,]+)", said
+    ).groups()
     spots = NUMBERS[int(re.search(r"hot spots +(\d)", said)[1])]
     told = " ".join(TUTORIAL.split())
     assert f"{inspected} of {plants} plants are inspected and {found} were found infested" in told

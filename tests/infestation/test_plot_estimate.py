@@ -150,5 +150,5 @@ def test_plants_that_were_found_and_left_do_not_make_a_clean_rest_impossible():
     told = PlotEstimate(3.4, 0, 10, 0.16, found=27)
     assert told.sentence() == (
         "About 3 plants are infested (between 0 and 10) beside the 27 that were found and only "
-        "flagged; the chance that there is no other is 16 %."
+        "flagged; the chance that the plot is clean is 16 %."
     )

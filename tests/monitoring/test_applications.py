@@ -1,5 +1,6 @@
 """What was applied: what a record asks, and what a label adds where nobody said it."""
 
+import math
 from datetime import time
 
 import pytest
@@ -43,3 +44,15 @@ def test_what_is_said_of_a_treatment_is_of_its_kind(said):
     (name,) = said
     with pytest.raises(SettingError, match=f"A treatment's {name} must be (text|a time)"):
         Application(**said)
+
+
+@pytest.mark.parametrize(
+    ("times", "over_s"),
+    [
+        ({}, math.inf), ({"began": time(6)}, 21_600.0),
+        ({"began": time(6), "ended": time(6, 30)}, 23_400.0),
+        ({"began": time(23), "ended": time(1)}, 90_000.0),
+    ],
+)  # fmt: skip
+def test_it_is_over_once_it_ended_or_began_where_no_end_was_said(times, over_s):
+    assert Application("soap", **times).over_s == over_s

@@ -101,7 +101,10 @@ def test_the_share_found_is_least_where_most_is_left():
 
 
 def test_flagged_plants_are_said_beside_those_not_found_where_there_are_any():
-    assert flagged_said(0.0) == flagged_said(0.04) == []
-    besides, clean = flagged_said(1207.6)
-    assert besides.startswith("About 1,208 more plants, which were found and only flagged, ")
-    assert clean == "The chance that the plot is clean leaves these out."
+    left = DayFigures(BEGINS, 9, 4, 2345.6, 1006, 3156, 0.0)
+    assert flagged_said(left, 0.0) == flagged_said(left.estimate, 0.04) == []
+    (said,) = flagged_said(left, 1207.6)
+    assert said == (
+        "Of those still infested, about 2,346 (1,006 to 3,156) are not found yet, and 1,208 were "
+        "found and only flagged."
+    )

@@ -1,5 +1,6 @@
 """What was done on a plot, day by day, and what that says each morning."""
 
+from dataclasses import replace
 from datetime import date
 from itertools import pairwise
 
@@ -30,6 +31,7 @@ DONE = Inspections.of(
     second=np.array([21_700.0, 21_800.0, np.nan, np.nan, np.nan, 22_000.0]),
 )
 HISTORY = History(PLOT.grid, BEGINS, MORNING, DONE)
+ALL = np.ones(N, np.bool_)
 SHIFT = Shift(PLOT.aisles, Robot(hours=2.0))
 
 
@@ -71,6 +73,41 @@ def test_an_evening_is_its_morning_after_the_days_findings_and_treatments():
     np.testing.assert_array_equal(treated.evening(MORNING, 3).chance, MORNING.chance)
 
 
+def test_what_was_inspected_after_a_treatment_of_the_day_counts_after_it():
+    done = Inspections.of(
+        np.array([5, 6, 7, 8]), np.array([FOUND] * 4), np.datetime64(BEGINS),
+        second=np.array([21_600.0, 30_000.0, 43_200.0, np.nan]),
+    )  # fmt: skip
+    at_7, at_10 = Treatment(0, ALL, 0.75, 25_200.0), Treatment(0, ALL, 0.5, 36_000.0)
+    history = History(PLOT.grid, BEGINS, MORNING, done, (at_10, at_7))
+
+    def looked(believed, *plants):
+        found = np.ones(len(plants), bool)
+        return believed.learn(np.array(plants, np.int32), found, Learning(history.detection))
+
+    # without a time: before the first treatment of the day
+    wanted = looked(MORNING, 5, 8).treated(np.full(N, 0.25))
+    wanted = looked(looked(wanted, 6).treated(np.full(N, 0.5)), 7)
+    np.testing.assert_array_equal(history.evening(MORNING, 0).chance, wanted.chance)
+    left = BeliefSettings(treated=False)
+    flagged = replace(history, belief=left).evening(MORNING, 0).chance[[5, 6, 7, 8]]
+    assert flagged == pytest.approx([0.125, 0.5, 1.0, 0.125], abs=0.01)
+
+
+def test_an_inspection_past_midnight_counts_after_what_was_treated_before_it():
+    done = Inspections.of(
+        np.array([5, 6]), np.array([FOUND, FOUND]), np.datetime64(BEGINS) + np.array([0, 1]),
+        second=np.array([82_800.0, 1_800.0]),
+    )  # fmt: skip
+    shift = Shift(PLOT.aisles, Robot(hours=4.0), starts_s=79_200.0)
+    left = BeliefSettings(treated=False)
+    at_11 = Treatment(0, ALL, 0.75, 84_600.0)
+    history = History(PLOT.grid, BEGINS, MORNING, done, (at_11,), left)
+    assert history.scene(shift, 0, MORNING).chance[[5, 6]] == pytest.approx([0.25, 1.0], abs=0.01)
+    untold = replace(history, treatments=(Treatment(0, ALL, 0.75),))
+    assert untold.scene(shift, 0, MORNING).chance[[5, 6]] == pytest.approx([0.25] * 2, abs=0.01)
+
+
 def test_the_next_morning_comes_of_the_evening_by_the_spread_that_is_believed():
     spread = Spread(0.3, "one", arrivals_per_day=0.01)
     history = History(PLOT.grid, BEGINS, MORNING, DONE, belief=BeliefSettings(spread))
@@ -101,6 +138,51 @@ def test_finds_left_alone_are_known_and_so_no_longer_counted_as_out_there():
     # who counts both counts all that decide, plan and forecast count
     assert left + flagged.flagged(MORNING, 0) == pytest.approx(evening.chance.sum())
     assert HISTORY.flagged(MORNING, 0) == 0.0, "treated"
+
+
+def test_a_plot_with_a_plant_known_to_be_infested_is_not_clean():
+    n_found, believed = 40, BeliefSettings(treated=False)
+    some = np.arange(n_found, dtype=np.int32)
+    nowhere = PairApproximation.of(PLOT.grid, np.full(N, 1e-6))
+    found = Inspections.of(some, np.full(n_found, FOUND), np.datetime64(BEGINS))
+    left = History(PLOT.grid, BEGINS, nowhere, found, belief=believed)
+    assert left.estimate(nowhere, 0).chance_clean == 0.0
+    together = left.infested(nowhere, 0)
+    assert together == left.estimate(nowhere, 0).beside(n_found)
+    # a treatment leaves them in doubt: they may all be clean
+    sprayed = replace(left, treatments=(Treatment(0, ALL, 0.98),))
+    clean = sprayed.estimate(nowhere, 0).chance_clean
+    assert clean == sprayed.infested(nowhere, 0).chance_clean
+    assert 0.3 < clean < 0.6
+
+
+def test_a_plant_that_is_gone_is_not_infested_nor_asked_for_until_it_is_inspected_again():
+    flagged = BeliefSettings(treated=False)
+    first = TracedPairs.of(PLOT.grid, np.full(N, 0.02))
+    done = Inspections.of(
+        np.array([5, 6, 5, 8, 5]), np.array([FOUND, FOUND, SKIPPED, SKIPPED, FOUND]),
+        np.datetime64(BEGINS) + np.array([0, 0, 1, 1, 5]),
+        notes=np.array(["", "", "gone: rotten", "locked", ""], object),
+    )  # fmt: skip
+    history = History(PLOT.grid, BEGINS, first, done, belief=flagged)
+    mornings = [first]
+    for day in range(6):
+        mornings.append(history.night_after(mornings[-1], day))
+    gone = [np.flatnonzero(history.gone(day)).tolist() for day in (0, 1, 4, 5)]
+    assert gone == [[], [5], [5], []]
+    assert history.flagged(mornings[0], 0) == pytest.approx(2.0, abs=0.01)
+    assert history.flagged(mornings[1], 1) == pytest.approx(1.0, abs=0.01)
+    assert history.evening(mornings[1], 1).chance[[5, 6]] == pytest.approx([0.0, 1.0], abs=1e-3)
+    assert history.flagged(mornings[5], 5) == pytest.approx(2.0, abs=0.01)
+    for day in (2, 3, 4):
+        scene = history.scene(SHIFT, day, mornings[day])
+        assert scene.last_inspected[5] == day
+        assert scene.flagged[[5, 6]].tolist() == [False, True]
+    # one that could not be inspected comes back, one that is gone does not
+    assert np.flatnonzero(history.skips(1).times).tolist() == [8]
+    assert (history.evening(mornings[4], 4).chance[6], history.states(4)[5]) == (
+        pytest.approx(1.0, abs=0.01), FOUND
+    )  # fmt: skip
 
 
 def test_the_scene_of_a_day_stands_where_and_when_its_last_inspection_was_made():

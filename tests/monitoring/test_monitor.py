@@ -214,6 +214,9 @@ def test_finds_that_are_only_flagged_stay_infested(plot):
         day.tell(found=True)
     assert monitor.chance[plant] > 0.99
     assert Learning().treated
+    assert monitor.estimate().chance_clean == 0.0
+    assert monitor.estimate().sentence().endswith("only flagged; the chance that the plot is "
+                                                  "clean is 0 %.")  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["adaptive", "dynamic", "naive", "decide"])

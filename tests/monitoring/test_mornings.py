@@ -265,11 +265,19 @@ def test_a_morning_is_named_by_all_that_it_follows_from_and_by_nothing_after_it(
         until, after = history.until(on), done.take(slice(len(history.until(on)), None))
         return replace(history, inspections=until.and_those(replace(late, **more)).and_those(after))
 
+    def timed(treated_s, looked_s):
+        done, plants = looked(8, second=np.array([looked_s])), np.arange(n) < 5
+        return replace(done, treatments=(Treatment(8, plants, 0.8, treated_s),))
+
     first = history.first_morning
     another = np.append(first.chance[:-1], first.chance[-1] / 2)
     causes = [
         treated(8), treated(8, plants=6), treated(8, efficacy=0.7), treated(7), looked(8),
-        looked(8, plant=np.array([2])), looked(8, result=np.array([1])), looked(7),
+        timed(30_000.0, 30_001.0), timed(30_000.0, 29_999.0), timed(30_001.0, 29_999.0),
+        looked(8, plant=np.array([2])),
+        looked(8, result=np.array([2])),
+        looked(8, result=np.array([2]), notes=np.array(["gone"], object)),
+        looked(8, result=np.array([1])), looked(7),
         replace(history, detection=0.7),
         replace(history, belief=replace(history.belief, treated=False)),
         replace(history, belief=replace(history.belief, spread=Spread(0.3))),

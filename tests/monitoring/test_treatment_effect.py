@@ -1,6 +1,6 @@
 """Whether a treatment worked, as plants tell that were looked at before and after."""
 
-from datetime import date, timedelta
+from datetime import date, time, timedelta
 
 import numpy as np
 import pytest
@@ -35,10 +35,10 @@ def history(*looks, detection=0.84):
     return History(GRID, BEGINS, None, made, detection=detection)
 
 
-def treated(day, plants=HERE, said=0.8, product="soap"):
+def treated(day, plants=HERE, said=0.8, product="soap", **times):
     on, clock = BEGINS + timedelta(day), LocalClock("UTC")
     place = TreatedPlace(None, plants, 1.0)
-    return KeptTreatment(day, day, day, on, place, said, Application(product),
+    return KeptTreatment(day, day, day, on, place, said, Application(product, **times),
                          end_of(clock, on, None), clock)  # fmt: skip
 
 
@@ -75,6 +75,23 @@ def test_a_treatment_works_after_its_days_inspections_and_the_last_before_counts
     past = history((1, [0], [CLEAN]), (3, [0], [FOUND]), (4, [0], [CLEAN]), (5, [0], [FOUND]))
     (one,) = effect(past, [treated(3)])
     assert (one.before, one.after) == (FoundShare(1, 1), FoundShare(0, 1))
+
+
+def test_what_was_inspected_later_on_the_day_of_a_treatment_tells_of_it():
+    done = Inspections.of(
+        np.array([0, 1, 2, 0, 1, 2]), np.array([FOUND] * 5 + [CLEAN]),
+        np.datetime64(BEGINS, "D") + np.array([1] * 3 + [3] * 3),
+        second=np.array([np.nan] * 4 + [20_000.0, 40_000.0]),
+    )  # fmt: skip
+    past = History(GRID, BEGINS, None, done)
+    (one,) = effect(past, [treated(3, ended=time(8))])
+    assert (one.before, one.after) == (FoundShare(1, 1), FoundShare(0, 1))
+    assert effect(past, [treated(3)])[0].before.inspected == 0
+    # of two treatments of a day, what lies between them tells of the first
+    first, second = effect(past, [treated(3, ended=time(8)), treated(3, ended=time(12))])
+    assert (first.cured_of, second.cured_of) == (1, 0)
+    first, second = effect(past, [treated(2, ended=time(8)), treated(3, began=time(8))])
+    assert (first.cured_of, second.cured_of) == (2, 0)
 
 
 def test_without_a_plant_that_tells_it_is_what_was_said():

@@ -8,7 +8,13 @@ import pytest
 from fieldmon.monitoring.closures import Closure, open_to_people
 from fieldmon.planning.explain import explain
 from fieldmon.planning.plan import plan_from, plan_in
-from fieldmon.planning.skips import Skips, left_out_in_words, without_flagged, without_skipped
+from fieldmon.planning.skips import (
+    Skips,
+    left_out_in_words,
+    nothing_left_in_words,
+    without_flagged,
+    without_skipped,
+)
 from fieldmon.planning.wishes import Wishes
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import NEVER
@@ -131,3 +137,15 @@ def test_where_every_plant_was_skipped_none_is_left_out():
         True,
         True,
     ]
+
+
+def test_where_every_plant_is_known_it_is_said_that_nothing_is_left(scene):
+    every = np.arange(len(scene.chance))
+    assert nothing_left_in_words(scene) is None
+    assert nothing_left_in_words(without_flagged(scene, every > 0)) is None
+    flagged = without_flagged(scene, every >= 0)
+    said = f"Every plant is known: all {len(every):,} were found and only flagged."
+    assert str(nothing_left_in_words(flagged)).startswith(said)
+    done = replace(scene, last_inspected=np.where(every > 2, scene.day, scene.last_inspected))
+    said = "Nothing is left to inspect: 3 plants were found and only flagged, and all others"
+    assert str(nothing_left_in_words(without_flagged(done, every >= 0))).startswith(said)

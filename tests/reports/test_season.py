@@ -71,8 +71,8 @@ def test_the_charts_show_finds_share_expected_and_inspected(of_season):
     charts = on_sheet(of_season, 1, Illustration)
     assert [chart.title for chart in charts] == [
         "Plants found a day",
-        "Share found, of found and still infested, % (line), and its 90 % interval",
-        "Still infested and not found, as expected (line), and its 90 % interval",
+        "Share found, of found and not found yet, % (line), and its 90 % interval",
+        "Infested and not found yet, as expected (line), and its 90 % interval",
         "Plants inspected a day",
     ]  # fmt: skip
     assert "treated" in charts[1].draw((186.0, 40.0)).words()  # which makes the share rise
@@ -184,7 +184,13 @@ def test_flagged_plants_are_said_beside_those_still_infested(tmp_path):
     looked = Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(BEGINS))
     season.record(looked, "finds")
     lead = on_sheet(season_report(season, BEGINS, Units()), 0, Paragraph)[0].text
-    assert "About 20 more plants, which were found and only flagged, are still infested." in lead
+    still = season.still_infested(BEGINS)
+    assert lead.startswith(f"About {estimate(still.expected)} plants are still infested")
+    assert "are not found yet, and 20 were found and only flagged." in lead
+    assert still.expected == pytest.approx(season.forecast(BEGINS).expected[0])
+    figures = {one.label: one for one in one(season_report(season, BEGINS, Units()),
+                                             KeyFigures).figures}  # fmt: skip
+    assert figures["Still infested"].value == estimate(still.expected)
 
 
 def test_lists_that_are_too_long_begin_with_what_counts_and_say_how_much_is_missing(tmp_path):

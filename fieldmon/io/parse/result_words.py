@@ -63,6 +63,13 @@ no inspeccionado|no inspeccionada|sin inspeccionar|saltado|non inspecté|non ins
 non ispezionato|não inspecionado|nie sprawdzono|kontrol edilmedi|не проверено
 לא נבדק|לא נבדקה|דולג|لم يفحص|未检查
 """
+#: what the note of a skipped plant begins with if it does not stand there any more
+GONE = "gone"
+_GONE = """
+gone|pulled out|removed|uprooted|entfernt|gerodet|verwijderd|arraché|arrachée|enlevé|enlevée
+arrancado|arrancada|eliminado|eliminada|rimosso|rimossa|estirpato|estirpata|removido|removida
+usunięto|söküldü|удалено|נעקר|נעקרה|הוסר|أزيل|مقلوع|拔除
+"""
 #: clean where a column also holds a plus; alone it is an empty cell, unless one says otherwise
 MINUS = frozenset({"-", "\u2212", "\u2013", "\u2014"})
 
@@ -73,12 +80,28 @@ def _split(words: str) -> frozenset[str]:
 
 FOUND = {word.casefold(): PRESENT for word in _split(_FOUND)}
 CLEAN = {word.casefold(): ABSENT for word in _split(_CLEAN)}
-NOT_INSPECTED = frozenset(word.casefold() for word in _split(_NOT_INSPECTED))
+_PULLED_OUT = frozenset(word.casefold() for word in _split(_GONE))
+NOT_INSPECTED = frozenset(word.casefold() for word in _split(_NOT_INSPECTED)) | _PULLED_OUT
 
 
 def plain_word(cell: str) -> str:
     """Return a word as it is looked up: without capitals, spaces in excess and a last full stop."""
     return " ".join(cell.casefold().replace("_", " ").split()).rstrip(".!") or cell.strip()
+
+
+def is_gone(cell: str) -> bool:
+    """Return whether a word for a result says that the plant does not stand there any more."""
+    return plain_word(cell) in _PULLED_OUT
+
+
+def gone_note(note: str) -> str:
+    """Return the note of a plant that is gone, with what else was noted."""
+    return note if says_gone(note) else f"{GONE}: {note}" if note else GONE
+
+
+def says_gone(note: str) -> bool:
+    """Return whether the note of a skipped plant says that it is gone: gone, or gone: and why."""
+    return note.partition(":")[0].strip().casefold() == GONE
 
 
 def meaning(cell: str) -> int | None:

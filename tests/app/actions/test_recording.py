@@ -38,6 +38,19 @@ def test_one_plant_is_recorded_and_undone(season_app, season):
     assert not len(season().history.inspections)
 
 
+def test_a_plant_that_was_pulled_out_is_recorded_as_gone(season_app, season):
+    go(season_app, "record")
+    for name, value in {"one_row": 3, "one_plant": 4, "one_result": 3}.items():
+        season_app.session_state[key_of(season_app, name)] = value
+    season_app.run()
+    send(season_app, "one")
+    assert "1 recorded" in season_app.success[0].value
+    history = season().history
+    (plant,) = history.inspections.plant
+    assert np.flatnonzero(history.gone(int(history.days[0]))).tolist() == [plant]
+    assert season().treatments() == ()
+
+
 def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_it_was_tapped(season_named):
     app = opened(season_named.path.stem)
     go(app, "record")

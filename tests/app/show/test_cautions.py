@@ -11,6 +11,8 @@ from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.history import BeliefSettings
+from tests.app.chosen import in_season
 from tests.monitoring.seasons import BEGINS, a_season
 
 
@@ -94,6 +96,19 @@ def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(
     assert shown == []  # not that hours are too short
     cautions.show_today(today, today.plan())
     assert shown[0][1].endswith(texts.KEPT_ALL_CLOSED.format(n=len(given)))
+
+
+def test_where_every_plant_is_flagged_today_says_so_and_not_that_hours_are_too_short(
+    shown, tmp_path, monkeypatch
+):
+    season = a_season(tmp_path / "season.gpkg", belief=BeliefSettings(treated=False))
+    every = np.arange(len(season.plot.grid))
+    season.record(Inspections.of(every, np.ones(len(every), int), np.datetime64(BEGINS)), "x")
+    monkeypatch.setattr(day, "st", cautions.st)
+    tomorrow = in_season(season, BEGINS + timedelta(days=1))
+    day.said_of_day(tomorrow, season.plan(tomorrow.on, keep=False))
+    ((_, said),) = shown
+    assert said.startswith(f"Every plant is known: all {len(every)} were found and only flagged.")
 
 
 def test_today_tells_how_many_plants_are_left_out_as_nobody_could_inspect_them(shown, tmp_path):

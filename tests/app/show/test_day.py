@@ -139,7 +139,10 @@ def test_plants_only_flagged_are_said_beside_those_not_found(tmp_path):
     looked = Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(BEGINS))
     season.record(looked, "finds")
     said = "\n".join(day.changes(on(season, 1))[1])
-    assert "About 20 more plants, which were found and only flagged, are still infested." in said
+    still, before = (season.still_infested(BEGINS + timedelta(days=k)).expected for k in (1, 0))
+    assert before > 20
+    assert f"still infested: {still:.0f}; on the evening of Mon 6 Apr: {before:.0f}." in said
+    assert "are not found yet, and 20 were found and only flagged." in said
 
 
 def test_rows_that_rose_most_come_first(worked):

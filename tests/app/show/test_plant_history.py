@@ -1,7 +1,8 @@
 """What is known of one plant."""
 
+import shutil
 from dataclasses import replace
-from datetime import timedelta
+from datetime import time, timedelta
 
 import numpy as np
 import pytest
@@ -13,12 +14,14 @@ from app.state import chosen_day
 from app.words import texts
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
+from fieldmon.monitoring import Application, Season
 from fieldmon.plot.grid import plant_at, row_label
 from tests.app.chosen import a_plot, chosen, in_season
 from tests.app.driving import apart
 from tests.monitoring.seasons import BEGINS, a_season
 
 PLANT = 17
+SOAP = texts.isolated("Soap")
 
 
 @pytest.fixture
@@ -87,6 +90,32 @@ def test_every_inspection_of_the_plant_is_told_in_order_with_its_time_if_it_has_
     now, first = (chance[PLANT] for chance in (chosen_day.chance(choices), season.morning(BEGINS)))
     assert f"{100 * now:.1f} %" in apart(said[1])
     assert f"{100 * first:.1f} %" in apart(said[1])
+
+
+def test_treatments_stand_among_the_inspections_of_the_plant(said, season, tmp_path):
+    copy = Season(shutil.copy(season.path, tmp_path))
+    soap = Application("Soap", began=time(10), ended=time(10, 30))
+    n = np.arange(len(copy.plot.grid))
+    copy.treat(BEGINS + timedelta(days=2), 0.8, application=soap)
+    copy.treat(BEGINS + timedelta(days=1), 0.8, plants=n == PLANT)
+    copy.treat(BEGINS + timedelta(days=1), 0.8, plants=n == PLANT + 1)
+    choices = in_season(copy, BEGINS)
+    tap(choices, PLANT)
+    plant_history.show(choices)
+    found_at_10_01, lines = 2, apart(said[-1]).splitlines()
+    assert lines[found_at_10_01 + 1 :] == [
+        "- Wed 8 Apr 10:01: **found**",
+        f"- Wed 8 Apr 10:30: **treated with {SOAP}**",
+    ]
+    assert lines[found_at_10_01] == "- Tue 7 Apr: **treated**"
+    assert len(lines) == 5
+    tap(choices, PLANT + 1)
+    plant_history.show(choices)
+    assert apart(said[-1]).splitlines() == [
+        "- Tue 7 Apr: **treated**",
+        f"- Wed 8 Apr 10:30: **treated with {SOAP}**",
+        "Never inspected.",
+    ]
 
 
 def test_a_chance_of_nothing_after_a_find_is_explained(said, season, monkeypatch):

@@ -20,6 +20,7 @@ from fieldmon.io.parse.result_words import (
     about_fractions,
     about_mark,
     about_minus,
+    is_gone,
 )
 from fieldmon.io.parse.values import counted, is_missing, mark_of_counts, number, presence
 from fieldmon.io.readers.inspection_file.plants import PLANT_IN_NAME
@@ -36,13 +37,17 @@ _PLUS = re.compile(r"^\+\s*(\d*)$")
 
 
 class SeenResults(NamedTuple):
-    """What was seen, ``(n,)`` each; `said` where anything at all was written down."""
+    """What was seen, ``(n,)`` each; `said` where anything at all was written down.
+
+    `gone` are the rows whose result says that the plant does not stand there any more.
+    """
 
     result: NDArray[np.int8]
     how_many: NDArray[np.float64]
     doubt: NDArray[np.str_]
     said: NDArray[np.bool_]
     messages: list[ImportMessage]
+    gone: NDArray[np.bool_]
 
 
 class _CellResult(NamedTuple):
@@ -98,7 +103,11 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
         ]
     taken = (columns.result, columns.number_found, *dict(options.columns).values())
     messages += about_confidences(layer.columns, taken)
-    return _put_together(by_result, by_count, messages)
+    seen_so = _put_together(by_result, by_count, messages)
+    if columns.result is None:
+        return seen_so
+    gone = np.array([is_gone(text(v)) for v in layer.column(columns.result)], np.bool_)
+    return seen_so._replace(gone=gone & (seen_so.result == UNKNOWN))
 
 
 def _mark(
@@ -142,7 +151,8 @@ def _put_together(
             n=int(zero_found.sum()),
         )
         messages = [*messages, guessed(said)]
-    return SeenResults(result, how_many, doubt.astype(np.str_), spoken | counted_too, messages)
+    said_any, gone = spoken | counted_too, np.zeros(len(result), np.bool_)
+    return SeenResults(result, how_many, doubt.astype(np.str_), said_any, messages, gone)
 
 
 def _unread(cells: list[str], known: dict[str, _CellResult]) -> list[ImportMessage]:

@@ -18,6 +18,7 @@ from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, guessed, seen
 from fieldmon.io.options import source_name
 from fieldmon.io.parse.columns import is_position, plain
+from fieldmon.io.parse.result_words import gone_note
 from fieldmon.io.readers.inspection_file.columns import (
     columns_of,
     detects_in,
@@ -89,6 +90,9 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
     columns = columns_of(layer, options)
     results = results_in(layer, columns, options)
     notes = notes_in(layer)
+    if results.gone.any():
+        pairs = zip(notes.tolist(), results.gone.tolist(), strict=True)
+        notes = np.array([gone_note(note) if gone else note for note, gone in pairs], np.str_)
     said = results.said
     noted = int((~said & (notes != "")).sum()) if columns.marks is None else 0
     if noted:

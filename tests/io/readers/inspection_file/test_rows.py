@@ -6,7 +6,7 @@ import pytest
 from shapely import LineString, MultiPoint, Point
 
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.readers.inspection_file.rows import rows_in, rows_of
 from fieldmon.io.readers.inspection_options import InspectionOptions
@@ -27,6 +27,15 @@ def test_only_rows_that_say_anything_are_kept_with_their_numbers_in_the_file():
     assert rows.source_row.tolist() == [1, 3]
     assert len({len(values) for values in vars(rows).values()}) == 1
     assert "1 of 3 records left unknown: not filled in" in sentences(read)
+
+
+@pytest.mark.parametrize("word", ["gone", "Pulled out", "arrancada", "נעקר"])
+def test_a_plant_that_is_gone_could_not_be_inspected_and_its_note_says_why(word):
+    cells = {"found": [word, "skipped", "no", word], "notes": [None, "locked", None, "rotten"]}
+    read = rows_in(table(plant=[6, 7, 8, 9], **cells), NOTHING)
+    assert read.value.result.tolist() == [UNKNOWN, UNKNOWN, ABSENT, UNKNOWN]
+    assert read.value.notes.tolist() == ["gone", "locked", "", "gone: rotten"]
+    assert not any("neither clean nor found" in said for said in sentences(read))
 
 
 def test_a_note_without_a_result_is_doubtful():

@@ -29,6 +29,7 @@ from fieldmon.monitoring.day_ahead import (
 )
 from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.photos import photos_of
+from fieldmon.planning.skips import left_out
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
 from ..state import heard
@@ -127,6 +128,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "photos": [photo._asdict() for photo in photos_of(season)],
         "photos_asked": [one._asdict() for one in ahead.asked_of(part)],
         "closed": _closed(season, ahead, on, part),
+        "left_out": _left_out(season, ahead, (on, part), route),
     }
 
 
@@ -218,6 +220,19 @@ def _closed(season: Season, ahead: DayAhead, on: date, part: Part) -> list[dict[
                 }
             )
     return closed
+
+
+def _left_out(
+    season: Season, ahead: DayAhead, of: tuple[date, Part], route: Route
+) -> list[dict[str, Any]]:
+    """Return which plants are on no route though they are open, why, and how many are one's own."""
+    on, part = of
+    mine = ahead.own(part)
+    return [
+        {"why": why, "plants": run_ends(plants).tolist(), "own": int(mine[plants].sum())}
+        for why, plants in left_out(season.scene(on, who=part.name), route).items()
+        if len(plants)
+    ]
 
 
 def _hot_spots(season: Season, known: NDArray[np.int8]) -> list[Any]:

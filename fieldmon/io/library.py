@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.arguments import must_be, must_be_name_of_file
 from fieldmon.compute.kinds import must_be_of
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ImportDoubt, SettingError
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import (
@@ -325,8 +326,11 @@ def _how_read(
     if sources.plot is None:
         if feature is not None:
             raise SettingError(
-                f"Only a file of plots has one that is chosen, but feature is {feature!r} and "
-                "there is none. Leave it out, or give the file of plots first."
+                worded(
+                    "Only a file of plots has one that is chosen, but feature is {feature!r} and "
+                    "there is none. Leave it out, or give the file of plots first.",
+                    feature=feature,
+                )
             )
         said = _chosen(ReadOptions(), options)
         return {"rows_options" if sources.plants is None else "plants_options": said}

@@ -115,6 +115,18 @@ def test_who_works_is_told_what_plans_leave_out_and_why(tmp_path, monkeypatch):
     assert "2 plants found and only flagged" in said
 
 
+def test_a_plant_that_was_treated_and_is_clean_since_is_told_as_clean(served, scout):
+    season, found = served.season, [100, 101]
+    season.record(Inspections.of(found, [1, 1], np.datetime64(BEGINS)), "a.csv", "Zoe")
+    season.treat(BEGINS, 0.9)
+    tuesday = BEGINS + timedelta(days=1)
+    season.record(Inspections.of([100], [0], np.datetime64(tuesday)), "b.csv", "Zoe")
+    day = json.loads(day_document(season, scout, tuesday))
+    assert {*day["found"]}.isdisjoint({100})
+    assert {*day["clean"]}.issuperset({100})
+    assert {*day["found"]}.issuperset({101})
+
+
 def test_the_rest_is_planned_anew_within_what_is_left(served, scout):
     rest = json.loads(rest_document(served.season, scout, BEGINS, 1200))["route"]
     assert 0 < rest["end_s"] <= 1200

@@ -78,13 +78,18 @@ class Skips:
 def without_skipped(scene: Scene, skips: Skips) -> Scene:
     """Return a scene in which nobody is sent to plants left out: they seem inspected today.
 
-    Those that were inspected today are not among its `skipped` plants.
+    Those that were inspected today are not among its `skipped` plants, and those that are among
+    them are not among its `flagged` ones: what happened last is said.
     """
-    skipped = skips.left_out(scene.day) & (scene.last_inspected != scene.day)
+    flagged, open_still = scene.flagged, scene.last_inspected != scene.day
+    if flagged is not None:
+        open_still |= flagged
+    skipped = skips.left_out(scene.day) & open_still
     if not skipped.any():
         return scene
     last = np.where(skipped, np.int32(scene.day), scene.last_inspected)
-    return replace(scene, last_inspected=last, skipped=skipped)
+    rest = None if flagged is None else flagged & ~skipped
+    return replace(scene, last_inspected=last, skipped=skipped, flagged=rest)
 
 
 def without_flagged(scene: Scene, flagged: NDArray[np.bool_] | None) -> Scene:

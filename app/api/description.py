@@ -233,6 +233,20 @@ DAY: dict[str, Any] = {
                 },
             },
         },
+        "left_out": {
+            "type": "array",
+            "description": "Plants that plans leave out: nobody could inspect them last time, or "
+            "they were found and only flagged. As runs of first and last; how many of them are "
+            "somebody's own.",
+            "items": {
+                "type": "object",
+                "properties": {
+                    "why": {"enum": ["skipped", "flagged"]},
+                    "plants": {"type": "array", "items": _LIST},
+                    "own": {"type": "integer"},
+                },
+            },
+        },
     },
 }
 ERROR: dict[str, Any] = {

@@ -16,7 +16,6 @@ import shapely
 from fieldmon.compute.arrays import run_ends
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
-from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.infestation.observations import ABSENT, PRESENT
 from fieldmon.monitoring import kept_open
@@ -29,14 +28,14 @@ from fieldmon.monitoring.day_ahead import (
 )
 from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.photos import photos_of
+from fieldmon.monitoring.plant_states import hot_spots_on, shown_states
+from fieldmon.planning.skips import left_out
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
 from ..state import heard
 
 if TYPE_CHECKING:
     from datetime import date
-
-    from numpy.typing import NDArray
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
@@ -95,7 +94,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
     heard.note(season.path, scout.name, on, plan if has is None else has)
     robot = settings.robot if member is None else member.robot
     hours = work_hours(season, on, part)
-    known = history.known(settings.day(on))
+    known = shown_states(history, settings.day(on))
     return {
         "season": season.path.stem,
         "scout": scout.name,
@@ -123,10 +122,11 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "clean": np.flatnonzero(known == ABSENT).tolist(),
         "today": _said(history.inspections.on(on)),
         "contradicting": _said(season.contradicting(on)),
-        "hot_spots": _hot_spots(season, known),
+        "hot_spots": _hot_spots(season, on),
         "photos": [photo._asdict() for photo in photos_of(season)],
         "photos_asked": [one._asdict() for one in ahead.asked_of(part)],
         "closed": _closed(season, ahead, on, part),
+        "left_out": _left_out(season, ahead, (on, part), route),
     }
 
 
@@ -222,8 +222,21 @@ def _closed(season: Season, ahead: DayAhead, on: date, part: Part) -> list[dict[
     return closed
 
 
-def _hot_spots(season: Season, known: NDArray[np.int8]) -> list[Any]:
-    spots = hot_spots(season.plot.grid, known)
+def _left_out(
+    season: Season, ahead: DayAhead, of: tuple[date, Part], route: Route
+) -> list[dict[str, Any]]:
+    """Return which plants are on no route though they are open, why, and how many are one's own."""
+    on, part = of
+    mine = ahead.own(part)
+    return [
+        {"why": why, "plants": run_ends(plants).tolist(), "own": int(mine[plants].sum())}
+        for why, plants in left_out(season.scene(on, who=part.name), route).items()
+        if len(plants)
+    ]
+
+
+def _hot_spots(season: Season, on: date) -> list[Any]:
+    spots = hot_spots_on(season.history, season.settings.day(on))
     return [_geometry(spot_area(season.plot, spots, h)) for h in range(len(spots))]
 
 

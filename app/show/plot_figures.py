@@ -29,7 +29,7 @@ def show(plot: Plot, units: UnitsInLanguage) -> None:
     with st.container(horizontal=True):
         st.metric(texts.AREA_IS, units.square(area_m2(plot.field.boundary)), width="content")
         st.metric(plants, number(len(grid), ","), width="content")
-        st.metric(texts.ROWS_ARE, int(grid.row_line.max()) + 1, width="content")
+        st.metric(texts.ROWS_ARE, grid.n_lines, width="content")
         if grid.aisles_m is None:  # rows that bend, or blocks that turn, have no one direction
             bearing = number(grid.frame.bearing_deg % 180, ".1f")
             st.metric(texts.BEARING_IS, f"{bearing}°", width="content")

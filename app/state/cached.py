@@ -18,6 +18,7 @@ from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import estate_day, worked_route
+from fieldmon.monitoring.plant_states import hot_spots_on
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed
 from fieldmon.reports import season as reports
 
@@ -273,7 +274,7 @@ def forecast(key: str, revision: str, day: str, _season: Season) -> Forecast:
 def season_hot_spots(key: str, revision: str, day: str, _season: Season) -> HotSpots:
     """Return where finds cluster on a day of a season."""
     number = _season.settings.day(np.datetime64(day).item())
-    return hot_spots(_season.plot.grid, _season.history.known(number))
+    return hot_spots_on(_season.history, number)
 
 
 @st.cache_resource(max_entries=_MAPS)

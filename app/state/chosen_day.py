@@ -14,6 +14,7 @@ from fieldmon.infestation.level_range import first_level_range
 from fieldmon.infestation.observations import usable
 from fieldmon.monitoring import day_was_worked
 from fieldmon.monitoring.history import made_by
+from fieldmon.monitoring.plant_states import shown_states
 from fieldmon.planning import day_bound
 from fieldmon.plot.local_clock import grid_clock
 
@@ -148,7 +149,7 @@ def states(choices: Choices) -> cached.Array:
     """Return ``(n,)`` found (1), clean (0) or never inspected (-1), by records and inspections."""
     if choices.season is None:
         return cached.newest_records(*_recorded(choices)).state
-    return choices.season.history.known(choices.season.settings.day(choices.on))
+    return shown_states(choices.season.history, choices.season.settings.day(choices.on))
 
 
 def hot_spots(choices: Choices) -> HotSpots:

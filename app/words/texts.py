@@ -1171,6 +1171,8 @@ SCOUT_PAGE = {
     "closed": "Sprayed: do not enter before {until}.",
     "closed_rows": "Rows {low} to {high} are sprayed: do not enter before {until}.",
     "closed_plants": "Plants not on the route before then: {n}.",
+    "left_out_skipped": "Left out, as nobody could inspect them last time: {n}.",
+    "left_out_flagged": "Left out, as they were found and only flagged: {n}.",
     "clean": "Clean", "found": "Found", "skipped": "Could not inspect",
     "count": "Pests", "leaves": "Leaves looked at", "stage": "Stage", "fewer": "{what}: one fewer",
     "more": "{what}: one more", "stage_egg": "Eggs", "stage_young": "Young",

@@ -29,7 +29,7 @@ from fieldmon.errors import SettingError
 from fieldmon.samplers import EVERY
 
 if TYPE_CHECKING:
-    from fieldmon.monitoring import MonitoringSettings
+    from fieldmon.monitoring import MonitoringSettings, Season
     from fieldmon.monitoring.history import BeliefSettings
     from fieldmon.planning.members import TeamMember
     from fieldmon.plot.field import Field
@@ -219,3 +219,18 @@ def change(options: ChangeOptions) -> None:
         season.change(new, seen, options.who)
         whom = f" for {', '.join(m.name for m in new.team)}" if options.of_worker else ""
         typer.echo(f"Changed{whom if new.team else ''}; fieldmon plan uses it from now on.")
+        _tell_day_of_before(season)
+
+
+def _tell_day_of_before(season: Season) -> None:
+    """Print how the last recorded day comes to be planned by what was changed, if it is over."""
+    from fieldmon.monitoring.settings_words import changed
+
+    if not len(recorded := season.inspections.date):
+        return
+    on = recorded[-1].item()
+    if changed(season.planned_by(on), season.settings):
+        typer.echo(
+            f"{on} and days before it go on by what counted then; to plan the rest of one by what "
+            "counts now: fieldmon plan --as-now --date DAY."
+        )

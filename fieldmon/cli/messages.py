@@ -137,7 +137,7 @@ def describe(plot: Plot) -> None:
     if grid.aisles_m is not None:
         run = f"which run as they bend, in {counted(grid.n_blocks, 'block')}"
     typer.echo(
-        f"{name}: {counted(len(grid), 'plant')} in {counted(grid.n_rows, 'row')}, {run}, rows "
+        f"{name}: {counted(len(grid), 'plant')} in {counted(grid.n_lines, 'row')}, {run}, rows "
         f"{grid.row_spacing_m:.2f} m and plants {grid.plant_spacing_m:.2f} m apart."
     )
 

@@ -247,7 +247,7 @@ def _work(name: str, task: Task) -> Row:
     return row | {
         "state": "planned",
         "plants": len(grid),
-        "rows": grid.n_rows,
+        "rows": grid.n_lines,
         "stops": len(route),
         "hours": round(route.end_s / 3600, 3),
         "drive_km": round(route.drive_m / 1000, 3),

@@ -196,6 +196,7 @@ def _plan_team(
     season: Season, options: PlanOptions, on: date, settings: MonitoringSettings
 ) -> None:
     """Plan what is left of a day for each of a team; write a file for each."""
+    from fieldmon.monitoring.history import Besides
     from fieldmon.planning.route import with_forecast
     from fieldmon.planning.team import bound_of_days
 
@@ -215,7 +216,9 @@ def _plan_team(
             f"Somebody must have time to reach another plant and come back, but nobody has on "
             f"{on}. Plan another day with --date."
         )
-    done = sum(len(season.worked(on, one.name)) for one in team)
+    names = tuple(one.name for one in team)
+    # of who is not of the team any more, too
+    done = len(season.worked(on, Besides(names))) + sum(len(season.worked(on, n)) for n in names)
     typer.echo(f"{on}{f': {done} done' if done else ''}")
     for member, today in zip(team, days, strict=True):
         if (notes := today.route.notes) is not None and notes.start is not None:

@@ -6,12 +6,14 @@ The command line and the app read in the same way, by `fieldmon.io.prepare`, and
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.arguments import must_be, must_be_name_of_file
 from fieldmon.compute.kinds import must_be_of
-from fieldmon.errors import ImportDoubt
+from fieldmon.compute.wording import worded
+from fieldmon.errors import ImportDoubt, SettingError
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import (
     PlotOptions,
@@ -51,19 +53,20 @@ _DOUBTS = (Severity.GUESSED, Severity.DROPPED, Severity.DOUBTFUL)
 
 
 def read_plot(
-    source: Source,
+    source: Source | None = None,
     feature: str | int | None = None,
     plants: Source | None = None,
     planting: PlantingChoices | None = None,
     gate: tuple[float, float] | None = None,
     **options: object,
 ) -> Plot:
-    """Return one plot of a file with its plants in rows.
+    r"""Return one plot of a file with its plants in rows.
 
     Parameters
     ----------
     source
-        Path of a shapefile, GeoPackage, GeoJSON, KML...; also zipped.
+        Path of a shapefile, GeoPackage, GeoJSON, KML...; also zipped. None: nobody drew a
+        boundary; the plot is where its `plants` are, or its ``rows``.
     feature
         Name of the plot, or its number from 1, where the file holds several.
     plants
@@ -74,7 +77,7 @@ def read_plot(
     gate
         ``(lon, lat)`` where days start and end; None: the nearest row end.
     **options
-        What else the file leaves open, as the messages name it: ``crs="EPSG:2039"``,
+        What else the first file leaves open, as the messages name it: ``crs="EPSG:2039"``,
         ``columns={"lon": "Ost", "lat": "Nord"}``, ``near=(35.1, 30.3)``; and ``doubles="one"`` of
         plants measured twice, ``far="keep"`` of a few that stand kilometres away. ``rows``,
         ``blocks``, ``contours`` and ``paths`` are more files: rows or their end posts, areas of
@@ -106,8 +109,14 @@ def read_plot(
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> plot.n_plants, plot.grid.n_rows
     (3825, 45)
+    >>> with open("vines.csv", "w") as file:
+    ...     print("lon,lat", *(f"35.0000{x},30.000{y}" for x in "048" for y in range(10, 30, 2)),
+    ...           sep="\n", file=file)
+    >>> fm.read_plot(plants="vines.csv")
+    <Plot vines: 30 plants in 3 rows>
     """
-    _must_be_file(source)
+    if source is not None:
+        _must_be_file(source)
     if plants is not None:
         _must_be_file(plants, "A file of plants")
     must_be_of("A plot's name or number", "str | int | None", feature)
@@ -118,11 +127,8 @@ def read_plot(
         if file is not None:
             _must_be_file(file, f"A file of {name}")
     drawn["guess_blocks"] = yes_or_no("guess_blocks", options.pop("guess_blocks", False))
-    chosen = _chosen(PlotOptions(), options)
-    if feature is not None:
-        chosen = chosen.choose("feature", str(feature))
-    measured = ReadOptions(doubles=chosen.doubles, far=chosen.far)
-    sources = PlotSources(source, chosen, plants, measured, gate=gate, **drawn)
+    sources = PlotSources(source, plants=plants, gate=gate, **drawn)
+    sources = replace(sources, **_how_read(sources, feature, options))
     ready = prepare(PlotRequest(sources, planting or PlantingChoices()))
     _warn(said.message for said in ready.messages)
     for assumed in ready.assumed:
@@ -311,6 +317,28 @@ def read_weather(source: Source, plot: Plot, **options: object) -> Weather:
     read = read_weather_file(source, wanted)
     _warn(read.messages)
     return read.value
+
+
+def _how_read(
+    sources: PlotSources, feature: str | int | None, options: dict[str, object]
+) -> dict[str, Any]:
+    """Return how a plot's files are read: what is said is of the first one."""
+    if sources.plot is None:
+        if feature is not None:
+            raise SettingError(
+                worded(
+                    "Only a file of plots has one that is chosen, but feature is {feature!r} and "
+                    "there is none. Leave it out, or give the file of plots first.",
+                    feature=feature,
+                )
+            )
+        said = _chosen(ReadOptions(), options)
+        return {"rows_options" if sources.plants is None else "plants_options": said}
+    chosen = _chosen(PlotOptions(), options)
+    if feature is not None:
+        chosen = chosen.choose("feature", str(feature))
+    measured = ReadOptions(doubles=chosen.doubles, far=chosen.far)
+    return {"plot_options": chosen, "plants_options": measured}
 
 
 def _must_be_file(source: Any, what: str = "A file") -> None:  # noqa: ANN401 - anything

@@ -115,8 +115,10 @@ def open_to_people(scene: Scene, closed: Sequence[Closure]) -> Scene:
         return scene
     plants = closed_plants(closed, len(scene.chance))
     last = np.where(plants, np.int32(scene.day), scene.last_inspected)
-    skipped = None if scene.skipped is None else scene.skipped & ~plants
-    return replace(scene, last_inspected=last, skipped=skipped)
+    skipped, flagged = (
+        None if out is None else out & ~plants for out in (scene.skipped, scene.flagged)
+    )
+    return replace(scene, last_inspected=last, skipped=skipped, flagged=flagged)
 
 
 def is_all_closed(scene: Scene, closed: Sequence[Closure]) -> bool:

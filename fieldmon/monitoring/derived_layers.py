@@ -11,11 +11,11 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.compute.digest import digest
-from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import day_figures, schema
 from fieldmon.monitoring.geopackage import blob, insert, touch
 from fieldmon.monitoring.mornings import causes_of, rules
+from fieldmon.monitoring.plant_states import TREATED_SINCE, hot_spots_on, latest_states
 
 if TYPE_CHECKING:
     import sqlite3
@@ -30,7 +30,12 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
 
 #: of this season: what records from before say is in the layer of the observations
-STATES = {-1: "never inspected", 0: "looked clean", 1: "found infested"}
+STATES = {
+    -1: "never inspected",
+    0: "looked clean",
+    1: "found infested",
+    TREATED_SINCE: "found, treated since",
+}
 _DIGITS = 9  # of a chance; a digest must not hang on the last bit of another processor
 
 
@@ -91,8 +96,7 @@ def _name_causes(db: sqlite3.Connection, history: History, morning: Belief, day:
 
 
 def _write_spots(db: sqlite3.Connection, plot: Plot, history: History, day: int) -> HotSpots:
-    grid = plot.grid
-    spots = hot_spots(grid, history.known(day))
+    spots = hot_spots_on(history, day)
     db.execute("DELETE FROM hot_spots")
     rows = []
     for h in range(len(spots)):
@@ -148,7 +152,7 @@ def _write_states(
     name = {day: str(history.date_of(day)) for day in np.unique(history.days).tolist()}
     rows = zip(
         range(1, len(history.grid) + 1),
-        [STATES[state] for state in history.states(day).tolist()],
+        [STATES[state] for state in latest_states(history, day, own=True).tolist()],
         [name.get(last) for last in history.last_inspected(day).tolist()],
         [None if h < 0 else h + 1 for h in spots.of_plant.tolist()],
         strict=True,

@@ -40,6 +40,7 @@ from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot, must_be_robot
 from fieldmon.samplers import sampler_or_name
+from fieldmon.samplers.answers import must_name_plants
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
@@ -145,8 +146,8 @@ class AskedDay(ABC):
             must_be("A day's clock must be in seconds", at_s, Real, "Give at_s=3600.0.", (bool,))
             if not self._clock_s <= at_s < _NO_DAY_S:
                 raise ObservationError(
-                    f"The day's clock must go on, but it was {self._clock_s:.0f} s and is "
-                    f"{shown(at_s)} s."
+                    f"The day's clock must go on, and stay below {_NO_DAY_S:,.0f} s since the day "
+                    f"began, but it was {self._clock_s:.0f} s and is {shown(at_s)} s."
                 )
         now_s = stop.done_s if at_s is None else at_s
         self._take(stop, found, now_s)
@@ -516,13 +517,15 @@ class MonitorDay(AskedDay):
     def ask(self) -> PlantToInspect | None:
         """Return the plant to inspect next; None where hours allow no other, or none is named.
 
-        The same one until it is told what was seen there.
+        The same one until it is told what was seen there. Raise `SettingError` for a sampler of
+        one's own that names none on the first day, though the hours reach some.
         """
         if self.ended:
             return None
         if self._asked is None:
             if self._stops is None:
                 self._stops = self._sampler.walk(self._scene, self._would_find)
+                self._must_begin(self._stops)
             if self._next < len(self._stops.plant):
                 self._asked = self._stop(self._stops, self._next)
         return self._asked
@@ -562,6 +565,13 @@ class MonitorDay(AskedDay):
             self._would_find[stop.plant] = self._level(self._next) + 1
             self._stops = None
         self._next += 1
+
+    def _must_begin(self, stops: Stops) -> None:
+        """Raise `SettingError` where a sampler names no plant of a plot that nobody has seen."""
+        scene = self._scene
+        is_first = scene.day == 0 and scene.seconds_left == scene.robot.day_s
+        if is_first and not len(stops.plant) and (scene.last_inspected == NEVER).all():
+            must_name_plants(self._sampler, scene.aisles, scene.robot)
 
     def _begin(self, scene: Scene, since_s: float) -> None:
         self._scene, self._since_s, self._next = scene, since_s, 0

@@ -28,10 +28,41 @@ if TYPE_CHECKING:
 #: what stands in each line, by column
 Table = dict[str, list[Any]]
 
+# of treatments, also where there is none
+_TREATMENT = (
+    "plot",
+    "date",
+    "began",
+    "ended",
+    "zone",
+    "crop",
+    "product",
+    "active_ingredient",
+    "irac_group",
+    "dose",
+    "unit",
+    "water_l_ha",
+    "area_ha",
+    "plants",
+    "where",
+    "reason",
+    "pest",
+    "operator",
+    "authorised_by",
+    "machinery",
+    "weather",
+    "waiting_days",
+    "harvest_from",
+    "reentry_hours",
+    "entry_from",
+    "efficacy",
+    "batch",
+)
+
 
 def treatments_table(season: SeasonTreatments) -> Table:
     """Return a line for each treatment that counts: GLOBALG.A.P.'s fields, and how it is kept."""
-    return _by_column(_treatments(season))
+    return {name: [] for name in _TREATMENT} | _by_column(_treatments(season))
 
 
 def _by_column(lines: Iterable[dict[str, object]]) -> Table:
@@ -49,35 +80,36 @@ def _treatments(season: SeasonTreatments) -> Iterator[dict[str, object]]:
         said, label = one.application, label_of(one, labels)
         period = waits(one, label)
         entry = period.entry_from
-        yield {
-            "plot": season.plot.field.name,
-            "date": one.on,
-            "began": said.began and f"{said.began:%H:%M}",
-            "ended": said.ended and f"{said.ended:%H:%M}",
-            "zone": one.clock.zone,
-            "crop": said.crop,
-            "product": said.product,
-            "active_ingredient": said.active_ingredient,
-            "irac_group": "+".join(groups(one, label)),
-            "dose": said.dose and said.dose.value,
-            "unit": said.dose and said.dose.unit,
-            "water_l_ha": said.water_l_ha,
-            "area_ha": one.place.area_ha,
-            "plants": int(one.place.plants.sum()),
-            "where": str(place_in_words(season.plot.grid, one.place.plants)),
-            "reason": said.reason,
-            "pest": said.pest,
-            "operator": said.operator,
-            "authorised_by": said.authorised_by,
-            "machinery": said.machinery,
-            "weather": said.weather,
-            "waiting_days": period.days,
-            "harvest_from": period.harvest_from,
-            "reentry_hours": period.hours,
-            "entry_from": entry and f"{entry:%Y-%m-%d %H:%M}",
-            "efficacy": one.efficacy,
-            "batch": one.batch,
-        }
+        values = (
+            season.plot.field.name,
+            one.on,
+            said.began and f"{said.began:%H:%M}",
+            said.ended and f"{said.ended:%H:%M}",
+            one.clock.zone,
+            said.crop,
+            said.product,
+            said.active_ingredient,
+            "+".join(groups(one, label)),
+            said.dose and said.dose.value,
+            said.dose and said.dose.unit,
+            said.water_l_ha,
+            one.place.area_ha,
+            int(one.place.plants.sum()),
+            str(place_in_words(season.plot.grid, one.place.plants)),
+            said.reason,
+            said.pest,
+            said.operator,
+            said.authorised_by,
+            said.machinery,
+            said.weather,
+            period.days,
+            period.harvest_from,
+            period.hours,
+            entry and f"{entry:%Y-%m-%d %H:%M}",
+            one.efficacy,
+            one.batch,
+        )
+        yield dict(zip(_TREATMENT, values, strict=True))
 
 
 def inspections_table(season: SeasonRecords) -> Table:
@@ -153,7 +185,7 @@ def csv_bytes(tables: Iterable[Table]) -> bytes:
     text = io.StringIO(newline="")
     written = csv.writer(text)
     for table in tables:
-        if table and not text.tell():
+        if any(table.values()) and not text.tell():
             written.writerow(table)
         written.writerows(zip(*(_cells(column) for column in table.values()), strict=True))
     data = text.getvalue()

@@ -43,7 +43,7 @@ class SeasonFrames(SeasonRecords, SeasonTreatments, SeasonEstimates):
             from 0), ``row`` and ``number`` (from 1), ``date``, ``time``, ``result`` (clean, found
             or skipped), ``count`` (NaN: not counted), ``who``, ``corrected_by`` and ``notes``.
             ``"treatments"``: the outline of each that counts, with the columns of
-            ``fieldmon export --of treatments``; without treatments there are no columns.
+            ``fieldmon export --of treatments``.
             ``"plants"``: a point for each plant, with its chance on the ``morning`` and after what
             was recorded, ``evening``: of all infestations, a `DayPlan` of those that can be seen.
         on

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.monitoring.day_figures import Progress, found_pct
+from fieldmon.monitoring.plant_states import hot_spots_on
 
 if TYPE_CHECKING:
     from datetime import date
@@ -103,7 +103,7 @@ class Status:
             infested=history.infested(morning, day),
             flagged=history.flagged(morning, day),
             learnt=history.learnt(morning, day),
-            hot_spots=hot_spots(history.grid, history.known(day)),
+            hot_spots=hot_spots_on(history, day),
         )
 
     @property

@@ -78,13 +78,18 @@ class Skips:
 def without_skipped(scene: Scene, skips: Skips) -> Scene:
     """Return a scene in which nobody is sent to plants left out: they seem inspected today.
 
-    Those that were inspected today are not among its `skipped` plants.
+    Those that were inspected today are not among its `skipped` plants, and those that are among
+    them are not among its `flagged` ones: what happened last is said.
     """
-    skipped = skips.left_out(scene.day) & (scene.last_inspected != scene.day)
+    flagged, open_still = scene.flagged, scene.last_inspected != scene.day
+    if flagged is not None:
+        open_still |= flagged
+    skipped = skips.left_out(scene.day) & open_still
     if not skipped.any():
         return scene
     last = np.where(skipped, np.int32(scene.day), scene.last_inspected)
-    return replace(scene, last_inspected=last, skipped=skipped)
+    rest = None if flagged is None else flagged & ~skipped
+    return replace(scene, last_inspected=last, skipped=skipped, flagged=rest)
 
 
 def without_flagged(scene: Scene, flagged: NDArray[np.bool_] | None) -> Scene:
@@ -101,10 +106,16 @@ def without_flagged(scene: Scene, flagged: NDArray[np.bool_] | None) -> Scene:
     return replace(scene, last_inspected=last, flagged=known)
 
 
+def left_out(scene: Scene, *routes: Route) -> dict[str, NDArray[np.intp]]:
+    """Return the plants that a day's routes leave out, by why: ``"skipped"`` and ``"flagged"``."""
+    masks = {"skipped": scene.skipped, "flagged": scene.flagged}
+    return {why: _still_out(mask, routes) for why, mask in masks.items()}
+
+
 def left_out_in_words(scene: Scene, *routes: Route) -> tuple[Worded, ...]:
     """Return how many plants a day's routes leave out, and why; nothing where there are none."""
-    said = []
-    if skipped := _still_out(scene.skipped, routes):
+    out, said = left_out(scene, *routes), []
+    if skipped := len(out["skipped"]):
         plants = counted(skipped, "plant")
         said.append(
             worded(
@@ -112,7 +123,7 @@ def left_out_in_words(scene: Scene, *routes: Route) -> tuple[Worded, ...]:
                 plants=plants,
             )
         )
-    if flagged := _still_out(scene.flagged, routes):
+    if flagged := len(out["flagged"]):
         plants = counted(flagged, "plant")
         said.append(
             worded("Left out of this plan: {plants} found and only flagged.", plants=plants)
@@ -138,11 +149,11 @@ def nothing_left_in_words(scene: Scene) -> Worded | None:
     )
 
 
-def _still_out(left_out: NDArray[np.bool_] | None, routes: tuple[Route, ...]) -> int:
-    """Return how many of some plants ``(n,)`` are on none of these routes."""
-    if left_out is None:
-        return 0
-    out = left_out.copy()
+def _still_out(mask: NDArray[np.bool_] | None, routes: tuple[Route, ...]) -> NDArray[np.intp]:
+    """Return those of some plants ``(n,)`` that are on none of these routes."""
+    if mask is None:
+        return np.empty(0, np.intp)
+    out = mask.copy()
     for route in routes:
         out[route.plant] = False  # somebody wishes for them
-    return int(np.count_nonzero(out))
+    return np.flatnonzero(out)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from math import ceil, floor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import shapely
 
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import PlotError
 
 if TYPE_CHECKING:
@@ -83,9 +84,15 @@ class Clearance(NamedTuple):
 
     def tight_ends(self, grid: PlantGrid) -> Mask:
         """Tell of each lane end ``(r, 2)`` whether there is no room to turn on the spot."""
-        ends_m = np.stack([_lane_points(grid, end) for end in range(2)], axis=1)
-        tight: Mask = grid.tree.query(ends_m)[0] < self.turn_m
+        tight: Mask = self.end_room_m(grid) < self.turn_m
         return tight
+
+    @staticmethod
+    def end_room_m(grid: PlantGrid) -> Float:
+        """Return how near each lane end is to the middle of any plant, ``(r, 2)`` metres."""
+        ends_m = np.stack([_lane_points(grid, end) for end in range(2)], axis=1)
+        room: Float = grid.tree.query(ends_m)[0]
+        return room
 
 
 def half_canopy_m(grid: PlantGrid) -> float:
@@ -103,15 +110,52 @@ def lane_room_m(grid: PlantGrid) -> Float:
 
 
 def narrow_sentence(rows: Mask, grid: PlantGrid, needs: Clearance) -> str:
-    """Return for people which rows ``(r,)`` a robot that needs so much cannot enter."""
-    return worded(
-        "{rows} of {all} cannot be inspected: in their aisles the robot needs {need_m:.2f} m from "
-        "plant to plant, and there is less. Their {plants} are not visited.",
-        rows=counted(int(np.count_nonzero(rows)), "row"),
-        all=len(rows),
-        need_m=2 * needs.way_m,
-        plants=counted(int(np.diff(grid.row_start)[rows].sum()), "plant"),
-    )
+    """Return for people which rows ``(r,)`` a robot that needs so much cannot enter, and why."""
+    room_m, ends_m = lane_room_m(grid), needs.end_room_m(grid).max(axis=1)
+    in_aisle = np.isin(grid.corridor, grid.corridor[room_m < needs.way_m])
+    said = []
+    if (narrow := rows & in_aisle).any():
+        said.append(
+            worded(
+                "{rows} of {all} cannot be inspected: from the middle of the aisle, where it "
+                "drives, the robot needs {need_m:.2f} m to the middle of any plant, but one "
+                "stands {room_m:.2f} m from it. Their {plants} are not visited.",
+                need_m=_up(needs.way_m),
+                room_m=_down(float(room_m[narrow].min())),
+                **_counted(narrow, grid),
+            )
+        )
+    if (tight := rows & ~in_aisle).any():
+        said.append(
+            worded(
+                "{rows} of {all} cannot be inspected: to turn at an end of their aisles the robot "
+                "needs {need_m:.2f} m from its middle to the middle of any plant, but at the "
+                "better end one stands {room_m:.2f} m from it. Their {plants} are not visited.",
+                need_m=_up(needs.turn_m),
+                room_m=_down(float(ends_m[tight].min())),
+                **_counted(tight, grid),
+            )
+        )
+    return joined(" ", said)
+
+
+def _counted(rows: Mask, grid: PlantGrid) -> dict[str, object]:
+    """Return how many rows, as people count them, and plants these rows ``(r,)`` are."""
+    return {
+        "rows": counted(len(np.unique(grid.row_line[rows])), "row"),
+        "all": grid.n_lines,
+        "plants": counted(int(np.diff(grid.row_start)[rows].sum()), "plant"),
+    }
+
+
+def _up(metres: float) -> float:
+    """Return a length in whole centimetres, never less: what is there must be seen to be less."""
+    return ceil(round(100 * metres, 6)) / 100
+
+
+def _down(metres: float) -> float:
+    """Return a length in whole centimetres, never more."""
+    return floor(round(100 * metres, 6)) / 100
 
 
 def _lane_points(grid: PlantGrid, end: int) -> Float:

@@ -11,9 +11,10 @@ from shapely import MultiPolygon
 from fieldmon.compute.arguments import must_be
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.plant_names import PlantNames
 
 if TYPE_CHECKING:
-    from geopandas import GeoDataFrame
+    from geopandas import GeoDataFrame, GeoSeries
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
@@ -47,8 +48,13 @@ def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> G
     )
 
 
-def boundary_and_plants(frame: GeoDataFrame) -> tuple[MultiPolygon | None, NDArray[np.float64]]:
-    """Return the area of a frame, if it has one, and its points ``(n, 2)``, in degrees WGS84.
+def boundary_and_plants(
+    frame: GeoDataFrame,
+) -> tuple[MultiPolygon | None, NDArray[np.float64], PlantNames]:
+    """Return the area of a frame, if it has one, its points ``(n, 2)``, and what these are called.
+
+    Places are in degrees WGS84. Names are those of its columns ``row`` (or ``row_name``, where that
+    says something), ``number`` or else ``plant``, and ``block``, as `plant_frame` has them.
 
     Raises
     ------
@@ -74,7 +80,8 @@ def boundary_and_plants(frame: GeoDataFrame) -> tuple[MultiPolygon | None, NDArr
             "A GeoDataFrame must say its coordinate system, but its crs is None. "
             "Set it first: gdf.set_crs(4326), for instance."
         )
-    shapes = frame.geometry[~(frame.geometry.isna() | frame.geometry.is_empty)].to_crs(_DEGREES)
+    there = np.flatnonzero(~(frame.geometry.isna() | frame.geometry.is_empty))
+    shapes = frame.geometry.iloc[there].to_crs(_DEGREES)
     kinds = shapes.geom_type.str.removeprefix("Multi")
     areas, points = shapes[kinds == "Polygon"], shapes[kinds == "Point"]
     if not len(shapes) or len(areas) + len(points) < len(shapes):
@@ -89,4 +96,35 @@ def boundary_and_plants(frame: GeoDataFrame) -> tuple[MultiPolygon | None, NDArr
             "gdf.iloc[[0]], or join its parts, gdf.dissolve()."
         )
     boundary = MultiPolygon(list(shapely.get_parts(areas.iloc[0]))) if len(areas) else None
-    return boundary, shapely.get_coordinates(points.to_numpy())
+    places = points.to_numpy()
+    which = np.repeat(there[kinds == "Point"], shapely.get_num_coordinates(places))
+    return boundary, shapely.get_coordinates(places), _names_in(frame, which)
+
+
+def _names_in(frame: GeoDataFrame | GeoSeries, which: NDArray[np.intp]) -> PlantNames:
+    """Return what the columns of a frame call the points in these lines of it, ``(n,)``."""
+    import pandas as pd  # noqa: PLC0415 - as above
+
+    columns = getattr(frame, "columns", ())
+
+    def called(name: str) -> NDArray[np.str_] | None:
+        if name not in columns:
+            return None
+        said = frame[name].iloc[which].tolist()
+        names = np.array(["" if pd.isna(one) else _written(one) for one in said], np.str_)
+        return names if (names != "").any() else None
+
+    row, named = called("row"), called("row_name")
+    if row is not None and named is not None:
+        row = np.where(named == "", row, named)
+    number = called("number")
+    return PlantNames(
+        named if row is None else row,
+        called("block"),
+        called("plant") if number is None else number,
+    )
+
+
+def _written(name: object) -> str:
+    """Return a name as a file would have it: 7.0 is 7."""
+    return f"{name:.15g}" if isinstance(name, float) else str(name).strip()

@@ -165,7 +165,7 @@ class PlantGrid:
         if not self.in_rows:
             return f"{counted(len(self), 'plant')} in no rows"
         blocks = f" of {counted(self.n_blocks, 'block')}" if self.n_blocks > 1 else ""
-        return f"{counted(len(self), 'plant')} in {counted(self.n_rows, 'row')}{blocks}"
+        return f"{counted(len(self), 'plant')} in {counted(self.n_lines, 'row')}{blocks}"
 
     @property
     def n_blocks(self) -> int:
@@ -185,6 +185,11 @@ class PlantGrid:
     def n_rows(self) -> int:
         """Return the number of rows (unbroken pieces)."""
         return len(self.row_start) - 1
+
+    @property
+    def n_lines(self) -> int:
+        """Return the number of lines of plants, which people count as rows: holes cut some."""
+        return len(np.unique(self.row_line))
 
     @cached_property
     def row(self) -> NDArray[np.int32]:

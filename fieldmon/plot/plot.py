@@ -278,7 +278,8 @@ class Plot:
         ----------
         frame
             One polygon, points, or both, in any coordinate system; rows are found from the
-            points, or laid in the polygon.
+            points, or laid in the polygon. Columns ``row``, ``plant`` (or ``number``) and
+            ``block`` say what points are called, as in a file of plants.
         planting
             Bearing and spacings; None: found from the points, or the defaults (rows 4 m and
             plants 3 m apart, along the longest side).
@@ -304,11 +305,11 @@ class Plot:
         """
         from fieldmon.plot.frames import boundary_and_plants  # noqa: PLC0415 - loads GeoPandas
 
-        boundary, plants = boundary_and_plants(frame)
+        boundary, plants, names = boundary_and_plants(frame)
         if boundary is None:
-            return cls.around(name, plants, planting, gate)
-        measured = plants if len(plants) else None
-        return cls.of(Field(name, boundary, gate=gate, plants=measured), planting)
+            return cls.around(name, plants, planting, gate, names)
+        field = Field(name, boundary, gate=gate, plants=plants if len(plants) else None)
+        return cls.of(names.on(field) if len(plants) else field, planting)
 
     def to_geopandas(self) -> GeoDataFrame:
         """Return the plants as points, EPSG:4326, with ``plant``, ``row`` and ``number``.

@@ -9,6 +9,7 @@ import numpy as np
 from fieldmon.compute.wording import estimate, figure, litres_figure, share_figure, worded
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.monitoring.plant_states import shown_states
 from fieldmon.plot.grid import row_ends, row_label
 from fieldmon.reports import words
 from fieldmon.reports.content import (
@@ -70,7 +71,8 @@ def _figures(advice: Advice, product: str, units: Units) -> KeyFigures:
 
 def _map(season: Season, on: date, advice: Advice, units: Units) -> list[Block]:
     with season.one_moment():
-        state, evening = season.history.known(season.settings.day(on)), season.evening(on)
+        day, evening = season.settings.day(on), season.evening(on)
+        state = shown_states(season.history, day)
     grid = season.plot.grid
     what = PlotMap(
         grid, evening, state, hot_spots(grid, np.full(len(grid), -1, np.int8)),

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import estimate, figure, hours_figure, runs, worded
-from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.closures import closed_in_words
+from fieldmon.monitoring.plant_states import hot_spots_on, shown_states
 from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import left_out_in_words
 from fieldmon.plot.grid import row_label
@@ -143,11 +143,11 @@ class DayFacts:
             if shown.notes is not None and shown.notes.start is not None:
                 begins = shown.notes.start
             names = tuple(one.name for one in settings.team)
-            state, done = season.history.known(day), season.history.on(day).inspected
+            state, done = shown_states(season.history, day), season.history.on(day).inspected
             return cls(
                 season.plot.field.name, begins,
                 shown, season.evening(on), state,
-                hot_spots(season.plot.grid, state),
+                hot_spots_on(season.history, day),
                 WorkSettings.of_season(season, on, worked=worked).with_learnt(season, on),
                 len(np.unique(done.plant)), np.unique(done.plant[done.result == FOUND]),
                 worked, results_on(season, on), season.planned_and_done(on),

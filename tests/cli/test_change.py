@@ -52,6 +52,20 @@ def test_finds_are_traced_or_not_as_is_chosen(run, season):
     assert "detection" not in said
 
 
+def test_a_change_says_that_days_with_results_go_on_as_before_and_how_they_do_not(run, season):
+    assert run("change", season, "--robots", "2")[1].count("\n") == 1
+    kept = Season(season)
+    on = kept.settings.begins + timedelta(days=3)
+    kept.record(Inspections.of(np.array([4]), np.array([0]), np.datetime64(on)), "x")
+    out = run("change", season, "--robots", "3")[1]
+    assert f"\n{on} and days before it go on by what counted then" in out
+    assert "fieldmon plan --as-now --date DAY" in out
+    planned = run("plan", season, "--date", on, "-o", "r.csv")
+    assert "counted then" in planned[2]
+    assert "robot-3" in run("plan", season, "--date", on, "--as-now", "-o", "r.csv")[1]
+    assert "go on" not in run("change", season, "--robots", "2")[1]
+
+
 def test_a_change_that_reaches_into_the_past_says_what_it_makes_of_the_last_day(run, season):
     on = Season(season).last_date() + timedelta(days=2)
     Season(season).plan(on)

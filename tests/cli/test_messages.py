@@ -27,6 +27,7 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
+from tests.monitoring.seasons import a_plot
 
 MONTH = guessed("Read day first.", "date", Remedy("date_order", "mdy", "Read month first"))
 
@@ -65,6 +66,15 @@ def test_a_plot_of_one_plant_is_described_as_one_and_thousands_are_parted(capsys
     alone, many = capsys.readouterr().out.splitlines()
     assert alone == "Tree: 1 plant in no rows, visited by nearness."
     assert many.startswith("Gate: 1,200 plants in 100 rows, ")
+
+
+def test_rows_are_counted_as_files_count_them_though_a_hole_cuts_some_in_two(capsys):
+    plot = a_plot()
+    assert plot.grid.n_rows > plot.grid.n_lines
+    rows = len({*plot.to_geopandas()["row"]})
+    describe(plot)
+    assert f" in {rows} rows, bearing" in capsys.readouterr().out
+    assert f" in {rows} rows>" in repr(plot)
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,16 @@
 """A team's season on the command line: one route file each, and several findings at once."""
 
+from dataclasses import replace
 from datetime import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fieldmon.cli.options import WorkerOptions
 from fieldmon.cli.team_files import files_of_each, members_of
 from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot
@@ -45,6 +48,18 @@ def test_each_has_a_route_file_and_the_findings_of_both_are_recorded_at_once(run
     assert "robot-1: from 06:0" in out
     assert "no routes" not in out
     assert len(files) == 2
+
+
+def test_what_one_did_who_left_the_team_is_done_all_the_same(run, season):
+    kept = Season(season)
+    day = np.datetime64(kept.settings.begins)
+    for who, plants in (("robot-1", [3]), ("robot-2", [40, 41, 42])):
+        kept.record(Inspections.of(np.array(plants), np.zeros(len(plants)), day), who, who)
+    seen = kept.settings
+    first = seen.team[0]
+    kept.change(replace(seen, team=(first, TeamMember("Ann", first.robot))), seen)
+    words = ("plan", season, "--date", BEGINS, "--no-bound", "--as-now")
+    assert f"{BEGINS}: 4 done" in run(*words)[1]
 
 
 def test_a_season_goes_on_with_another_team(run, season, tmp_path):

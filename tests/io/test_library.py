@@ -1,5 +1,6 @@
 """Reading in one call: what the doors of the app read, with doubts as warnings."""
 
+import json
 import warnings
 
 import numpy as np
@@ -7,8 +8,9 @@ import pytest
 
 from fieldmon.errors import ChoiceNeeded, ImportDoubt, SettingError
 from fieldmon.io import library, read
-from fieldmon.io.options import PlotOptions, Upload
-from fieldmon.io.sources import PlantingChoices
+from fieldmon.io.options import PlotOptions, ReadOptions, Upload
+from fieldmon.io.prepare import prepare
+from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
 from tests.paths import SAMPLE_DATA
 
 ESTATE = SAMPLE_DATA / "paran_estate.zip"
@@ -36,6 +38,34 @@ def test_a_plot_is_the_one_that_the_doors_of_the_app_read(gate):
     (wanted,) = read.read_plots(ESTATE, PlotOptions(feature="Gate")).value
     assert gate.field.boundary.equals(wanted.boundary)
     assert library.read_plot(ESTATE, feature=1, planting=ROWS).field.name == "Gate"
+
+
+PLANTS = "Ost,Nord,row,plant\n" + "".join(
+    f"{5 + 3e-5 * row},{45 + 2e-5 * k},{row},{k}\n" for row in (7, 8, 9) for k in range(11, 19)
+)
+LINES = [[[5 + 3e-5 * k, 45], [5 + 3e-5 * k, 45.0004]] for k in range(4)]
+
+
+def test_a_plot_is_read_from_its_plants_alone_or_its_rows_alone_as_commands_do():
+    file = Upload("vines.csv", PLANTS.encode())
+    columns = {"lon": "Ost", "lat": "Nord"}
+    plot, _ = heard(library.read_plot, plants=file, columns=columns)
+    assert (plot.field.name, plot.n_plants) == ("vines", 24)
+    options = ReadOptions().naming(**columns)
+    by_command = prepare(PlotRequest(PlotSources(plants=file, plants_options=options))).plot
+    assert {*plot.grid.row_number.tolist()} == {7, 8, 9}
+    assert plot.to_geopandas().equals(by_command.to_geopandas())
+    line = json.dumps({"type": "MultiLineString", "coordinates": LINES})
+    drawn, said = heard(library.read_plot, rows=Upload("rows.geojson", line.encode()))
+    assert drawn.grid.n_rows == 4
+    assert any("No boundary was given" in one for one in said)
+
+
+def test_without_any_file_or_with_a_plot_chosen_in_none_it_is_said_what_to_give():
+    with pytest.raises(SettingError, match="Give a file of plots, or the positions"):
+        library.read_plot()
+    with pytest.raises(SettingError, match="Only a file of plots has one that is chosen"):
+        library.read_plot(plants=Upload("vines.csv", PLANTS.encode()), feature="Gate")
 
 
 def test_what_is_assumed_of_the_rows_is_a_warning_and_what_is_said_is_none():

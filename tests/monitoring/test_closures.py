@@ -13,10 +13,12 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.closures import closed_in_words, closed_on, closed_plants, entry_waits
 from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.planning.members import team_of
+from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import scout
-from tests.monitoring.seasons import BEGINS
+from tests.monitoring.seasons import BEGINS, a_season
 from tests.monitoring.test_cautions import EAST, WEST, treated
 
 ON = BEGINS + timedelta(1)
@@ -170,3 +172,17 @@ def test_one_row_is_a_row(season):
     sprayed(season, [3], 24)
     (said,) = closed_in_words(season.closed(ON), season.plot.grid, Units())
     assert "plants in row 3." in said
+
+
+def test_a_wish_opens_no_closed_plant_that_was_found_and_only_flagged(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
+    row = season.label.line == 2
+    found, sprayed_plant = np.flatnonzero(row)[[3, 10]]
+    season.record(Inspections.of([found], [1], np.datetime64(BEGINS)), "a.csv", "Ann")
+    only = np.arange(len(row)) == sprayed_plant
+    season.treat(BEGINS, 0.5, plants=only, application=Application(
+        "Acarol", reentry_hours=72.0, ended=time(18)))  # fmt: skip
+    scene = season.scene(ON)
+    assert scene.flagged is None or not scene.flagged[row].any()
+    wished = season.plan(ON, keep=False, wishes=Wishes((int(found),)))
+    assert found not in wished.route.plant

@@ -25,6 +25,7 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles
 from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers.base import Sampler, Stops
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
 
@@ -176,11 +177,33 @@ def test_the_clock_never_goes_behind_what_is_gone_as_charged(plot):
     for at_s in (gone_s - 30.0, np.nan, np.inf):
         with pytest.raises(ObservationError, match="The day's clock must go on"):
             day.tell(found=False, at_s=at_s)
+    with pytest.raises(ObservationError, match="stay below 1,000,000,000 s since the day began"):
+        day.tell(True, at_s=1e9)
     with pytest.raises(SettingError, match="must be in seconds, but it is '90'"):
         day.tell(found=False, at_s="90")
     assert (day.gone_s, len(day.plants)) == (gone_s, 1)
     day.tell(found=False, at_s=gone_s)
     assert day.gone_s == gone_s
+
+
+class Nobody(Sampler):
+    """It goes nowhere."""
+
+    def walk(self, scene, would_find):  # noqa: ARG002 - the protocol's
+        return Stops(np.empty(0, np.int32), np.empty(0))
+
+
+def test_a_sampler_that_names_no_plant_on_the_first_day_is_refused_as_in_a_plan(plot):
+    day = Monitor(plot, Nobody(), Robot(hours=1)).day()
+    with pytest.raises(SettingError, match="Nobody must name plants to inspect"):
+        day.ask()
+    later = Monitor(plot, "naive", Robot(hours=1))
+    with later.day() as day:
+        day.ask()
+        day.tell(found=False)
+    later.night()
+    scene = later.day()._scene
+    assert Monitor(plot, Nobody()).day_in(scene).ask() is None
 
 
 def test_nothing_is_told_after_the_day_for_nobody_would_learn_it(plot):

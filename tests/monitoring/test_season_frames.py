@@ -12,7 +12,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Application
-from fieldmon.monitoring.record_tables import inspections_table, treatments_table
+from fieldmon.monitoring.record_tables import csv_bytes, inspections_table, treatments_table
 from tests.monitoring.seasons import BEGINS, a_season, some_results
 
 
@@ -74,12 +74,15 @@ def test_days_are_those_of_which_there_are_figures(season):
         assert frame[name].tolist() == [getattr(day, name) for day in days]
 
 
-def test_a_season_of_nothing_has_frames_without_lines(tmp_path):
+def test_a_season_of_nothing_has_frames_without_lines(tmp_path, season):
     empty = a_season(tmp_path / "season.gpkg")
     for of in ("inspections", "treatments"):
         frame = empty.to_geopandas(of)
         assert len(frame) == 0
         assert frame.crs == "EPSG:4326"
+        assert [*frame.columns] == [*season.to_geopandas(of).columns]
+    assert empty.to_geopandas("treatments").harvest_from.dtype.kind == "M"
+    assert csv_bytes([treatments_table(empty)]) == b""
     assert empty.to_geopandas("inspections").date.dtype.kind == "M"
     assert empty.to_pandas().inspected.tolist() == [0]
 

@@ -127,6 +127,19 @@ def test_a_flagged_plant_is_left_out_unless_somebody_wishes_for_it(scene):
     assert len(plan_in(without_flagged(scene, every >= 0), HOUR.sampler).route) == 0
 
 
+def test_a_flagged_plant_that_nobody_could_inspect_last_time_is_said_as_that_and_once(scene):
+    known = np.isin(np.arange(len(scene.chance)), [300, 301, 302])
+    skips = Skips.of(np.array([302, 303]), np.full(2, DAY - 1), scene.last_inspected)
+    both = without_skipped(without_flagged(scene, known), skips)
+    said = left_out_in_words(both)
+    assert "2 plants that nobody could inspect last time" in said[0]
+    assert "2 plants found and only flagged" in said[1]
+    assert (both.last_inspected[[300, 301, 302, 303]] == DAY).all()
+    seen = np.where(known, np.int32(DAY), scene.last_inspected)
+    today = without_skipped(without_flagged(replace(scene, last_inspected=seen), known), skips)
+    assert np.flatnonzero(today.skipped).tolist() == [303]
+
+
 def test_where_every_plant_was_skipped_none_is_left_out():
     """A locked gate is no reason to stay away tomorrow."""
     every, never = np.arange(4), np.full(4, NEVER)

@@ -9,7 +9,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.plot.clearance import STRAY_M, USUAL_HALF_CANOPY_M, Clearance, lane_room_m
+from fieldmon.plot.clearance import (
+    STRAY_M,
+    USUAL_HALF_CANOPY_M,
+    Clearance,
+    lane_room_m,
+    narrow_sentence,
+)
 from fieldmon.plot.layout import grid_from_plants, rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot, rover
@@ -106,6 +112,28 @@ def test_nobody_is_sent_into_an_aisle_that_is_too_narrow(name):
     assert 3 not in grid.row[stops.plant]
     assert "1 row of 8 cannot be inspected" in scene.aisles.narrow_sentence()
     assert "12 plants are not visited" in scene.aisles.narrow_sentence()
+    assert "needs 0.65 m to the middle of any plant, but one stands 0.50 m" in (
+        scene.aisles.narrow_sentence()
+    )
+
+
+def test_where_there_is_no_room_to_turn_that_is_said_and_not_that_aisles_are_narrow():
+    grid = rectangle(4, 6, Planting(row_spacing_m=1.4, plant_spacing_m=1.0, headland_m=1.0))
+    robot = Robot(width_m=0.6, length_m=0.8)
+    needs = Clearance.of(robot, grid)
+    room_m = lane_room_m(grid)
+    assert (room_m >= needs.way_m).all()
+    said = narrow_sentence(np.ones(grid.n_rows, np.bool_), grid, Clearance(needs.way_m, 2.0))
+    ends_m = needs.end_room_m(grid).max(axis=1).min()
+    assert "to turn at an end of their aisles the robot needs 2.00 m" in said
+    assert f"one stands {ends_m:.2f} m from it" in said
+
+
+def test_what_is_there_is_never_rounded_up_to_what_is_needed():
+    grid = narrow_in_the_middle()
+    rows = np.arange(8) == 3
+    said = narrow_sentence(rows, grid, Clearance(0.5004, 0.5004))
+    assert "needs 0.51 m to the middle of any plant, but one stands 0.50 m" in said
 
 
 def test_a_canopy_that_was_said_opens_or_shuts_aisles():

@@ -2,12 +2,15 @@
 
 import geopandas
 import numpy as np
+import pandas as pd
 import pytest
+import shapely
 from shapely import LineString, MultiPolygon, Point, box
 
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.frames import plant_frame
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 
@@ -82,3 +85,43 @@ def test_measured_plants_are_taken_as_they_stand_with_and_without_an_area():
 def test_what_is_no_plot_is_refused_with_what_to_do(given, error, sentence):
     with pytest.raises(error, match=sentence):
         Plot.from_geopandas(given, PLANTING)
+
+
+def named_points():
+    """Return 3 rows of 5 plants, which are called 12, 7 and "Top", 21 to 25 each."""
+    row, k = np.divmod(np.arange(15), 5)
+    metres = np.c_[700_000 + 3 * row, 3_360_000 + 2 * k]
+    called = np.array(["12", "7", "Top"])[row]
+    return geopandas.GeoDataFrame(
+        {"row": called, "plant": (k + 21).astype(float)},
+        geometry=[Point(one) for one in metres],
+        crs=UTM,
+    ).sample(frac=1.0, random_state=1)
+
+
+@pytest.mark.parametrize("within", [False, True])
+def test_rows_and_plants_keep_what_a_frame_calls_them_and_come_back_so(within):
+    points = named_points()
+    if within:
+        area = frame(box(699_990, 3_359_990, 700_020, 3_360_020))
+        points = pd.concat([area, points])
+    plot = Plot.from_geopandas(points)
+    back = plot.to_geopandas()
+    assert back.groupby("row")["number"].agg(list).tolist() == [[*range(21, 26)]] * 3
+    assert {*back["row"]} == {7, 12, 101}
+    assert {*back["row_name"]} == {"", "Top"}
+    again = Plot.from_geopandas(back).to_geopandas()
+    assert again.drop(columns="geometry").equals(back.drop(columns="geometry"))
+
+
+def test_points_of_two_blocks_are_called_as_a_file_of_plants_calls_them():
+    points = named_points()
+    there = points.assign(geometry=points.geometry.translate(100), block="South")
+    both = pd.concat([points.assign(block="North"), there])  # each label twice
+    plot = Plot.from_geopandas(both)
+    lonlat = shapely.get_coordinates(both.geometry.to_crs(4326).to_numpy())
+    plants = both["plant"].astype(int).astype(str).to_numpy(np.str_)
+    named = PlantNames(both["row"].to_numpy(np.str_), both["block"].to_numpy(np.str_), plants)
+    as_file = Plot.around("plot", lonlat, names=named)
+    assert plot.to_geopandas().equals(as_file.to_geopandas())
+    assert len({*plot.grid.block_named}) == 2

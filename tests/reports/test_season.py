@@ -80,8 +80,9 @@ def test_the_charts_show_finds_share_expected_and_inspected(of_season):
     assert "treated" not in charts[0].draw((186.0, 40.0)).words()
 
 
-def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(of_season, worked, last):
-    status = worked.status(last)
+def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(worked):
+    untreated = BEGINS + timedelta(days=1)
+    of_season, status = season_report(worked, untreated, Units()), worked.status(untreated)
     said = one(of_season, Listing, "Hot spots").sentences
     assert list(said) == hot_spot_meanings(
         worked.plot.grid, status.hot_spots, worked.history.states(status.day)
@@ -230,11 +231,13 @@ def test_another_detection_that_was_said_with_inspections_stands_below_them(tmp_
 
 
 def test_what_no_page_has_room_for_is_counted(worked, last, monkeypatch):
-    spots = len(worked.status(last).hot_spots)
+    untreated = BEGINS + timedelta(days=1)
+    spots = len(worked.status(untreated).hot_spots)
     monkeypatch.setattr(sentences, "_MOST_SPOTS", spots - 1)
     monkeypatch.setattr(season_module, "_MOST_EFFECTS", 0)
-    report = season_report(worked, last, Units())
+    report = season_report(worked, untreated, Units())
     assert "... and 1 more." in [block.text for block in on_sheet(report, 2, Paragraph)]
+    report = season_report(worked, last, Units())
     assert "... and 1 earlier." in [
         said for block in on_sheet(report, 3, Listing) for said in block.sentences
     ]

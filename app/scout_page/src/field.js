@@ -22,6 +22,8 @@ function dateIn(zone, ms, how = {}) {
   try { return new Intl.DateTimeFormat("sv-SE", zone ? { ...how, timeZone: zone } : how).format(ms); } catch { return dateIn("", ms, how); }
 }
 
+const within = (at, [low, high]) => at >= low && at <= high;
+
 /** Whether something of a plant is in hand that is not told yet. */
 const isNoted = (draft) => Boolean(draft?.open || draft?.photos || draft?.notes);
 
@@ -382,8 +384,8 @@ export class Field {
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
       const done = new Set([...this.done, plant]);
-      // a neighbour that nobody may come to yet is none to go to
-      const out = neighbours(this.plot, plant).filter((one) => this.closedUntil(one));
+      // a neighbour that nobody may come to yet, or that plans leave out, is none to go to
+      const out = neighbours(this.plot, plant).filter((one) => this.closedUntil(one) || this.isLeftOut(one));
       ahead = afterFind(this.plot, this.day, ahead, plant, new Set([...done, ...out]), secondsLeft(this.day, begun, this.time.best()));
     }
     const follows = { ahead, begun, draft: this.#comesNext(ahead), last: { id, plant, ahead: this.ahead } };
@@ -468,11 +470,17 @@ export class Field {
 
   /** The local time until which nobody may come to a plant, or null. */
   closedUntil(plant) {
-    const row = rowOf(this.plot, plant), within = (at, [low, high]) => at >= low && at <= high;
+    const row = rowOf(this.plot, plant);
     // a day loaded from an earlier version says no plants
     const isIn = ({ rows, plants }) => (plants ? plants.some((run) => within(plant, run)) : within(row, rows));
     return this.closed().filter(isIn).map((one) => one.until).sort().at(-1) ?? null;
   }
+
+  /** How many of one's own plants plans leave out, and why. */
+  leftOut() { return (this.day?.left_out ?? []).filter(({ own: n }) => n); }
+
+  /** Whether plans leave a plant out: nobody could inspect it last time, or it was found and only flagged. */
+  isLeftOut(plant) { return (this.day?.left_out ?? []).some(({ plants }) => plants.some((run) => within(plant, run))); }
 
   /** The day that is meant where it is not today: one ahead until it comes, and one that was over as it was loaded. */
   meant() {

@@ -9,6 +9,7 @@ import { LANGUAGES, own, say, speak } from "./words.js";
 // a glove that bounces must say nothing of the next plant
 const REST_MS = 250;
 const STAGES = ["egg", "young", "adult", "web"];
+const LEFT_OUT = { skipped: "left_out_skipped", flagged: "left_out_flagged" };
 
 function h(name, values = {}, ...inner) {
   const made = document.createElement(name);
@@ -194,7 +195,7 @@ export class Page {
     }
     const { draft } = field;
     if (draft.plant < 0) {
-      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place", "data-plant": -1 }, say("route_done")), ...this.#closed(), this.#lastSaid(), this.#others(), this.#back());
+      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place", "data-plant": -1 }, say("route_done")), ...this.#closed(), ...this.#leftOut(), this.#lastSaid(), this.#others(), this.#back());
     }
     this.place = h("div", { id: "place", "data-plant": draft.plant });
     this.#drawPlace();
@@ -230,6 +231,9 @@ export class Page {
     const said = ({ rows, until, own: n }, [low, high] = shownEnds(this.field.plot, rows)) => [say("closed_rows", { low, high, until: this.#time(until) }), n && say("closed_plants", { n })];
     return (this.field.day ? this.field.closed() : []).map((one) => h("p", { class: "bad" }, said(one).filter(Boolean).join(" ")));
   }
+
+  /** How many plants plans leave out, and why. */
+  #leftOut() { return this.field.leftOut().map(({ why, own: n }) => h("p", { class: "left_out" }, say(LEFT_OUT[why], { n }))); }
 
   #otherDay() {
     const { field } = this;
@@ -401,6 +405,7 @@ export class Page {
       field.day && h("p", {}, say("ahead_takes", { minutes: Math.round(field.secondsAhead() / 60) })),
       part && h("p", {}, say("your_rows", { low: part[0], high: part[1] })),
       ...this.#closed(),
+      ...this.#leftOut(),
       // it has not everything where it did not take something
       !((refused.length || this.stranded.size) && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
       ...[...this.stranded].map(([who, n]) => h("p", { class: "bad" }, say("stranded", { n, who }))),

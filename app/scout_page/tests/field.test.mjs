@@ -377,6 +377,18 @@ test("rows that were sprayed are closed until their time on the plot", async () 
   assert.equal(field.closed().length, 1);
 });
 
+test("a find leads to no plant that plans leave out, and how many these are is said", async () => {
+  const left_out = [{ why: "skipped", plants: [[5, 5], [12, 14]], own: 3 }, { why: "flagged", plants: [[1, 1]], own: 0 }];
+  const { field } = await aField(new ASeason(aDay([0, 10, 11], { left_out })));
+  assert.deepEqual([0, 1, 5, 6, 13].map((plant) => field.isLeftOut(plant)), [false, true, true, false, true]);
+  await field.tell("found");
+  assert.deepEqual(field.ahead, [10, 11]);
+  assert.deepEqual(field.leftOut().map(({ why, own }) => [why, own]), [["skipped", 3]]);
+  const old = await aField(new ASeason(aDay([0, 10, 11])));
+  await old.field.tell("found");
+  assert.deepEqual(old.field.ahead, [1, 5, 10, 11], "a server of before says nothing of them");
+});
+
 test("of rows that say their plants only these are closed, and neither a find nor a photo leads there", async () => {
   const asked = [{ id: "a1", plant: 6, note: "", who: "Office" }, { id: "a2", plant: 12, note: "", who: "Office" }];
   const closed = [{ rows: [2, 2], until: "2026-11-22T23:00", plants: [[5, 6]], own: 2 }];

@@ -274,6 +274,17 @@ class HandoffPlan:
         """Driven line in degrees, ``(m, 2)``."""
         return self.route.line_lonlat().round(DECIMALS)
 
+    @property
+    def begins(self) -> datetime | None:
+        """Return the start as a moment that names its zone; None: the one or the other is unknown.
+
+        The zone is the plot's where the start names none.
+        """
+        start, clock = self.notes.start, grid_clock(self.grid)
+        if start is None or start.tzinfo is not None:
+            return start
+        return clock.moment(start.date(), start.time()) if clock.zone else None
+
     def clock(self, seconds: float) -> str:
         """Return date and local time so many seconds after the start; empty if it is not known."""
         start = self.notes.start

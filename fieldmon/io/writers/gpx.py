@@ -30,8 +30,9 @@ def route_gpx(plan: HandoffPlan) -> bytes:
 
     Waypoints lie at the plants. Route and track run along the driven line, so that a handheld that
     goes straight from point to point crosses no row; both are cut after `MOST_POINTS` points, and
-    each piece begins where the one before it ends. Times in GPX are UTC: one is written only where
-    the start has a time zone; the local arrival stands in each waypoint's description.
+    each piece begins where the one before it ends. Times in GPX are UTC: that of the start is
+    written where it is known; the local arrival stands in each waypoint's description, since a
+    waypoint's time would say that somebody was there.
     """
     ET.register_namespace("", _NAMESPACE)
     root = ET.Element(
@@ -70,9 +71,8 @@ def _metadata(metadata: ET.Element, plan: HandoffPlan) -> None:
     stops = f"{n} {written(n, 'stop|stops')}"
     told = f"{stops}, {figures['drive_m']:.0f} m, {figures['seconds']:.0f} s"
     _text(metadata, "desc", f"{told}. {plan.bound}" if plan.bound else told)
-    start = plan.notes.start
-    if start is not None and start.tzinfo is not None:
-        _text(metadata, "time", f"{start.astimezone(UTC):%Y-%m-%dT%H:%M:%SZ}")
+    if plan.begins is not None:
+        _text(metadata, "time", f"{plan.begins.astimezone(UTC):%Y-%m-%dT%H:%M:%SZ}")
     if len(plan.line_lonlat):
         _bounds(metadata, plan)
 

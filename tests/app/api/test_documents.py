@@ -19,8 +19,10 @@ from fieldmon.monitoring import scouts
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.day_ahead import Part, route_ahead
 from fieldmon.monitoring.findings import take
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.scouts_out import scouts_out
 from fieldmon.planning.members import team_of
+from fieldmon.planning.skips import left_out_in_words
 from fieldmon.plot.local_clock import local_clock
 from tests.monitoring.phone import NOW, a_finding
 from tests.monitoring.seasons import BEGINS, a_season
@@ -110,6 +112,37 @@ def test_where_two_say_otherwise_everybody_is_told(served, scout):
     day = json.loads(day_document(served.season, scout, BEGINS))
     said = {(one["plant"], one["who"], one["result"]) for one in day["contradicting"]}
     assert said == {(40, "Ann", "found"), (40, "Ben", "clean")}
+
+
+def test_who_works_is_told_what_plans_leave_out_and_why(tmp_path, monkeypatch):
+    monkeypatch.setenv("FIELDMON_SEASONS", str(tmp_path))
+    season = a_season(tmp_path / "season.gpkg", belief=BeliefSettings(treated=False))
+    scout = scouts.key_owner(season, scouts.let_in(season, "Ann"))
+    assert json.loads(day_document(season, scout, BEGINS))["left_out"] == []
+    results = np.array([2, 2, 2, 1, 1], np.int8)
+    season.record(Inspections.of(np.arange(100, 105), results, np.datetime64(BEGINS)), "a.csv", "Z")
+    day = json.loads(day_document(season, scout, BEGINS + timedelta(days=1)))
+    jsonschema.validate(day, description.DAY)
+    assert day["left_out"] == [
+        {"why": "skipped", "plants": [[100, 102]], "own": 3},
+        {"why": "flagged", "plants": [[103, 104]], "own": 2},
+    ]
+    planned = season.plan(BEGINS + timedelta(days=1), keep=False)
+    said = " ".join(map(str, left_out_in_words(planned.scene, planned.route)))
+    assert "3 plants that nobody" in said
+    assert "2 plants found and only flagged" in said
+
+
+def test_a_plant_that_was_treated_and_is_clean_since_is_told_as_clean(served, scout):
+    season, found = served.season, [100, 101]
+    season.record(Inspections.of(found, [1, 1], np.datetime64(BEGINS)), "a.csv", "Zoe")
+    season.treat(BEGINS, 0.9)
+    tuesday = BEGINS + timedelta(days=1)
+    season.record(Inspections.of([100], [0], np.datetime64(tuesday)), "b.csv", "Zoe")
+    day = json.loads(day_document(season, scout, tuesday))
+    assert {*day["found"]}.isdisjoint({100})
+    assert {*day["clean"]}.issuperset({100})
+    assert {*day["found"]}.issuperset({101})
 
 
 def test_the_rest_is_planned_anew_within_what_is_left(served, scout):

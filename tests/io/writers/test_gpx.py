@@ -4,6 +4,7 @@ import re
 from datetime import UTC, timedelta, timezone
 from itertools import pairwise
 from xml.etree import ElementTree as ET
+from zoneinfo import ZoneInfo
 
 import numpy as np
 import pyogrio
@@ -16,8 +17,9 @@ from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.plot import Plot
-from tests.io.writers.handed import CM, START, apart_m, crooked, day, usual
+from tests.io.writers.handed import CM, START, apart_m, crooked, day, usual, without_start
 
 GPX = "{http://www.topografix.com/GPX/1/1}"
 ORDER = {  # the sequences of http://www.topografix.com/GPX/1/1/gpx.xsd
@@ -103,12 +105,17 @@ def test_gpx_is_read_by_gdal_to_the_centimetre(tmp_path):
     assert track.crs.to_epsg() == 4326
 
 
-def test_gpx_times_are_utc_or_not_there(tmp_path):
-    assert gpx_of(usual(), tmp_path).find(f"{GPX}metadata/{GPX}time") is None
-    local = START.replace(tzinfo=timezone(timedelta(hours=2)))
-    root = gpx_of(day(rectangle(3, 4), start=local), tmp_path)
-    stated = root.findtext(f"{GPX}metadata/{GPX}time")
-    assert stated == local.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+def test_the_start_is_said_in_utc_by_its_own_zone_or_the_plots(tmp_path):
+    def stated(plan):
+        return gpx_of(plan, tmp_path).findtext(f"{GPX}metadata/{GPX}time")
+
+    local = START.replace(tzinfo=timezone(timedelta(hours=-3)))
+    assert stated(day(rectangle(3, 4), start=local)) == f"{local.astimezone(UTC):%FT%TZ}"
+    plan = usual()
+    here = START.replace(tzinfo=ZoneInfo(grid_clock(plan.grid).zone))
+    assert here.utcoffset()
+    assert stated(plan) == f"{here.astimezone(UTC):%FT%TZ}"
+    assert stated(without_start()) is None
 
 
 def test_waypoints_come_back_with_what_was_added_to_their_names(tmp_path):

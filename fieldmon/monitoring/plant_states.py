@@ -1,0 +1,60 @@
+"""What is known of each plant on a day: what was seen since its last treatment counts first."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.infestation.hotspots import hot_spots
+from fieldmon.infestation.inspections import SKIPPED
+from fieldmon.infestation.observations import PRESENT, UNKNOWN
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.monitoring.history import History
+
+#: found infested, treated since, and not inspected since then
+TREATED_SINCE = 2
+
+
+def latest_states(history: History, day: int, *, own: bool = False) -> NDArray[np.int8]:
+    """Return ``(n,)`` 1 found infested, 0 only looked clean, -1 never seen, or `TREATED_SINCE`.
+
+    A treatment works after the inspections of its day. Of a plant that was inspected after its last
+    treatment only that counts. `own`: by the season's inspections alone, without the records of
+    before.
+    """
+    n, done = len(history.grid), history.until(day)
+    looked = done.result != SKIPPED
+    plant, result = done.plant[looked], done.result[looked]
+    on = history.days[: len(done)][looked]
+    treated = np.full(n, -1, np.int64)
+    for treatment in history.treatments:
+        if treatment.day <= day:
+            treated[treatment.plants] = np.maximum(treated[treatment.plants], treatment.day)
+    since = on > treated[plant]
+    before, after = np.full((2, n), UNKNOWN, np.int8)
+    np.maximum.at(before, plant[~since], result[~since])
+    np.maximum.at(after, plant[since], result[since])
+    if history.recorded is not None and not own:
+        counts = np.where(treated < 0, after, before)
+        known = np.maximum(counts, history.recorded)
+        before, after = np.where(treated < 0, before, known), np.where(treated < 0, known, after)
+    state = np.where(after == UNKNOWN, before, after).astype(np.int8)
+    state[(after == UNKNOWN) & (before == PRESENT)] = TREATED_SINCE
+    return state
+
+
+def shown_states(history: History, day: int, *, own: bool = False) -> NDArray[np.int8]:
+    """Return `latest_states` with a plant that was treated as found until somebody looked again."""
+    state = latest_states(history, day, own=own)
+    return np.where(state == TREATED_SINCE, np.int8(PRESENT), state)
+
+
+def hot_spots_on(history: History, day: int) -> HotSpots:
+    """Return the hot spots of a day: finds that were treated since make none."""
+    state = latest_states(history, day)
+    return hot_spots(history.grid, np.where(state == TREATED_SINCE, np.int8(UNKNOWN), state))

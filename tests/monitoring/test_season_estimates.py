@@ -67,7 +67,8 @@ def test_days_on_which_nobody_inspects_come_as_the_forecast_had_them(season):
     assert np.all(np.diff([one.low for one in came]) >= 0)
     wide = ahead.high / np.maximum(ahead.low, 1.0)
     assert np.all(np.diff(ahead.expected) > 0.0)
-    assert np.all(wide[1:] >= 0.95 * wide[0])
+    # the upper end comes near all there are
+    assert np.all(wide[1:] >= 0.85 * wide[0])
 
 
 def test_after_months_the_number_is_as_doubtful_as_tomorrows(season):

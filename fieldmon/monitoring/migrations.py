@@ -59,6 +59,11 @@ def _corrections_keep_what_was(db: sqlite3.Connection) -> None:
         add_column(db, "outside_changes", column)
 
 
+def _undone_changes_are_named(db: sqlite3.Connection) -> None:
+    """Version 12 did not say of settings which change they take back, if any."""
+    add_column(db, "settings", "undoes TEXT")
+
+
 def _records_come(db: sqlite3.Connection) -> None:
     """Version 6 knew of treatments only where, when, how well and the product; it had no log."""
     _applications_say_all(db)
@@ -87,4 +92,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     9: _long_seasons_come,
     10: _corrections_keep_what_was,
     11: _applications_say_all,
+    12: _undone_changes_are_named,
 }

@@ -44,6 +44,8 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         typer.echo(
             "  numbered anew: batches have other numbers now than before; the log shows both"
         )
+    if done.chosen:
+        typer.echo(f"  taken over: {joined('; ', done.chosen)}")
     for sentence in done.contradictions:
         typer.echo(f"  differs: {sentence}")
     if done.codes:

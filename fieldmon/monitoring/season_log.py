@@ -87,7 +87,8 @@ class LogEntry:
             what["rows"] = "; ".join([*said[:_MOST_NAMED], *more])
         anew = "; batches were numbered anew" if what.get("moved") else ""
         undone = f"; undone there: {', '.join(gone)}" if (gone := what.get("undone")) else ""
-        said = filled(_SAID[kind], what) + undone + anew
+        chosen = f"; taken over: {'; '.join(over)}" if (over := what.get("chosen")) else ""
+        said = filled(_SAID[kind], what) + chosen + undone + anew
         for old, now in self.numbers.items():
             said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
         return said

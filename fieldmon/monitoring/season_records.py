@@ -418,6 +418,7 @@ class SeasonRecords(OpenSeason):
                 season_log.append(
                     db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
                     moved=moved, numbers=taken.numbers, undone=undone,
+                    chosen=taken.chosen,
                 )  # fmt: skip
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
         undone_in_one = (
@@ -425,7 +426,14 @@ class SeasonRecords(OpenSeason):
         )
         said = *contradict.sentences(self.plot.grid), *taken.differing, *undone_in_one
         return Merged(
-            taken.new, said, taken.taken_back, moved, taken.treatments, taken.codes, overlaps
+            taken.new,
+            said,
+            taken.taken_back,
+            moved,
+            taken.treatments,
+            taken.codes,
+            overlaps,
+            taken.chosen,
         )
 
     def batches(self) -> tuple[Batch, ...]:

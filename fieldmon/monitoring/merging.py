@@ -19,6 +19,7 @@ from itertools import combinations, count
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import first_few, worded
+from fieldmon.decisions.labels import plain_name
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import (
     phone_tables,
@@ -115,6 +116,8 @@ class MergedCopy(NamedTuple):
         alone, and (by their numbers here) in both.
     chosen
         As `Merged` has it.
+    alike
+        Numbers of each two treatments that count, one of each copy alone, of one day and product.
     """
 
     new: int
@@ -125,6 +128,7 @@ class MergedCopy(NamedTuple):
     numbers: Numbers
     gone: tuple[set[int], set[int], set[int]]
     chosen: tuple[str, ...]
+    alike: tuple[tuple[int, int], ...]
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -182,7 +186,10 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         *_alike_but_for_labels(treated, held),
     )  # fmt: skip
     anew = {old: number for old, number in numbers[0].items() if old != number}
-    return MergedCopy(new, taken_back, said, n_treated, codes, anew, undone, tuple(taken_over))
+    return MergedCopy(
+        new, taken_back, said, n_treated, codes, anew, undone, tuple(taken_over),
+        tuple(_of_one_product(treated, held)),
+    )  # fmt: skip
 
 
 def _changed_treatments(
@@ -749,6 +756,26 @@ def _alike_but_for_labels(
                 f"Treatments with {named}, batches {one['batch']} and {other['batch']}, say the "
                 f"same but for {differ}{why}. Both count; if they are one, undo a batch."
             )
+
+
+def _of_one_product(
+    treated: list[Row], held: list[set[tuple[str | None, int | None]]]
+) -> Iterator[tuple[int, int]]:
+    """Yield the numbers of each two treatments of one day and product that people may have doubled.
+
+    Both count, and one is of each copy: `held` is as above. What differs in what a label may add
+    alone is told there.
+    """
+    same: dict[tuple[str, str], list[tuple[int, Row, list[bool]]]] = {}
+    for number, row in enumerate(treated, 1):
+        of = [(row["digest"], row["batch"]) in had for had in held]
+        if row["undone"] == COUNTS and not all(of):
+            product = row["date"], plain_name(row["product"] or "")
+            same.setdefault(product, []).append((number, row, of))
+    for one, other in (pair for rows in same.values() for pair in combinations(rows, 2)):
+        alike = treatments.but_for_labels(one[1]) == treatments.but_for_labels(other[1])
+        if one[2] != other[2] and not alike:
+            yield one[0], other[0]
 
 
 def _or_none(value: object) -> str:

@@ -33,7 +33,7 @@ MOST_IN_A_ROW = 2
 # crops and pests of labels that a sentence names
 _MOST_LINES = 5
 # kinds of caution, the most urgent first
-_URGENT = ("entry", "harvest", "dose", "uses", "group", "waiting", "label")
+_URGENT = ("entry", "entered", "harvest", "dose", "uses", "group", "waiting", "label")
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ class Caution:
     Parameters
     ----------
     kind
-        ``"harvest"``, ``"entry"``, ``"group"``, ``"dose"``, ``"uses"``, ``"waiting"`` or
-        ``"label"``.
+        ``"harvest"``, ``"entry"``, ``"entered"``, ``"group"``, ``"dose"``, ``"uses"``,
+        ``"waiting"`` or ``"label"``.
     sentence
         What, where and from when on.
     batch
@@ -127,6 +127,11 @@ def _urgent_first(
         *(caution for one, label in said for caution in _of_dose(one, label, rules)),
     ]
     found.reverse()
+    return by_urgency(found)
+
+
+def by_urgency(found: Iterable[Caution]) -> tuple[Caution, ...]:
+    """Return cautions, the most urgent kind first; those of one kind stay in order."""
     return tuple(sorted(found, key=lambda one: _URGENT.index(one.kind)))
 
 

@@ -13,6 +13,7 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.decisions.labels import SAID_BY_HAND, label_for, plain_name, with_wait
 from fieldmon.decisions.zones import ground_m2, outline_of
 from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import (
     batches,
     cautions,
@@ -25,6 +26,7 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.cautions import RulesToKeep
+from fieldmon.monitoring.early_entries import early_entries
 from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
 from fieldmon.monitoring.people import written_in
@@ -223,9 +225,12 @@ class SeasonTreatments(OpenSeason):
     def cautions(self, on: date, units: Units | None = None) -> tuple[Caution, ...]:
         """Return what to beware of on a day: harvest, entry, resistance, what labels allow.
 
-        Sentences speak in `units`; None: the usual ones.
+        And who was where before entry was allowed. Sentences speak in `units`; None: the usual
+        ones.
         """
-        return cautions.cautions(*self._held_to(units), on)
+        done, rules, seen = self._held_to(units)
+        early = early_entries(done, rules, seen, self.plot.grid, on)
+        return cautions.by_urgency((*cautions.cautions(done, rules, on), *early))
 
     def cautions_because_of(
         self, batch: int, on: date, units: Units | None = None
@@ -234,16 +239,21 @@ class SeasonTreatments(OpenSeason):
 
         Sentences speak in `units`; None: the usual ones.
         """
-        done, rules = self._held_to(units)
-        return cautions.because_of(done, batch, rules, on)
+        done, rules, seen = self._held_to(units)
+        own = [one for one in done if one.batch == batch and one.on <= on]
+        early = early_entries(own, rules, seen, self.plot.grid, self.last_date())
+        return cautions.by_urgency((*cautions.because_of(done, batch, rules, on), *early))
 
-    def _held_to(self, units: Units | None) -> tuple[tuple[KeptTreatment, ...], RulesToKeep]:
-        """Return the treatments that count, and what they are held to."""
+    def _held_to(
+        self, units: Units | None
+    ) -> tuple[tuple[KeptTreatment, ...], RulesToKeep, Inspections]:
+        """Return the treatments that count, what they are held to, and what was inspected."""
         with self._lock, self.store.reading() as db:  # all of one moment
             done = self._treatments(db)
             settings, labels = settings_of(db), label_table.read(db)
+            seen = self._inspections(db) if done else Inspections.none()
         rules = RulesToKeep(labels, settings.harvest, settings.starts)
-        return done, rules if units is None else replace(rules, units=units)
+        return done, rules if units is None else replace(rules, units=units), seen
 
     def harvest_from(self, on: date) -> tuple[date | None, KeptTreatment] | None:
         """Return the first day of harvest that treatments until `on` allow, and which one waits.

@@ -54,6 +54,19 @@ def test_treatments_and_codes_that_came_in_are_counted_and_hours_have_a_unit(run
     assert "robot differs: 1.5 h here, 2 h there" in out
 
 
+def test_who_was_where_another_copy_knows_that_nobody_might_enter_is_named(run, season, tmp_path):
+    other = shutil.copy(season, tmp_path / "other.gpkg")
+    worked(run, season, "a.csv", {0}, "Ann")
+    treated = "--efficacy", "0.8", "--product", "Oil", "--reentry-hours", "24"
+    run("treat", other, *treated, "--began", "00:00", "--ended", "00:10", "--date", BEGINS)
+    _, out, err, _ = run("merge", season, other)
+    (line,) = (one for one in out.splitlines() if one.startswith("  warning: "))
+    assert line.startswith("  warning: Ann was at 6 plants in"), err
+    assert f"where Oil was applied on {BEGINS}: entry was allowed from 00:10 on" in line
+    assert line.removeprefix("  warning: ") in run("status", season)[1]
+    assert "warning: " not in run("merge", season, other)[1]
+
+
 def test_settings_that_a_merge_takes_over_are_said_and_in_the_log(run, season, tmp_path):
     run("change", season, "--flag-only")
     other = shutil.copy(season, tmp_path / "other.gpkg")

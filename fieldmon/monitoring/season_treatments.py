@@ -30,7 +30,8 @@ from fieldmon.monitoring.early_entries import early_entries
 from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
 from fieldmon.monitoring.people import written_in
-from fieldmon.monitoring.treatments import TreatedPlace
+from fieldmon.monitoring.treatments import KeptTreatment, TreatedPlace
+from fieldmon.monitoring.waiting_periods import end_of
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.named_rows import place_in_words
 
@@ -46,9 +47,10 @@ if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.monitoring.cautions import Caution
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
-    from fieldmon.monitoring.treatments import KeptTreatment
 
 
+# kinds of caution that can be told of a treatment before it is done
+_BEFORE_TREATING = ("harvest", "uses", "group", "label")
 # products in a sentence
 _NAMED = 5
 
@@ -130,6 +132,12 @@ class SeasonTreatments(OpenSeason):
         return TreatedPlace(ground, plants, ground_m2(self.plot.grid, plants) / 1e4)
 
     def _treated_one_by_one(self, given: object) -> TreatedPlace:
+        grid, plants = self.plot.grid, self._each_plant(given)
+        area_ha = ground_m2(grid, plants) / 1e4
+        return TreatedPlace(outline_of(grid, plants), plants, area_ha, by_plant=True)
+
+    def _each_plant(self, given: object) -> NDArray[np.bool_]:
+        """Return a caller's mask of plants, or raise `SettingError`."""
         grid = self.plot.grid
         plants = array_of(
             np.bool_, "The mask of treated plants", given,
@@ -144,9 +152,7 @@ class SeasonTreatments(OpenSeason):
                     size=plants.size,
                 )
             )
-        plants = np.asarray(plants, bool)
-        area_ha = ground_m2(grid, plants) / 1e4
-        return TreatedPlace(outline_of(grid, plants), plants, area_ha, by_plant=True)
+        return np.asarray(plants, bool)
 
     def _efficacy(self, product: str) -> float:
         """Return how well a product works, as the season learnt it."""
@@ -243,6 +249,30 @@ class SeasonTreatments(OpenSeason):
         own = [one for one in done if one.batch == batch and one.on <= on]
         early = early_entries(own, rules, seen, self.plot.grid, self.last_date())
         return cautions.by_urgency((*cautions.because_of(done, batch, rules, on), *early))
+
+    def cautions_if_treated(
+        self, on: date, product: str, plants: NDArray[np.bool_], units: Units | None = None
+    ) -> tuple[Caution, ...]:
+        """Return what a treatment of plants ``(n,)`` with a product on a day would bring.
+
+        As `cautions_because_of` says it once it is done: nothing is kept. Empty where there is no
+        product, or no plant. Sentences speak in `units`; None: the usual ones.
+        """
+        plants = self._each_plant(plants)
+        if not product.strip() or not plants.any():
+            return ()
+        done, rules, _ = self._held_to(units)
+        batch = max((one.batch for one in done), default=0) + 1
+        clock = local_clock(self.plot.field)
+        place = TreatedPlace(self.plot.field.boundary, plants, None)
+        with self._lock, self.store.reading() as db:
+            day = settings_of(db).day(on)
+        wanted = KeptTreatment(
+            batch, batch, day, on, place, 0.0, Application(product.strip()),
+            end_of(clock, on, None), clock,
+        )  # fmt: skip
+        found = cautions.because_of([*done, wanted], batch, rules, on)
+        return tuple(one for one in found if one.kind in _BEFORE_TREATING)
 
     def _held_to(
         self, units: Units | None

@@ -105,12 +105,6 @@ def _say(made: SharedPlots) -> None:
         st.markdown(many if len(made.free) > _MOST_NAMED else said)
     if made.several_kinds:
         st.markdown(texts.PLAN_ALL_KINDS)
-    if made.otherwise:
-        who, names = (listed(map(texts.isolated, dict.fromkeys(each)))
-                      for each in zip(*made.otherwise, strict=True))  # fmt: skip
-        n = len(made.otherwise)
-        many = texts.PLAN_ALL_READ_MANY.format(who=who, n=n)
-        st.warning(many if n > _MOST_NAMED else texts.PLAN_ALL_READ.format(who=who, names=names))
     for problem in (*made.closed, *made.problems):
         st.warning(problem)
     if made.turns:

@@ -70,6 +70,8 @@ FINDING: dict[str, Any] = {
         },
         "off_route": {"type": "boolean"},
         "undoes": {"anyOf": [ID, {"const": ""}]},
+        "detects": {"type": ["number", "null"], "exclusiveMinimum": 0, "maximum": 1}
+        | {"description": "Chance to see an infested plant so; null: as the season's plan has it."},
     },
 }
 FINDINGS: dict[str, Any] = {
@@ -141,6 +143,8 @@ ROUTE: dict[str, Any] = {
         "end_s": {"type": "number", "description": "Seconds at the end, the way back included."},
         "line": {"type": "array", "items": _NUMBERS, "description": "The way, lon/lat."},
         "stops": _LIST | {"description": "The point of the line at which each stop is made."},
+        "detects": {"type": "number"}
+        | {"description": "Chance to see an infested plant so: to be told with each finding."},
     },
 }
 PLOT: dict[str, Any] = {

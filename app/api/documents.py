@@ -115,7 +115,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "begins": _moment(season, on, hours.begins_s),
         "begun": hours.run,
         "seconds_left": hours.left_s,
-        "route": _route(route),
+        "route": _route(route, season.reads(on, scout.name)),
         "plan": plan,
         # evening: what was found today counts
         "chance": np.round(season.evening(on) * 1000).astype(int).tolist(),
@@ -138,8 +138,9 @@ def rest_document(
         on, part = _day(season, on), Part(scout.rows, scout.name)
         route = planned_again(season, on, part, seconds_left)
         plan = DayAhead.of(season, on).plan_of(part)
+        told = _route(route, season.reads(on, scout.name))
     heard.note(season.path, scout.name, on, plan)
-    return _json({"day": on.isoformat(), "route": _route(route), "plan": plan})
+    return _json({"day": on.isoformat(), "route": told, "plan": plan})
 
 
 def _day(season: Season, on: date | None) -> date:
@@ -165,7 +166,7 @@ def _moment(season: Season, on: date, second: float) -> str:
     return utc_text(local_clock(season.plot.field).moment(local.date(), local.time()))
 
 
-def _route(route: Route) -> dict[str, Any]:
+def _route(route: Route, detects: float) -> dict[str, Any]:
     leave_s = np.concatenate([[0.0], route.leave_s[:-1]])
     walk_s = route.arrive_s - leave_s if len(route) else route.arrive_s
     line = np.round(route.line_lonlat(), _DIGITS) if len(route) else np.empty((0, 2))
@@ -175,6 +176,7 @@ def _route(route: Route) -> dict[str, Any]:
         "end_s": round(route.end_s, 1),
         "line": line.tolist(),
         "stops": route.line_stop.tolist(),
+        "detects": round(detects, 6),
     }
 
 

@@ -13,15 +13,23 @@ from ..words import texts
 from ..words.language import in_words
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fieldmon.compute.wording import Worded
+
     from ..state.choices import Choices
 
 
 def show(choices: Choices) -> None:
-    """Show each estimate with its interval, or that finds are traced to neighbours only."""
+    """Show each estimate with its interval, or that finds are traced to neighbours only.
+
+    And with which inspections another detection was said than the season's own.
+    """
     st.markdown(f"**{texts.LEARNT_TITLE}**")
-    estimates = chosen_day.learnt(choices)
+    estimates, said = chosen_day.learnt(choices), chosen_day.told_otherwise(choices)
     if not estimates:
         st.caption(texts.NOT_LEARNT)
+        _list(one.sentence() for one in said)
         return
     taught = choices.season.taught()
     notes = [] if taught is None else [in_words(taught)]
@@ -29,4 +37,9 @@ def show(choices: Choices) -> None:
         notes.append(texts.LEARNT_AT_FIRST)
     notes += [texts.LEARNT_COUNTS_FOR, texts.LEARNT_INTERVALS]
     st.caption(" ".join(notes))
-    st.markdown("\n".join(f"- {in_words(one.sentence())}" for one in worth_saying(estimates)))
+    _list(one.sentence() for one in (*worth_saying(estimates), *said))
+
+
+def _list(sentences: Iterable[Worded]) -> None:
+    if lines := [f"- {in_words(one)}" for one in sentences]:
+        st.markdown("\n".join(lines))

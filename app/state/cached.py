@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring import DayFigures, KeptMessage, PlannedAndDone, Progress, Season
     from fieldmon.monitoring.advice import Advice, AdviceSettings
     from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn
+    from fieldmon.monitoring.told_detection import ToldOtherwise
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
     from fieldmon.planning.route import Route
     from fieldmon.planning.wishes import Wishes
@@ -227,6 +228,12 @@ def flagged(key: str, revision: str, day: str, _season: Season) -> float:
 def learnt(key: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:
     """Return what the inspections up to a day of a season tell of the insects."""
     return _season.learnt(np.datetime64(day).item())
+
+
+@st.cache_resource(max_entries=_MAPS)
+def told_otherwise(key: str, revision: str, day: str, _season: Season) -> tuple[ToldOtherwise, ...]:
+    """Return with which inspections up to a day of a season another detection rate was said."""
+    return _season.told_otherwise(np.datetime64(day).item())
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)

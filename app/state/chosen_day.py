@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.observations import Observations
     from fieldmon.monitoring import DayFigures, PlannedAndDone, Progress
+    from fieldmon.monitoring.told_detection import ToldOtherwise
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
     from fieldmon.plot.plot import Plot
@@ -220,6 +221,11 @@ def flagged(choices: Choices) -> float:
 def learnt(choices: Choices) -> tuple[Learnt, ...]:
     """Return what a season's inspections tell of the insects."""
     return cached.learnt(choices.key, choices.revision, choices.day, choices.season)
+
+
+def told_otherwise(choices: Choices) -> tuple[ToldOtherwise, ...]:
+    """Return with which inspections another detection rate was said than the season's own."""
+    return cached.told_otherwise(choices.key, choices.revision, choices.day, choices.season)
 
 
 def forecast(choices: Choices) -> Forecast:

@@ -77,8 +77,7 @@ class SharedPlots:
     """The plan: its turns, plots for which there is no time, and plots that cannot be planned.
 
     And what is left off as people may not be there yet, who has no plot, of how many, and whether
-    the plots have robots of several kinds, so that the usual one is taken. `otherwise` names who
-    goes to which season that will not read their results as they are planned.
+    the plots have robots of several kinds, so that the usual one is taken.
     """
 
     turns: tuple[PlannedTurn, ...]
@@ -88,7 +87,6 @@ class SharedPlots:
     free: tuple[str, ...] = ()
     n_members: int = 0
     several_kinds: bool = False
-    otherwise: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,11 +147,6 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
         made.free,
         len(members),
         several_kinds=kind is None and bool(seasons),
-        otherwise=tuple(
-            (member.name, ready[k].plot.name)
-            for k, each in made.otherwise.items()
-            for member, _ in each
-        ),
     )
 
 

@@ -432,16 +432,6 @@ PLAN_ALL_WAITING_MANY = (
 PLAN_ALL_FREE = "Free today: {names}."
 PLAN_ALL_FREE_MANY = "Free today: {n} of {all}."
 PLAN_ALL_KINDS = "The plots have robots of several kinds: here all are of the usual one."
-PLAN_ALL_READ = (
-    "A season reads results as its own robot or team finds, but {who} would find another share of "
-    "what is there. Before recording, set who works with `fieldmon change --robots`, and then plan "
-    "the day again, in: {names}."
-)
-PLAN_ALL_READ_MANY = (
-    "A season reads results as its own robot or team finds, but {who} would find another share of "
-    "what is there. Before recording, set who works with `fieldmon change --robots`, and then plan "
-    "the day again, in {n} seasons."
-)
 PLAN_ALL_NOBODY = "Nobody works: give one robot or scout, or more."
 PLAN_ALL_WORKING = "Planning the plots ..."
 PLAN_ALL_DOWNLOAD = "Download all routes"

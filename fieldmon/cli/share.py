@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -99,7 +98,6 @@ def share(options: ShareOptions) -> None:
     if len(due) > 1:
         move = f"{options.move:g} minute{'' if options.move == 1 else 's'}"
         typer.echo(f"From plot to plot takes {move}, wherever they lie (--move).")
-    _tell_read_otherwise(options, due, made)
     tell_assumed_of_plots({_name(season): _assumed(season, members) for season, _ in due})
     if not made.turns:
         raise SettingError(
@@ -107,34 +105,6 @@ def share(options: ShareOptions) -> None:
             "are closed, as said above, or the hours are too short."
         )
     _write(folder, plots, made, endings)
-
-
-def _tell_read_otherwise(
-    options: ShareOptions,
-    due: Sequence[tuple[Season, EstatePlot]],
-    made: EstateRoutes,
-) -> None:
-    """Say whose finds a season will read by another detection than the route was planned with."""
-    from fieldmon.compute.wording import joined, written
-
-    for k, others in made.otherwise.items():
-        season, plot = due[k]
-        each = joined(", ", [
-            f"{one.name}'s by {written(reads, '.0%')}, not {written(one.robot.detects, '.0%')}"
-            for one, reads in others
-        ])  # fmt: skip
-        # a table that says all of them, or what was said of one
-        said = ["--robots", options.robots] if not (options.robots or "1").isdecimal() else []
-        pasted = shlex.join(["fieldmon", "change", str(season.path), *map(str, said)])
-        how = pasted if said else f"{pasted} --robots CREW.csv, a table of who works"
-        if season.planned_and_done(plot.on) is not None:  # results are read by the last plan
-            again = shlex.join(["fieldmon", "plan", str(season.path), "--date", str(plot.on)])
-            how += f"; then, as that day was planned there before, plan it again: {again}"
-        typer.echo(
-            f"seen: {_name(season)} reads results as its own team or robot finds: {each}, as this "
-            f"route was planned. Before they are recorded, set the crew: {how}",
-            err=True,
-        )
 
 
 def _require_empty(folder: Path) -> None:

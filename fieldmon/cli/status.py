@@ -25,6 +25,8 @@ _DETAILED = 100
 _CONTRADICTING = 5
 #: planned days that are listed, the last ones
 _PLANNED_ONLY = 3
+# of those with whose inspections another detection was said, so many are listed
+_MOST_SAID = 8
 
 ListBatches = Annotated[
     bool,
@@ -173,6 +175,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         yield f"  {'':22} In brackets: intervals that hold with a chance of 90 %."
     else:
         yield "  finds are traced       to neighbours only; fieldmon change --trace goes farther"
+    yield from _told_otherwise(season, now.on)
     if (taught := season.taught()) is not None:
         yield f"  an earlier season      {taught}"
     if (pest := season.settings.pest) is not None:
@@ -194,11 +197,23 @@ def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:
     """Yield what those who inspect on a day find, where they find otherwise than all until then."""
     by = season.planned_by(now.on)
     detects = {one.detects for one in [member.robot for member in by.team] or [by.robot]}
-    if detects == {season.history.mean_detection(now.day)}:
-        return  # it takes seconds to work out
+    history = season.history
+    that_day = {*history.detections[history.days == now.day].tolist()}
+    if detects == {history.mean_detection(now.day)} or that_day - detects:
+        return  # it takes seconds to work out, or with some of them another one was said
     for whose, _, learnt in learnt_of_each(season, now.on):
         if learnt != of_all:
             yield f"  {'':22} Inspections{whose or ' of that day'} find {learnt}."
+
+
+def _told_otherwise(season: Season, until: date) -> Iterator[str]:
+    """Yield with which inspections another detection was said than the season's own."""
+    said = season.told_otherwise(until)
+    lines = [str(one.sentence()) for one in said[:_MOST_SAID]]
+    if len(said) > _MOST_SAID:
+        lines.append(f"And {len(said) - _MOST_SAID} more.")
+    for number, one in enumerate(lines):
+        yield f"  {'' if number else 'told to find':22} {one}"
 
 
 def _planned_only(season: Season, until: date) -> Iterator[str]:

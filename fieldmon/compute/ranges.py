@@ -80,6 +80,8 @@ def broken_setting(settings: object, ranges: Mapping[str, AllowedRange]) -> dict
 
 
 CHANCE = AllowedRange(0.0, 1.0, said=worded("a chance in 0..1"))
+#: of an inspection that may find something, to see what is there
+DETECTS = AllowedRange(0.0, 1.0, above=True, said=worded("above 0, and 1 at most"))
 #: of something of which there are some, and others
 SHARE = AllowedRange(0.0, 1.0, above=True, below=True, said=worded("a share between 0 and 1"))
 SURE = AllowedRange(0.5, 1.0, above=True, below=True, said=worded("a chance between 0.5 and 1"))

@@ -211,6 +211,25 @@ class Ancestry:
         missed = np.concatenate([before, (today + first).astype(np.float16)])
         return replace(self, missed=missed, new=new, new_left=new_left)
 
+    def without_left(self, plants: NDArray[np.int32]) -> Ancestry:
+        """Return the same, those left infested on `plants` ``(k,)`` having ended by last night.
+
+        What came from them last night came from none.
+        """
+        morning = BEFORE + len(self.sends)
+        gone = self.infestations.goes_on(morning) & self.infestations.found
+        gone &= np.isin(self.infestations.plant, plants)
+        if not gone.any():
+            return self
+        infestations = self.infestations.copied(0)
+        infestations.ends[gone] = morning - 1
+        parent = infestations.parent
+        late = infestations.there & (infestations.begins == morning) & (parent != NOBODY)
+        late[late] = gone[parent[late]]
+        np.subtract.at(infestations.children, parent[late], 1)
+        parent[late] = NOBODY
+        return replace(self, infestations=infestations)
+
     def anew(self, chance: Floats) -> Ancestry:
         """Return an ancestry that begins today with other chances ``(n,)``, as after a treatment.
 

@@ -57,6 +57,11 @@ def note_inspection(sums: Floats, chance: float, found: bool) -> None:  # noqa: 
     sums[_SAID_OF_FINDS] += said * found
 
 
+def finds_noted(sums: Floats) -> float:
+    """Return how many finds were added to the sums ``(6,)``."""
+    return float(sums[_FOUND])
+
+
 @inlined
 def proved_slope(sums: Floats) -> float:
     """Return the least slope, 0 to 1, that a season's inspections speak for.

@@ -30,6 +30,7 @@ _TYPES: dict[str, Any] = {
     "count": "float64",
     "who": object,
     "notes": object,
+    "detects": "float64",
 }
 #: what a caller's array of each may be to numpy, and how a sentence calls it
 _GIVEN = {
@@ -40,6 +41,7 @@ _GIVEN = {
     "count": ("iufO", "numbers"),
     "who": ("UO", "texts"),
     "notes": ("UO", "texts"),
+    "detects": ("iufO", "numbers"),
 }
 
 
@@ -88,6 +90,9 @@ class Inspections:
         Pests counted; NaN where they were not.
     who, notes
         Text; empty where nothing was noted.
+    detects
+        Chance to see an infested plant that is inspected, as was said with the inspection; NaN
+        where nothing was: then it is that of who inspects in the season.
 
     Examples
     --------
@@ -104,6 +109,7 @@ class Inspections:
     count: NDArray[np.float64]
     who: NDArray[np.object_]
     notes: NDArray[np.object_]
+    detects: NDArray[np.float64]
 
     def __post_init__(self) -> None:
         columns = {name: _column(name, getattr(self, name)) for name in _TYPES}
@@ -169,6 +175,7 @@ class Inspections:
             "count": np.full(k, np.nan),
             "who": np.full(k, "", object),
             "notes": np.full(k, "", object),
+            "detects": np.full(k, np.nan),
         }
         return cls(**(known | columns))
 

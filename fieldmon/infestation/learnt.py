@@ -39,7 +39,8 @@ class Learnt:
     name
         ``"detection"``, ``"infested at the start"`` (plants), ``"arrivals a night"`` (plants),
         ``"jumps beyond neighbours"`` (the chance that insects do), ``"length of jumps"``
-        (plants, if they do), or ``"hiding"`` (the chance that new infestations hide for nights).
+        (plants, if they do), ``"hiding"`` (the chance that new infestations hide for nights), or
+        ``"more than told"`` (the share that the map goes on with, as if it had been told).
     value, low, high
         The guess and the interval; both ends are the guess where the number is a chance itself.
     """
@@ -88,14 +89,24 @@ class Learnt:
                 low=low,
                 high=high,
             )
+        return self._guess_alone(value)
+
+    def _guess_alone(self, value: str) -> Worded:
+        """Return it in words where there is no interval to tell."""
         if self.name == "hiding":
             return worded(
                 "New infestations hide for some nights with a chance of {value}.", value=value
             )
+        if self.name == "more than told":
+            return worded(
+                "Far more was found than was told: the map goes on as if {value} of the plants had "
+                "been told.",
+                value=value,
+            )
         return worded("Insects jump beyond the next plant with a chance of {value}.", value=value)
 
 
-_SHARES = ("detection", "jumps beyond neighbours", "hiding")
+_SHARES = ("detection", "jumps beyond neighbours", "hiding", "more than told")
 # a chance below this is said to be 0 %: how far insects would jump is then of no use
 _SAID = 0.005
 
@@ -127,6 +138,7 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
     at_start, arrivals = _come_from_none(belief)
     jumps = belief.jumps
     return (
+        *_more_than_told(belief),
         Learnt("detection", found.value, found.low, found.high),
         Learnt("infested at the start", *astuple(at_start)),
         Learnt("arrivals a night", *astuple(arrivals)),
@@ -169,6 +181,14 @@ def _hiding(belief: TracedPairs) -> tuple[Learnt, ...]:
         return ()
     hides = 1.0 - float(belief.latency.likely[0])
     return (Learnt("hiding", hides, hides, hides),)
+
+
+def _more_than_told(belief: TracedPairs) -> tuple[Learnt, ...]:
+    """Return as if which share had been told the map goes on, where far more is infested."""
+    if not belief.is_heavier:
+        return ()
+    share = float(belief.at_start.sum()) / len(belief.chance)
+    return (Learnt("more than told", share, share, share),)
 
 
 def _length(belief: TracedPairs) -> tuple[Learnt, ...]:

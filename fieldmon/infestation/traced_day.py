@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from fieldmon.compute.jit import loop, part
 from fieldmon.infestation.calibration_slope import note_inspection
 from fieldmon.infestation.chance_bounds import KNOWN, lesser
@@ -17,7 +19,6 @@ from fieldmon.infestation.pairs import Neighbourhood, update_neighbourhood
 from fieldmon.infestation.tracing import Raised, Traces, trace
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import Linked
@@ -38,6 +39,8 @@ class TracedDay(NamedTuple):
         ``(n,)`` what clean inspections took from each plant's chance, and as a share of it.
     found, expected
         ``(o,)`` finds of each origin.
+    likely
+        ``(1,)`` the logarithm of how likely the inspections were.
     """
 
     shares: NDArray[np.float32]
@@ -46,6 +49,7 @@ class TracedDay(NamedTuple):
     cleared: Floats
     found: Floats
     expected: Floats
+    likely: Floats
 
 
 class KernelRoom(NamedTuple):
@@ -101,12 +105,11 @@ def learn_day(
 def _count(day: TracedDay, i: int, found: bool, expected: float) -> None:  # noqa: FBT001 - a result
     """Count what an inspection found and was expected to find, origin by origin.
 
-    A plant known to be infested tells how much is overlooked.
+    A plant known to be infested tells nothing: it may have been cleaned by now.
     """
     if day.before[i] > KNOWN:
-        day.found[OVERLOOKED] += 1.0 - found
-        day.expected[OVERLOOKED] += 1.0 - expected
         return
+    day.likely[0] += np.log(expected if found else 1.0 - expected)
     for o in range(N_ORIGINS):
         day.found[o] += found * day.shares[i, o]
         day.expected[o] += expected * day.shares[i, o]

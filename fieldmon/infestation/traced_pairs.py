@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
 from fieldmon.infestation.ancestry import MOST_PLANTS, Ancestry, ToldNight
-from fieldmon.infestation.calibration_slope import no_inspections
+from fieldmon.infestation.calibration_slope import finds_noted, no_inspections
 from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.clustering import (
     CLUSTERING,
@@ -28,6 +28,7 @@ from fieldmon.infestation.clustering import (
     no_evidence,
 )
 from fieldmon.infestation.cohorts import Cohorts
+from fieldmon.infestation.heavier import IN_DOUBT, TOLD, heavier_than, likeliest, odds_times
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import (
     ANYWHERE,
@@ -46,6 +47,7 @@ from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.plot_estimate import drawn_numbers
+from fieldmon.infestation.prior import scaled
 from fieldmon.infestation.reach import pest_reach_of, reach_of
 from fieldmon.infestation.traced_day import KernelRoom, TracedDay, learn_day
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
@@ -67,6 +69,9 @@ if TYPE_CHECKING:
 _SENT, _MOST_SENT = 3.5, 7.0
 # only another inspection can say that a plant found and left where it is may be clean
 _UNKNOWN = 0.95
+# one that seems clean on a later day may have been cleaned without a word: so likely it was not
+# (our choice)
+_STILL_INFESTED, _PROBABLE = 0.7, 0.5
 # what was inspected around a plant never lowers it by more in a day (as an exponent)
 _MOST_LOWERED = 3.0
 # the wind by which finds are traced: so much of it is that of the nights before the last, told
@@ -125,6 +130,13 @@ class TracedPairs:
         named end of themselves.
     unwatched
         The days without inspections until now.
+    likely
+        The logarithm of how likely it is that so many were infested as this map was told, and that
+        inspections so far had their results.
+    is_heavier
+        Whether it takes more for infested on the first morning than was told, see `heavier`.
+    others
+        Other such maps that are possible still; None: nothing was inspected yet.
     """
 
     grid: PlantGrid
@@ -141,6 +153,9 @@ class TracedPairs:
     slope_sums: Floats = field(default_factory=no_inspections)
     ancestry: Ancestry | None = None
     unwatched: Unwatched = field(default_factory=Unwatched)
+    likely: float = TOLD
+    is_heavier: bool = False
+    others: tuple[TracedPairs, ...] | None = None
 
     @classmethod
     def of(
@@ -245,7 +260,7 @@ class TracedPairs:
         ancestry = self.ancestry
         if ancestry is not None and ancestry.knows and not ancestry.waits:
             doubt *= _MORE_DOUBT if ancestry.left.any() else _LESS_DOUBT
-        return float(np.hypot(doubt, self._left_in_doubt))
+        return float(np.hypot(doubt, self._in_doubt_besides))
 
     @property
     def doubt_of_rates(self) -> float:
@@ -255,7 +270,7 @@ class TracedPairs:
         """
         brought = self._brought_so_far
         doubt = self._doubt_of(brought, float(brought.sum()))
-        return float(np.hypot(doubt, self._left_in_doubt))
+        return float(np.hypot(doubt, self._in_doubt_besides))
 
     @property
     def since_inspected(self) -> Since | None:
@@ -263,9 +278,13 @@ class TracedPairs:
         return self.unwatched.draws(self.arrivals_found)
 
     @property
-    def _left_in_doubt(self) -> float:
-        """How far the number may be off yet of days without inspections before the last one."""
-        return float(np.sqrt(self.unwatched.left))
+    def _in_doubt_besides(self) -> float:
+        """How far the number may be off yet of days without inspections before the last one.
+
+        And as another share than was told may be infested.
+        """
+        left = float(np.sqrt(self.unwatched.left))
+        return float(np.hypot(left, IN_DOUBT)) if self.is_heavier else left
 
     @property
     def _variance_since_inspected(self) -> float:
@@ -294,9 +313,53 @@ class TracedPairs:
     def learn(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
     ) -> TracedPairs:
-        """Return what is believed after inspecting `plants` ``(k,)`` with results `found`."""
+        """Return what is believed after inspecting `plants` ``(k,)`` with results `found`.
+
+        That is the likeliest map: this one, or one of the others.
+        """
         if not len(plants):
             return self
+        maps = (self, *(self._heavier(found, learning) if self.others is None else self.others))
+        days = [TracedPairs._inspected(one, plants, found, learning) for one in maps]
+        best, others = likeliest(days, finds_noted(days[0].after.slope_sums))
+        settled = tuple(replace(one.settled(), others=()) for one in others)
+        return replace(best.settled(), others=settled)
+
+    def _heavier(self, found: NDArray[np.bool_], learning: Learning) -> list[TracedPairs]:
+        """Return maps like this one that were told of more, of the plants not known yet.
+
+        Those that the first inspections, with results `found` ``(k,)``, leave possible.
+        """
+        known = self.chance > KNOWN
+        told = self.chance[~known]
+        if not len(told):
+            return []
+        return [
+            self._told_of(scaled(told, share), known, likely)
+            for share, likely in heavier_than(
+                float(told.mean()), found, learning.detects(len(found))
+            )
+        ]
+
+    def _told_of(self, told: Floats, known: NDArray[np.bool_], likely: float) -> TracedPairs:
+        """Return this map with other chances of the plants that are not `known` ``(n,)``."""
+        chance = self.chance.copy()
+        chance[~known] = np.clip(told, LEAST_CHANCE, _UNKNOWN)
+        factor = float(_odds(told[0]) / _odds(self.chance[~known][0]))
+        ancestry = self.ancestry and replace(
+            self.ancestry, start=odds_times(self.ancestry.start, factor)
+        )
+        return replace(
+            self, chance=chance, pair_chance=pair_chances(chance, self.grid, CLUSTERING),
+            at_start=self.at_start * float(chance.sum() / self.chance.sum()), ancestry=ancestry,
+            latency=self.latency and self.latency.levelled(chance),
+            likely=likely, is_heavier=True,
+        )  # fmt: skip
+
+    def _inspected(
+        self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
+    ) -> _Inspected:
+        """Return what inspections change about them, by this map alone."""
         n, nothing = len(self.chance), np.zeros((2, N_ORIGINS))
         none = np.zeros((2, n))
         told = self.counts.detects(learning.detects(len(plants)))
@@ -310,7 +373,9 @@ class TracedPairs:
         jumps = self._jumps(evidence)
         # before any find of the day is traced: that is done with what is known of jumps by now
         shares = self._jumping(believed, jumps / self.jumps)
-        day = TracedDay(shares, believed[0].copy(), *none, *nothing)
+        day = TracedDay(
+            shares, believed[0].copy(), none[0], none[1], nothing[0], nothing[1], np.zeros(1)
+        )
         traces = self.traces.own()
         each = self.reach.kernels * self.beyond[:, None, None]
         room = KernelRoom(each, Neighbourhood.of(n, believed[0]), Raised.of(n))
@@ -319,19 +384,44 @@ class TracedPairs:
         hidden = (told - shown) / np.maximum(told * (1.0 - shown), LEAST_CHANCE)
         inspections_of = *inspections, hidden.clip(0.0, 1.0)
         learn_day(believed, self.grid.linked, inspections_of, rule, (day, traces), room)
+        cleaned = self._doubt_known(believed, (plants, found, told))
+        ancestry = self.ancestry and self.ancestry.without_left(cleaned)
         after = replace(
             self, chance=believed[0], pair_chance=believed[1], shares=day.shares,
             unseen=traces.unseen, evidence=evidence, slope_sums=traces.slope_sums,
-            ancestry=self.ancestry
-            and self.ancestry.learn(plants, found, told, treated=learning.treated),
+            likely=self.likely + float(day.likely[0]),
+            ancestry=ancestry and ancestry.learn(plants, found, told, treated=learning.treated),
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
             latency=self.latency and self.latency.inspected(plants, found, told),
             unwatched=self.unwatched.inspected(
                 self._expected_finds(plants, shown), self._variance_since_inspected
             ),
         )  # fmt: skip
-        lowered = after.times(self._lowered(after, day, jumps * self.beyond))
-        return _levelled(lowered.counting(self, day))
+        return _Inspected(self, after, day, jumps * self.beyond)
+
+    def _doubt_known(
+        self,
+        believed: tuple[Floats, Floats],
+        inspections: tuple[NDArray[np.int32], NDArray[np.bool_], Floats],
+    ) -> NDArray[np.int32]:
+        """Doubt in place that plants known before are infested yet, where they only seemed clean.
+
+        Return those that probably are not.
+        """
+        plants, found, detects = inspections
+        asked = (self.chance[plants] > KNOWN) & ~np.isin(plants, plants[found])
+        if not asked.any():
+            return np.empty(0, np.int32)
+        missed = np.ones(len(self.chance))
+        np.multiply.at(missed, plants[asked], 1.0 - detects[asked])
+        known = np.unique(plants[asked])
+        overlooked = _STILL_INFESTED * missed[known]
+        chance, both = believed
+        scale = np.ones(len(chance))
+        scale[known] = overlooked / (overlooked + 1.0 - _STILL_INFESTED) / chance[known]
+        chance *= scale
+        both[:] = pairs_scaled(both, self.grid.adjacent, scale, chance)
+        return known[chance[known] < _PROBABLE]
 
     def _jumping(self, believed: tuple[Floats, Floats], ratio: float) -> NDArray[np.float32]:
         """Believe in what jumps have brought `ratio` times as much, in place; return the shares."""
@@ -362,7 +452,7 @@ class TracedPairs:
         chance = self.chance[plants]
         return float(shown @ np.where(chance > KNOWN, 0.0, chance))
 
-    def _lowered(self, after: TracedPairs, day: TracedDay, beyond: Floats) -> Floats:
+    def lowered(self, after: TracedPairs, day: TracedDay, beyond: Floats) -> Floats:
         """Return how much less likely plants are as no relatives were found about them, ``(n,)``.
 
         What clean inspections took from the chances about a plant, it would have infested, or
@@ -394,7 +484,8 @@ class TracedPairs:
         """Return what is believed the next morning."""
         morning = self._overnight(spread, tells_apart=True)
         morning = self._with_ancestry(morning, self._sends(spread), spread)
-        return self._in_doubt(morning, spread)
+        others = self.others and tuple(one.overnight(spread) for one in self.others)
+        return replace(self._in_doubt(morning, spread), others=others)
 
     def _in_doubt(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
         """Return the next morning with what is in doubt of it if nobody inspected today."""
@@ -557,9 +648,40 @@ class TracedPairs:
         together = self.pair_chance * np.repeat(left, np.diff(start)) * left[other]
         latency = self.latency and self.latency.treated(left)
         ancestry = self.ancestry and self.ancestry.anew(chance)
+        others = self.others and tuple(one.treated(left) for one in self.others)
         return replace(
-            self, chance=chance, pair_chance=together, latency=latency, ancestry=ancestry
-        )
+            self, chance=chance, pair_chance=together, latency=latency, ancestry=ancestry,
+            others=others,
+        )  # fmt: skip
+
+
+class _Inspected(NamedTuple):
+    """What a day's inspections say to a map, before the whole plot is thought over.
+
+    Parameters
+    ----------
+    before, after
+        The map before them, and with what they change about themselves.
+    day
+        What they say beside that.
+    beyond
+        What an infested plant sends out by each kernel, ``(6,)``.
+    """
+
+    before: TracedPairs
+    after: TracedPairs
+    day: TracedDay
+    beyond: Floats
+
+    @property
+    def likely(self) -> float:
+        """The logarithm of how likely the map is by now."""
+        return self.after.likely
+
+    def settled(self) -> TracedPairs:
+        """Return what is believed of the whole plot by that."""
+        lowered = self.after.times(self.before.lowered(self.after, self.day, self.beyond))
+        return _levelled(lowered.counting(self.before, self.day))
 
 
 def _levelled(belief: TracedPairs) -> TracedPairs:

@@ -75,7 +75,7 @@ def read(
 
     `held` are the inspections that count. Of two drafts that contradict, the first counts.
     """
-    names = "fid, geom, plant, date, time, result, count, who, notes"
+    names = "fid, geom, plant, date, time, result, count, who, notes, detects"
     wanted = f"SELECT {names} FROM inspections WHERE {_DRAFTS} ORDER BY fid"  # noqa: S608 - ours
     rows = db.execute(wanted).fetchall()
     drafts = []
@@ -124,7 +124,7 @@ def _inspection(said: list[object], grid: PlantGrid) -> Inspections:
     from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
     from fieldmon.io.readers.inspections import look_up  # noqa: PLC0415
 
-    place, plant, on, at, result, count, who, notes = said
+    place, plant, on, at, result, count, who, notes, detects = said
     if on in {None, ""}:
         raise ValueError("it has no date")
     if result not in _SAID:
@@ -137,6 +137,7 @@ def _inspection(said: list[object], grid: PlantGrid) -> Inspections:
     rows = _one_row(place, plant, _SAID[str(result)], count)
     rows = rows | {"when": np.array([when]), "day": np.array([day])}
     rows = rows | {"who": np.array([str(who or "")]), "notes": np.array([str(notes or "")])}
+    rows = rows | {"detects": np.array([np.nan if detects is None else float(str(detects))])}
     found, messages = look_up(InspectionRows(**rows), grid, InspectionOptions())
     if not len(found):
         raise ValueError(messages[0].sentence if messages else "it names no plant")

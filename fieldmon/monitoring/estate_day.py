@@ -140,18 +140,6 @@ def one_robot(seasons: Iterable[Season]) -> Robot | None:
     return robots[0] if len(kinds) == 1 else None
 
 
-def read_otherwise(season: Season, members: Iterable[TeamMember]) -> list[tuple[TeamMember, float]]:
-    """Return whose results the season will not read as they are planned, and by what it will.
-
-    A season reads results by what its own member of that name finds of what is there, or, where it
-    has none, by what its robot does.
-    """
-    settings = season.settings
-    named = [(one, settings.named(one.name)) for one in members]
-    read = [(one, (settings.robot if own is None else own.robot).detects) for one, own in named]
-    return [(one, reads) for one, reads in read if one.robot.detects != reads]
-
-
 def due(days_since: Sequence[int | None]) -> list[int]:
     """Return the numbers of the plots that are due, from how long ago each was seen; None: never.
 

@@ -13,7 +13,7 @@ from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name
 from fieldmon.monitoring.closures import closed_in_words
-from fieldmon.monitoring.estate_day import EstateTurn, read_otherwise
+from fieldmon.monitoring.estate_day import EstateTurn
 from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
@@ -91,16 +91,12 @@ class EstateRoutes:
         Numbers of the plots to which nobody goes.
     free
         Names of those who have no plot.
-    otherwise
-        Of the plots whose seasons will not read results as they are planned: whose, and by what
-        they will.
     """
 
     turns: tuple[tuple[EstateTurn, EstateRoute], ...]
     closed: tuple[tuple[str, ...], ...]
     nobody: tuple[int, ...]
     free: tuple[str, ...]
-    otherwise: Mapping[int, Sequence[tuple[TeamMember, float]]]
 
     @property
     def waiting(self) -> tuple[int, ...]:
@@ -137,17 +133,11 @@ def walked(
             sentences = closed[turn.plot]
             made = EstateRoute(plot.name, who, turn.begins, route, plot.sampler, sentences)
             turns.append((turn, made))
-    there = {k: [members[t.who] for t, _ in turns if t.plot == k] for k in range(len(plots))}
-    busy = {turn.who for turn, _ in turns}
+    there, busy = {turn.plot for turn, _ in turns}, {turn.who for turn, _ in turns}
     return EstateRoutes(
         tuple(turns), closed,
-        tuple(k for k, some in there.items() if not some),
+        tuple(k for k in range(len(plots)) if k not in there),
         tuple(one.name for k, one in enumerate(members) if k not in busy),
-        {
-            k: read for k, some in there.items()
-            if (season := plots[k].known.season) is not None
-            and (read := read_otherwise(season, some))
-        },
     )  # fmt: skip
 
 

@@ -10,6 +10,7 @@ import json
 from collections import Counter
 from dataclasses import asdict, dataclass, fields, replace
 from datetime import date, datetime, timedelta
+from functools import reduce
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,6 +34,7 @@ from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import as_written
 from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.told_detection import said_now
 from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
@@ -77,6 +79,8 @@ class Finding:
         Whether the plant was not on the route.
     undoes
         Id of the finding that it takes back.
+    detects
+        Chance to see an infested plant that is inspected; None: it is that of the season.
     """
 
     id: str
@@ -93,6 +97,7 @@ class Finding:
     off_route: bool = False
     undoes: str = ""
     after: datetime | None = None
+    detects: float | None = None
 
     def content(self) -> str:
         """Return what it says as JSON, the same for the same finding whichever version told it."""
@@ -255,9 +260,9 @@ def _take(
     taken_back = _undo_as_told(change) if news else set()
     if made:
         states = season_log.states(change.db, {batch, *taken_back})
-        columns = (np.concatenate([getattr(one, name) for one in made])
-                   for name in ("result", "date"))  # fmt: skip
-        said = {"batch": batch, "source": SOURCE, **inspection_table.in_words(*columns)}
+        seen = reduce(Inspections.and_those, made)
+        detects = said_now(change.db, seen, scout.name)
+        said = {"batch": batch, "source": SOURCE, **inspection_table.in_words(seen, detects)}
         season_log.append(change.db, "seen", scout.name, states=states, **said)
     elif taken_back:
         states = season_log.states(change.db, taken_back)
@@ -388,6 +393,7 @@ def _inspection(season: Season, one: Finding, letter: _SentFindings) -> Inspecti
         np.datetime64(day, "D"),
         second=np.array([second]),
         count=np.array([count]),
+        detects=np.array([np.nan if one.detects is None else one.detects]),
         notes=np.array([one.notes], object),
     )
 

@@ -28,7 +28,8 @@ _OTHERWISE = (
 # when, by whom and with which note stays where nobody says otherwise
 _SAYS = (
     "UPDATE inspections SET result = ?, count = ?, time = coalesce(?, time), "
-    "who = coalesce(nullif(?, ''), who), notes = coalesce(nullif(?, ''), notes) WHERE fid = ?"
+    "who = coalesce(nullif(?, ''), who), notes = coalesce(nullif(?, ''), notes), "
+    "detects = coalesce(?, detects) WHERE fid = ?"
 )
 
 
@@ -56,7 +57,8 @@ def take(
         change = replace(change, before=copy_corrections.as_it_is(db, row))
         told = time_text(float(one.second[0])), str(one.who[0]) or who, str(one.notes[0])
         count = None if np.isnan(one.count[0]) else float(one.count[0])
-        db.execute(_SAYS, (result, count, *told, row))
+        detects = None if np.isnan(one.detects[0]) else float(one.detects[0])
+        db.execute(_SAYS, (result, count, *told, detects, row))
         now = outside_changes.take_row(db, change, plot, settings, batch)
         outside_changes.keep_before(db, change, plot[0])
         copy_corrections.note(db, change, batch, now)

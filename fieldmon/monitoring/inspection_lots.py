@@ -34,6 +34,8 @@ _LEAST, _MOST = -(1 << 63), (1 << 63) - 1
 # in the order of `Inspections`, but with numbers of days
 _NUMBERS = {"plant": "<i4", "result": "<i1", "day": "<i4", "second": "<f8", "count": "<f8"}
 _TEXTS = ("who", "notes")
+# stands last
+_DETECTS = "<f8"
 # what all lots may unpack to: notes of 500 letters for each of a million rows
 _MOST_BYTES = 1 << 29
 
@@ -92,12 +94,13 @@ def _between(kept: Iterable[int]) -> Iterator[tuple[tuple[int, int], int | None]
 def _read(db: sqlite3.Connection, rows: tuple[int, int]) -> Columns:
     """Return the inspections among some row numbers that count, as columns."""
     found = db.execute(
-        "SELECT plant, day, result, time, count, coalesce(who, ''), coalesce(notes, '') "
+        "SELECT plant, day, result, time, count, detects, coalesce(who, ''), coalesce(notes, '') "
         "FROM inspections "
         "WHERE fid >= ? AND fid <= ? AND undone = 0 AND digest IS NOT NULL ORDER BY fid",
         rows,
     ).fetchall()
-    plant, day, result, time, count, *said = zip(*found, strict=True) if found else ((),) * 7
+    columns = zip(*found, strict=True) if found else ((),) * 8
+    plant, day, result, time, count, detects, *said = columns
     texts: dict[str, str] = {}  # the same name stands in thousands of rows
     numbers = (
         plant,
@@ -109,6 +112,7 @@ def _read(db: sqlite3.Connection, rows: tuple[int, int]) -> Columns:
     return [
         *(np.array(*one) for one in zip(numbers, _NUMBERS.values(), strict=True)),
         *(np.array([texts.setdefault(t, t) for t in column], object) for column in said),
+        np.array([np.nan if value is None else value for value in detects], _DETECTS),
     ]
 
 
@@ -123,7 +127,7 @@ def second_of(text: str | None) -> float:
 
 def _packed(columns: Columns) -> bytes | None:
     """Return columns as bytes; None: they hold what is no text where texts belong."""
-    texts, said = columns[len(_NUMBERS) :], []
+    texts, said = columns[len(_NUMBERS) : -1], []
     codes = []
     for column in texts:
         numbers: dict[object, int] = {}
@@ -132,7 +136,7 @@ def _packed(columns: Columns) -> bytes | None:
             return None
         said.append([*numbers])
     head = json.dumps([len(columns[0]), *said]).encode()  # one line: JSON knows no other
-    arrays = (*columns[: len(_NUMBERS)], *codes)
+    arrays = (*columns[: len(_NUMBERS)], *codes, columns[-1])
     return zlib.compress(head + b"\n" + b"".join(array.tobytes() for array in arrays), 1)
 
 
@@ -141,11 +145,11 @@ def _columns(data: bytes) -> Columns:
     at = data.index(b"\n") + 1
     n, *said = json.loads(data[:at])
     columns: Columns = []
-    for kind in (*_NUMBERS.values(), *("<i4" for _ in _TEXTS)):
+    for kind in (*_NUMBERS.values(), *("<i4" for _ in _TEXTS), _DETECTS):
         columns.append(np.frombuffer(data, kind, n, at))
         at += columns[-1].nbytes
     texts = [
         np.array([*of, None], object)[codes]  # None: an array even of one text, or of none
-        for of, codes in zip(said, columns[len(_NUMBERS) :], strict=True)
+        for of, codes in zip(said, columns[len(_NUMBERS) : -1], strict=True)
     ]
-    return [*columns[: len(_NUMBERS)], *texts]
+    return [*columns[: len(_NUMBERS)], *texts, columns[-1]]

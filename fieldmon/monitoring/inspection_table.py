@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.digest import digest
+from fieldmon.compute.ranges import DETECTS
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
@@ -29,6 +30,8 @@ _CODES = {name: code for code, name in RESULT_NAMES.items()}
 _DAY_S = 86_400
 # of a digest
 _LENGTH = 24
+#: of what an inspection finds of what is there
+DECIMALS = 6
 
 
 def ever_recorded(db: sqlite3.Connection) -> set[tuple[int, str, int]]:
@@ -46,9 +49,9 @@ def rows(
 ) -> list[tuple[object, ...]]:
     """Return inspections as rows of their table; raise where they do not fit.
 
-    `batch` is its number and whose inspections these are where they do not say. Who inspected, and
-    what was noted, is no part of what makes one the same as another: a file that comes back from
-    somebody else, or with more notes, brings nothing new.
+    `batch` is its number and whose inspections these are where they do not say. Who inspected,
+    what was noted and what it finds of what is there is no part of what makes one the same as
+    another: a file that comes back from somebody else, or with more notes, brings nothing new.
     """
     _check(inspections, grid)
     plants, dates = inspections.plant, inspections.date.tolist()
@@ -64,14 +67,15 @@ def rows(
         [None if np.isnan(count) else count for count in inspections.count.tolist()],
         [str(who) or batch[1] for who in inspections.who],
         map(str, inspections.notes),
+        [None if np.isnan(one) else round(one, DECIMALS) for one in inspections.detects.tolist()],
         strict=True,
     )
     made: list[tuple[object, ...]] = []
-    for place, plant, line, in_row, date, at, result, count, who, notes in columns:
+    for place, plant, line, in_row, date, at, result, count, who, notes, detects in columns:
         on = date.isoformat()
         mark = _digest(plant, on, at, result, count)
         what = (number[date], on, at, result, count, who, notes)
-        made.append((place, plant, line, in_row, *what, batch[0], mark, 0))
+        made.append((place, plant, line, in_row, *what, batch[0], mark, 0, detects))
     return made
 
 
@@ -138,6 +142,15 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
                 found=count[elsewhere[0]],
             )
         )
+    for row in np.flatnonzero(~np.isnan(inspections.detects)).tolist():
+        if rule := DETECTS.broken(float(inspections.detects[row])):
+            raise ObservationError(
+                worded(
+                    "The chance to see an infested plant (detects) must be {rule}, but result "
+                    "{value} says {found:g}.",
+                    rule=rule, value=row + 1, found=inspections.detects[row],
+                )
+            )  # fmt: skip
     second = inspections.second
     late = np.flatnonzero(~(np.isnan(second) | ((second >= 0) & (second < _DAY_S))))
     if late.size:
@@ -178,10 +191,15 @@ def store(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> NDArray[np.
     return np.array(new, bool)
 
 
-def in_words(result: NDArray[np.int8], on: NDArray[np.datetime64]) -> dict[str, object]:
-    """Return what the season's log says of inspections: how many of each result, on which days."""
+def in_words(inspections: Inspections, detects: list[float]) -> dict[str, object]:
+    """Return what the season's log says of inspections: how many of each result, on which days.
+
+    And which chances to see what is there were said with them, other than the season's own.
+    """
+    result, on = inspections.result, inspections.date
     counts = {name: int(np.count_nonzero(result == code)) for name, code in _CODES.items()}
-    return {**counts, "from": str(on.min()), "to": str(on.max())}
+    days = {"from": str(on.min()), "to": str(on.max())}
+    return {**counts, **days, **({"detects": detects} if detects else {})}
 
 
 def not_what_they_say(db: sqlite3.Connection) -> list[int]:

@@ -52,12 +52,15 @@ TAKEN = (
     *(schema.BATCHES, schema.INSPECTIONS, schema.TREATMENTS, schema.SETTINGS),
     *(schema.ROUTES, schema.STOPS, schema.IMPORTS, schema.OUTSIDE_CHANGES, schema.LABELS),
 )
-_SAID = "SELECT digest, undone, who, notes FROM inspections WHERE batch = ? ORDER BY fid"
+_SAID = (
+    "SELECT digest, undone, who, notes, coalesce(detects, '') FROM inspections WHERE batch = ? "
+    "ORDER BY fid"
+)
 # the same in one row: whichever way SQLite finds those of a batch, it is in the order of their fid
 _TOGETHER = (
     "SELECT count(digest), count(undone), count(who), count(notes), group_concat(digest), "
-    "group_concat(undone), group_concat(who), group_concat(notes) "
-    "FROM inspections WHERE batch = ?"
+    "group_concat(undone), group_concat(who), group_concat(notes), "
+    "group_concat(coalesce(detects, '')) FROM inspections WHERE batch = ?"
 )
 
 
@@ -500,6 +503,9 @@ def _merged_findings(
             for free in ("notes", "who"):  # what is no part of what makes it the same
                 if free in row:
                     known[free] = max(known[free] or "", row[free] or "")
+            if "detects" in row:  # as above
+                told = [one for one in (known["detects"], row["detects"]) if one is not None]
+                known["detects"] = max(told, default=None)
     drafts_last = max((now for batch_of in numbers for now in batch_of.values()), default=0) + 1
     rows = sorted(
         found.values(), key=lambda r: (r["batch"] or drafts_last, r["fid"], repr(r["digest"]))

@@ -60,7 +60,7 @@ def _corrections_keep_what_was(db: sqlite3.Connection) -> None:
 
 
 def _undone_changes_are_named(db: sqlite3.Connection) -> None:
-    """Version 12 did not say of settings which change they take back, if any."""
+    """Version 13 did not say of settings which change they take back, if any."""
     add_column(db, "settings", "undoes TEXT")
 
 
@@ -79,6 +79,13 @@ def _applications_say_all(db: sqlite3.Connection) -> None:
         add_column(db, "treatments", column)
 
 
+def _inspections_say_what_they_find(db: sqlite3.Connection) -> None:
+    """Version 12 read each inspection by the season's settings alone."""
+    add_column(db, "inspections", schema.DETECTS)
+    # those of before lack the column, and are made anew as the file is written next
+    db.execute("DELETE FROM inspection_lots")
+
+
 #: what makes a file of version k one of version k + 1; `watch` follows the last
 MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     1: _treatments_come,
@@ -92,5 +99,6 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     9: _long_seasons_come,
     10: _corrections_keep_what_was,
     11: _applications_say_all,
-    12: _undone_changes_are_named,
+    12: _inspections_say_what_they_find,
+    13: _undone_changes_are_named,
 }

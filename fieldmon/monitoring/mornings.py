@@ -43,6 +43,7 @@ _EVERY, _IN_FILE = 8, 2
 _LATENCY = "latency_"
 # and that are of who infested whom
 _ANCESTRY = "ancestry_"
+_OTHER, _WEIGHED = "other", "weighed"
 # and that are of how old infestations of a named pest are
 _COHORTS = "cohorts_"
 _UNWATCHED = "unwatched"
@@ -221,10 +222,17 @@ def _arrays(morning: Belief) -> Arrays | None:
         "evidence": morning.evidence,
         "slope_sums": morning.slope_sums,
         "counts": np.array([morning.counts.found, morning.counts.expected]),
+        "at_start": morning.at_start,
+        _WEIGHED: np.array([morning.likely, morning.is_heavier, morning.others is not None]),
         _UNWATCHED: morning.unwatched.array,
         **{f"{_LATENCY}{name}": values for name, values in latency.items()},
         **{f"{_ANCESTRY}{name}": values for name, values in ancestry.items()},
         **{f"{_COHORTS}{name}": values for name, values in _aged(morning).items()},
+        **{
+            f"{_OTHER}{k}_{name}": values
+            for k, other in enumerate(morning.others or ())
+            for name, values in (_arrays(other) or {}).items()
+        },
     }
 
 
@@ -250,12 +258,20 @@ def _arrays_in(chances: bytes) -> dict[str, NDArray[Any]]:
 
 def _unpacked(first: Belief, chances: bytes) -> Belief | None:
     """Return a kept morning of the season that began with `first`, or None: it is of another."""
-    wanted = _arrays(first)
     try:
         arrays = _arrays_in(chances)
     except (sqlite3.DatabaseError, zipfile.BadZipFile, ValueError, OSError, EOFError):
         return None
-    if wanted is None:
+    others: list[Belief | None] = []
+    while kept := _taken_out(arrays, f"{_OTHER}{len(others)}_"):
+        others.append(_believed(first, kept, []))
+    return _believed(first, arrays, others)
+
+
+def _believed(first: Belief, arrays: dict[str, Any], others: list[Belief | None]) -> Belief | None:
+    """Return what such arrays hold, and `others` beside it; None: they are of another season."""
+    wanted = _arrays(first)
+    if wanted is None or None in others:
         return None
     ancestry, aged = _taken_out(arrays, _ANCESTRY), _taken_out(arrays, _COHORTS)
     of_ancestry = _taken_out(wanted, _ANCESTRY).keys()
@@ -271,7 +287,11 @@ def _unpacked(first: Belief, chances: bytes) -> Belief | None:
         return None
     own: dict[str, object] = {}
     if isinstance(first, TracedPairs):
-        own = _of_traced(first, arrays, ancestry, aged)
+        likely, is_heavier, inspected = arrays.pop(_WEIGHED).tolist()
+        own = _of_traced(first, arrays, ancestry, aged) | {
+            "likely": likely, "is_heavier": bool(is_heavier),
+            "others": tuple(others) if inspected else None,
+        }  # fmt: skip
     if unwatched is not None:
         own["unwatched"] = Unwatched.of_array(unwatched)
     return replace(first, **arrays, **own)  # type: ignore[type-var]

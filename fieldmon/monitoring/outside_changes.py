@@ -39,7 +39,7 @@ _DONE = {
 }
 _CODES = {name: code for code, name in RESULT_NAMES.items()}
 #: columns that say what was seen
-SEEN = ("plant", "date", "time", "result", "count", "who", "notes")
+SEEN = ("plant", "date", "time", "result", "count", "who", "notes", "detects")
 
 
 @dataclass(frozen=True)
@@ -223,7 +223,7 @@ def keep_before(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) 
     names = ("fid", *INSPECTIONS.names)
     db.execute(
         f"INSERT INTO inspections ({', '.join(names)}) VALUES ({', '.join('?' * len(names))})",  # noqa: S608 - ours
-        tuple(before[name] for name in names),
+        tuple(before.get(name) for name in names),  # an earlier version kept less
     )
 
 
@@ -297,7 +297,8 @@ def _inspection(row: tuple[object, ...]) -> Inspections:
     said = dict(zip(SEEN, row, strict=True))
     on = date.fromisoformat(str(said["date"])[:10])
     second = np.nan if said["time"] is None else inspection_lots.second_of(str(said["time"]))
-    count = np.nan if said["count"] is None else float(str(said["count"]))
+    count, detects = (np.nan if said[name] is None else float(str(said[name]))
+                      for name in ("count", "detects"))  # fmt: skip
     return Inspections.of(
         np.array([int(str(said["plant"]))]),
         np.array([_CODES[str(said["result"])]]),
@@ -306,4 +307,5 @@ def _inspection(row: tuple[object, ...]) -> Inspections:
         count=np.array([count]),
         who=np.array([str(said["who"] or "")], object),
         notes=np.array([str(said["notes"] or "")], object),
+        detects=np.array([detects]),
     )

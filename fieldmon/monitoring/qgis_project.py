@@ -30,7 +30,10 @@ _MOST_DAYS = 14
 _LAST_DAY = '(SELECT max("date") FROM "routes")'
 _SHAPES = {"POINT": "Point", "LINESTRING": "Line", "MULTIPOLYGON": "Polygon"}
 _RESULTS = (("found infested", "found"), ("looked clean", "clean"), ("could not look", "skipped"))
-_HIDDEN = ("fid", "plant", "line", "number", "day", "time", "batch", "digest", "undone")
+_HIDDEN = (
+    *("fid", "plant", "line", "number", "day", "time"),
+    *("batch", "digest", "undone", "detects"),
+)
 _WKT = {
     4326: 'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
     'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]]',

@@ -109,6 +109,7 @@ def inspections_table(season: SeasonRecords) -> Table:
         "who": done.who.tolist(),
         "corrected_by": [corrected.get(one, "") for one in which] if corrected else blank,
         "notes": done.notes.tolist(),
+        "detects": _each(done.detects, float),
         "face": [face or None for face in faces(grid, done.plant).tolist()],
     }
 

@@ -11,7 +11,7 @@ from fieldmon.monitoring.qgis_styles import add_asked_styles, add_photo_styles, 
 if TYPE_CHECKING:
     import sqlite3
 
-VERSION = 13
+VERSION = 14
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
@@ -107,6 +107,8 @@ OBSERVATIONS = GeoPackageTable(
     "POINT",
     "Pest records from before the season: 1 present, 0 looked and saw nothing, -1 undecided.",
 )
+#: of an inspection, since version 13: the chance to see what is there that was said with it
+DETECTS = "detects REAL"
 INSPECTIONS = GeoPackageTable(
     "inspections",
     (
@@ -123,6 +125,7 @@ INSPECTIONS = GeoPackageTable(
         "batch INTEGER",
         "digest TEXT",
         "undone INTEGER DEFAULT 0",
+        DETECTS,
     ),
     "POINT",
     "What was found at which plant: clean, found or skipped.",

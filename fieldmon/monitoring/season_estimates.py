@@ -21,7 +21,7 @@ from fieldmon.monitoring.history import in_sight
 from fieldmon.monitoring.mornings import rules
 from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.status import Status
-from fieldmon.monitoring.told_detection import told_at_first
+from fieldmon.monitoring.told_detection import read_now, told_at_first, told_otherwise
 from fieldmon.pests.development import development
 
 if TYPE_CHECKING:
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.monitoring.advice import Advice
     from fieldmon.monitoring.open_season import SeasonContents
+    from fieldmon.monitoring.told_detection import ToldOtherwise
     from fieldmon.pests.development import Development
 
     Floats = NDArray[np.float64]
@@ -161,6 +162,22 @@ class SeasonEstimates(OpenSeason):
         """
         with self._asked(on) as (contents, morning, day):
             return contents.history.learnt(morning, day, detection)
+
+    def told_otherwise(self, on: date) -> tuple[ToldOtherwise, ...]:
+        """Return with which inspections up to `on` another detection was said than the season's."""
+        with self._lock, self.store.reading() as db:
+            now = self._read(db)
+            done = now.history.until(now.settings.day(on))
+            return told_otherwise(db, done, now.settings.begins)
+
+    def reads(self, on: date, who: str = "") -> float:
+        """Return what inspections of `who` on `on` find, where nothing else is said with them.
+
+        Nobody named: whoever is in no team. That is by the day's last plan, or else by what counts
+        when it is recorded first.
+        """
+        with self.store.reading() as db:
+            return read_now(db, on, who)
 
     def taught(self) -> Worded | None:
         """Return what of an earlier season counts in this one; None: it began without one."""

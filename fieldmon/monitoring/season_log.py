@@ -91,6 +91,8 @@ class LogEntry:
         said = filled(_SAID[kind], what) + chosen + undone + anew
         for old, now in self.numbers.items():
             said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
+        if detects := what.get("detects"):
+            said += f"; told to find {', '.join(map(_percent, detects))} of what is there"
         return said
 
     def names(self, batch: int) -> bool:
@@ -101,6 +103,10 @@ class LogEntry:
     def __str__(self) -> str:
         """Return which entry it is, for a sentence about it."""
         return f"entry {self.number} ({self.at[:16]} UTC, {self.kind})"
+
+
+def _percent(chance: float) -> str:
+    return written(chance, ".0%")
 
 
 class _Blank(dict[str, Any]):
@@ -242,13 +248,15 @@ def _batch_state(db: sqlite3.Connection, number: int) -> str:
 
 
 _ONE_BY_ONE = (
-    "SELECT digest || '|' || undone || '|' || coalesce(who, '') FROM inspections WHERE batch = ?1 "
+    "SELECT digest || '|' || undone || '|' || coalesce(who, '') "
+    "|| coalesce('|' || detects, '') FROM inspections WHERE batch = ?1 "
     "UNION ALL SELECT digest || '|' || undone FROM treatments WHERE batch = ?1 ORDER BY 1"
 )
 # the same but for the order: all marks with one ending in one text
 _TOGETHER = (
-    "SELECT '|' || undone || '|' || coalesce(who, ''), count(*), count(digest), "
-    "group_concat(digest) FROM inspections WHERE batch = ?1 GROUP BY undone, who "
+    "SELECT '|' || undone || '|' || coalesce(who, '') || coalesce('|' || detects, ''), "
+    "count(*), count(digest), group_concat(digest) FROM inspections WHERE batch = ?1 "
+    "GROUP BY undone, who, detects "
     "UNION ALL SELECT '|' || undone, 1, count(digest), digest FROM treatments "
     "WHERE batch = ?1 GROUP BY fid"
 )

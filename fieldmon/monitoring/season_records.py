@@ -37,6 +37,7 @@ from fieldmon.monitoring.recorded_before import (
     contradictions,
     said_before,
 )
+from fieldmon.monitoring.told_detection import said_now
 from fieldmon.monitoring.transactions import Store
 from fieldmon.plot.local_clock import local_clock
 
@@ -239,16 +240,16 @@ class SeasonRecords(OpenSeason):
         news = news.take(inspection_table.store(db, made))
         batches.end(db, batch, len(news), grows=into is not None)
         if len(news):
-            self._log_seen(db, news, (batch, source, by))
+            self._log_seen(db, news, (batch, source, by), who)
         return batch, news
 
     def _log_seen(
-        self, db: sqlite3.Connection, news: Inspections, said: tuple[int, str, str]
+        self, db: sqlite3.Connection, news: Inspections, said: tuple[int, str, str], who: str = ""
     ) -> None:
         batch, source, by = said
         season_log.append(
             db, "seen", by, states=season_log.states(db, [batch]),
-            batch=batch, source=source, **inspection_table.in_words(news.result, news.date),
+            batch=batch, source=source, **inspection_table.in_words(news, said_now(db, news, who)),
         )  # fmt: skip
 
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
 
 _LATE_DAYS = 7
 # as many as a page has room for beside its map
-_MOST_CAUTIONS, _MOST_EFFECTS, _MOST_CHANGES = 6, 3, 6
+_MOST_CAUTIONS, _MOST_EFFECTS, _MOST_CHANGES, _MOST_OTHERWISE = 6, 3, 6, 6
 # of so many batches it is said who inspected: more than fit on a page
 _BATCHES_NAMED = 100
 # as many letters as a line of rows, and a column of plants, may have
@@ -316,6 +316,9 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
 
 def _goes_by(facts: _Facts) -> Iterator[Block]:
     yield _batches(facts)
+    if otherwise := facts.season.told_otherwise(facts.on):
+        rest = _left_out(otherwise, _MOST_OTHERWISE, words.REST)
+        yield Listing("", (*(one.sentence() for one in otherwise[:_MOST_OTHERWISE]), *rest))
     yield _treatments(facts)
     told = [one for one in facts.season.effects(facts.on, facts.units) if one.before.inspected]
     if told:

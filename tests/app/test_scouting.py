@@ -7,6 +7,7 @@ import hashlib
 import os
 import random
 import shutil
+from dataclasses import replace
 from datetime import date, timedelta
 
 import pytest
@@ -129,6 +130,26 @@ def test_a_day_without_a_network_among_kills_loses_and_doubles_nothing(season, l
     phone.page.locator(SENT).wait_for(timeout=120_000)
     holds(season, there, said)
     assert kept(phone.page).photos == {}, "what the season has needs no room on the phone"
+
+
+def test_what_a_phone_was_planned_to_find_holds_though_another_robot_is_set_meanwhile(
+    season, line, phone
+):
+    invited(phone, line, season)
+    line.go()
+    told_now(phone.page, "clean")
+    sees_less = replace(season.settings.robot, look_s=20.0)
+    season.change(replace(season.settings, robot=sees_less), season.settings)
+    with season.as_now(BEGINS):
+        season.plan(BEGINS)
+    told_now(phone.page, "found", 2)
+    line.come()
+    phone.page.evaluate("dispatchEvent(new Event('online'))")
+    phone.page.locator(SENT).wait_for(timeout=120_000)
+    now = Season(season.path)
+    assert now.reads(BEGINS) == 0.5
+    assert now.history.detections.tolist() == [0.84, 0.84]
+    assert [(one.who, one.n, one.own) for one in now.told_otherwise(BEGINS)] == [("Ann", 2, 0.5)]
 
 
 def test_killed_in_the_moment_of_a_tap_it_is_whole_or_asked_for_again(season, line, phone):

@@ -131,7 +131,7 @@ def _write(
     batches.end(db, batch, int(inspection_table.store(db, rows).sum()))
     season_log.append(
         db, "seen", who, states=season_log.states(db, [batch]), batch=batch, source=source,
-        **inspection_table.in_words(seen.result, seen.date),
+        **inspection_table.in_words(seen, []),
     )  # fmt: skip
 
 

@@ -2,13 +2,11 @@
 
 import csv
 import json
-import shlex
 import shutil
 
 import pytest
 
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.told_detection import told_detection
 from tests.cli.estate import BEGINS, MITES, ZIP, filled_in
 
 NEXT = "2026-11-03"
@@ -120,41 +118,33 @@ def test_the_seasons_robot_works_where_nobody_else_is_told(run, seasons, tmp_pat
     assert code == 0, err
 
 
-def test_what_the_season_would_read_otherwise_is_said_with_its_way_out(run, season, tmp_path):
-    (tmp_path / "low crew.csv").write_text("name,who,hours,detection\nBen,scout,1,0.3\n")
-    words = ("share", season, "--date", BEGINS, "--robots", "low crew.csv")
-    code, out, err, _ = run(*words, "-o", "day")
-    assert code == 0, err
-    assert "reads results as its own team or robot finds: Ben's by 84 %, not 30 %" in err
-    assert "From plot to plot" not in out
-    told = shlex.split(err.partition("set the crew: ")[2].partition("\n")[0])
-    code, _, err, _ = run(*told[1:])
-    assert code == 0, err
-    code, _, err, _ = run(*words, "-o", "again")
-    assert code == 0, err
-    assert "reads results" not in err
-
-
-def test_a_day_planned_in_the_season_before_is_to_be_planned_again(run, season, tmp_path):
-    (tmp_path / "low.csv").write_text("name,who,hours,detection\nBen,scout,1,0.3\n")
-    run("plan", season, "--date", BEGINS, "-o", "own.csv", "--no-bound")
-    words = ("share", season, "--date", BEGINS, "--robots", "low.csv", "--format", "csv")
-    code, _, err, _ = run(*words, "-o", "day")
-    assert code == 0, err
-    (told,) = (line for line in err.splitlines() if "set the crew: " in line)
-    commands = told.partition("set the crew: ")[2].partition("; then, as that day was planned")
-    again = commands[2].partition("plan it again: ")[2]
-    for command in (commands[0], again):
-        code, _, err, _ = run(*shlex.split(command)[1:])
+@pytest.mark.parametrize("planned_before", [False, True])
+def test_a_crews_detection_reaches_the_season_and_each_keeps_its_own(
+    run, season, tmp_path, planned_before
+):
+    if planned_before:
+        run("plan", season, "--date", BEGINS, "-o", "own.csv", "--no-bound")
+    for name, detection in (("Ben", 0.3), ("Rex", 0.6)):
+        (tmp_path / "low.csv").write_text(f"name,who,hours,detection\n{name},scout,1,{detection}\n")
+        words = ("share", season, "--date", BEGINS, "--all", "--robots", "low.csv")
+        code, _, err, _ = run(*words, "--format", "csv", "-o", name)
         assert code == 0, err
-    (route,) = (tmp_path / "day").glob("01-*.csv")
-    filled_in(route, {0}, 5)
-    code, _, err, _ = run("record", season, route)
-    assert code == 0, err
+        assert "reads results" not in err
+        (route,) = (tmp_path / name).glob("01-*.csv")
+        filled_in(route, {0}, 5)
+        code, out, err, _ = run("record", season, route)
+        assert code == 0, err
+        said = f"{name}, {BEGINS}: 5 inspections find {detection:.0%} of what is there, as was"
+        assert said.replace("%", " %") in out
     kept = Season(season)
-    with kept.store.reading() as db:
-        read = told_detection(db, kept.history.inspections, kept.settings.begins)
-    assert read.tolist() == [0.3] * 5
+    told = set(zip(kept.inspections.who, kept.history.detections.tolist(), strict=True))
+    assert told == {("Ben", 0.3), ("Rex", 0.6)}
+    _, out, _, _ = run("log", season)
+    assert "told to find 30 % of what is there" in out
+    _, out, _, _ = run("status", season)
+    assert "Ben, 2026-11-02: 5 inspections find 30 % of what is there, as was said with them" in out
+    assert "the season's own is 84 %." in out
+    assert "Inspections of that day find" not in out
 
 
 def test_days_of_several_lengths_are_asked_for_one(run, seasons):

@@ -27,7 +27,7 @@ def week():
 
 def test_what_is_not_given_is_unknown():
     one = Inspections.of(np.array([3]), np.array([FOUND]), MONDAY)
-    assert np.isnan([one.second[0], one.count[0]]).all()
+    assert np.isnan([one.second[0], one.count[0], one.detects[0]]).all()
     assert (one.who.tolist(), one.notes.tolist()) == ([""], [""])
     assert len(Inspections.none()) == 0
     assert np.isnat(Inspections.of(np.array([3]), np.array([0]), np.datetime64("NaT")).date).all()
@@ -45,7 +45,8 @@ def test_columns_have_the_same_types_wherever_they_come_from():
     )
     for other in (made, week(), Inspections.none()):
         kinds = [str(getattr(other, name).dtype) for name in vars(week())]
-        assert kinds == ["int32", "int8", "datetime64[D]", "float64", "float64", "object", "object"]
+        assert kinds == ["int32", "int8", "datetime64[D]", "float64", "float64", "object", "object",
+                         "float64"]  # fmt: skip
 
 
 def test_columns_of_another_length_are_refused_by_name():

@@ -54,7 +54,7 @@ def test_what_inspections_raise_plants_by_came_from_beside_them_one_after_the_ot
     def after(n):
         chance, pair_chance = belief.chance.copy(), belief.pair_chance.copy()
         day = TracedDay(belief.shares.copy(), chance.copy(), *np.zeros((2, 12)),
-                        *np.zeros((2, N_ORIGINS)))  # fmt: skip
+                        *np.zeros((2, N_ORIGINS)), np.zeros(1))  # fmt: skip
         traces = belief.traces.own()._replace(kernel=np.zeros((1, 1)))
         room = KernelRoom(each, Neighbourhood.of(12, chance), Raised.of(12))
         inspections = plants[:n], found[:n], detects[:n], np.zeros(n)

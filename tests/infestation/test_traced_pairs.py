@@ -265,6 +265,7 @@ def test_offspring_is_no_surer_than_what_it_came_from(beside):
 def test_in_hindsight_an_evening_says_what_the_next_morning_does_of_the_same_finds():
     """Where a third of what was inspected is infested, and a fiftieth was told."""
     belief, plants = TracedPairs.of(GRID, FLAT), np.arange(40, dtype=np.int32)
+    belief = replace(belief, others=())  # no heavier infestation is thought of
     evening, still = belief.learn(plants, plants % 3 == 0, LEARNING), Spread(0.0)
     told, morning = evening.in_hindsight(still), evening.overnight(still)
     assert morning.chance.sum() > 1.3 * evening.chance.sum()
@@ -298,21 +299,24 @@ def test_as_far_as_more_were_there_at_the_start_than_was_told_the_number_is_in_d
 def day_of(belief):
     n, none = len(belief.chance), np.zeros((2, N_ORIGINS))
     zeros = np.zeros((2, n))
-    return TracedDay(belief.shares.astype(np.float64), belief.chance.copy(), *zeros, *none)
+    return TracedDay(
+        belief.shares.astype(np.float64), belief.chance.copy(), *zeros, *none, np.zeros(1)
+    )
 
 
 @pytest.mark.parametrize("found", [False, True])
-def test_finds_are_counted_by_origin_and_known_ones_tell_what_is_overlooked(found):
+def test_finds_are_counted_by_origin_and_known_ones_tell_nothing(found):
     day = day_of(mid_season())
     _count.py_func(day, 5, found, 0.3)
     assert day.found == pytest.approx(found * day.shares[5])
     assert day.expected == pytest.approx(0.3 * day.shares[5])
+    assert np.exp(day.likely[0]) == pytest.approx(0.3 if found else 0.7)
     day = day_of(mid_season())
     day.before[5] = 0.995
     _count.py_func(day, 5, found, 0.8)
-    wanted = np.zeros((2, N_ORIGINS))
-    wanted[:, OVERLOOKED] = 1.0 - found, 0.2
-    assert np.array([day.found, day.expected]) == pytest.approx(wanted)
+    assert not day.found.any()
+    assert not day.expected.any()
+    assert day.likely[0] == 0.0
 
 
 def test_what_a_chance_rises_by_came_from_the_plant_beside_and_what_falls_tells_no_origin():
@@ -384,7 +388,7 @@ def test_what_was_found_clean_about_a_plant_lowers_it_by_the_relatives_it_would_
     to = belief.reach.brought(day.dropped, beyond)
     back = belief.reach.brought(day.cleared * belief.unseen, beyond, back=True)
     relatives = to * after.unseen / after.chance + back
-    lowered = belief._lowered(after, day, beyond)
+    lowered = belief.lowered(after, day, beyond)
     assert lowered == pytest.approx(np.exp(-np.minimum(relatives, 3.0)))
     assert (relatives > 3.0).any()
     assert (relatives < 3.0).any()
@@ -401,3 +405,30 @@ def test_what_lands_anywhere_is_what_all_plants_that_move_send_there(tells_apart
         from_outside = 0.01 * belief.counts.scale[ANYWHERE]
         landed = 0.3 * sum(sends * moves) / 12
         assert brought[ANYWHERE] == pytest.approx(np.full(12, from_outside + landed))
+
+
+def test_a_flagged_plant_that_seems_clean_later_is_in_doubt_and_teaches_no_detection():
+    belief, plants = TracedPairs.of(GRID, FLAT), np.array([105, 210], np.int32)
+    flagged = belief.learn(plants, np.ones(2, bool), Learning(0.84, treated=False))
+    morning = flagged.overnight(QUIET)
+    assert morning.ancestry.left.nonzero()[0].tolist() == plants.tolist()
+    looked = morning.learn(plants, np.array([True, False]), Learning(0.84, treated=False))
+    assert looked.chance[105] > 0.99
+    assert looked.chance[210] == pytest.approx(0.7 * 0.16 / (0.7 * 0.16 + 0.3), abs=0.02)
+    later = looked.overnight(QUIET)
+    assert later.ancestry.left.nonzero()[0].tolist() == [105]
+    assert later.chance[210] < 0.3
+    # whoever overlooks half leaves it likely, and two looks are more than one
+    once, twice = (
+        morning.learn(np.full(k, 210, np.int32), np.zeros(k, bool), Learning(0.5, treated=False))
+        for k in (1, 2)
+    )
+    assert 0.5 < once.chance[210] < 0.6
+    assert once.ancestry.left[210]
+    assert twice.chance[210] == pytest.approx(0.175 / 0.475, abs=0.02)
+    for after in (looked, once, twice):
+        assert after.counts.found[OVERLOOKED] == morning.counts.found[OVERLOOKED]
+    # a find of the same day says that it is there
+    both = np.array([210, 210], np.int32)
+    again = morning.learn(both, np.array([True, False]), Learning(0.84, treated=False))
+    assert again.chance[210] > 0.99

@@ -29,7 +29,7 @@ def add(path, plant=PLANT, **said):
 
 def test_a_finding_saved_into_the_season_counts_at_its_next_opening(path):
     before = Season(path).history.states(0)[PLANT]
-    add(path, who="Ann", notes="underside", time="09:30:00", count=3)
+    add(path, who="Ann", notes="underside", time="09:30:00", count=3, detects=0.3)
     season = Season(path)
     assert season.drafts == ()
     inspections = season.history.inspections
@@ -38,6 +38,7 @@ def test_a_finding_saved_into_the_season_counts_at_its_next_opening(path):
     assert inspections.result[k] == FOUND
     assert (inspections.who[k], inspections.notes[k]) == ("Ann", "underside")
     assert (inspections.second[k], inspections.count[k]) == (9.5 * 3600, 3)
+    assert season.history.detections[k] == 0.3
     last = season.batches()[0]
     assert (last.source, last.rows, last.kind) == (SOURCE, 1, "findings")
     assert season.log()[-1].kind == "seen"

@@ -8,8 +8,8 @@ import pytest
 
 from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.estate_day import EstatePlot, days_since, due, read_otherwise, share_estate
-from fieldmon.planning.members import TeamMember, team_of
+from fieldmon.monitoring.estate_day import EstatePlot, days_since, due, share_estate
+from fieldmon.planning.members import team_of
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers.base import NEVER
 from tests.monitoring.seasons import BEGINS, a_season
@@ -35,16 +35,6 @@ def spray(season, began, hours, plants=None):
 
 def hours_of(day):
     return {turn.plot: round(turn.scene.robot.day_s / 3600, 2) for turn in day.turns}
-
-
-def test_whose_results_a_season_reads_otherwise_goes_by_its_own_member_or_its_robot(tmp_path):
-    team = (TeamMember("Ann", Robot(detection=0.3)), TeamMember("Ben", Robot(detection=0.6)))
-    season = a_season(tmp_path / "s.gpkg", robot=Robot(detection=0.8), team=team)
-    told = {"ann": 0.3, "Ben": 0.3, "Cy": 0.8, "Di": 0.6}
-    out = [TeamMember(name, Robot(detection=finds)) for name, finds in told.items()]
-    assert [(one.name, reads) for one, reads in read_otherwise(season, out)] == [
-        ("Ben", 0.6), ("Di", 0.8),
-    ]  # fmt: skip
 
 
 def test_due_is_what_was_not_seen_for_three_days_or_never_and_nothing_else():

@@ -12,10 +12,12 @@ import pytest
 
 from fieldmon.errors import AccessError, LimitError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
-from fieldmon.io.readers.phone_file import PhoneFile, SavedRecord
+from fieldmon.io.readers.phone_file import PhoneFile, SavedRecord, fields_of
 from fieldmon.monitoring import Season, findings, photos, scouts
-from fieldmon.monitoring.findings import of_others, take, take_saved
+from fieldmon.monitoring.findings import Finding, of_others, take, take_saved
 from fieldmon.monitoring.photos import Photo
+from fieldmon.planning.members import TeamMember
+from fieldmon.plot.robot import Robot
 from tests.monitoring.phone import JPEG, NOW, a_days_findings, a_finding, told
 from tests.monitoring.seasons import BEGINS, state
 
@@ -169,6 +171,37 @@ def test_a_gis_sees_where_a_phone_stood_and_nothing_where_it_did_not_know(season
     points = pyogrio.read_dataframe(season.path, layer="tellings").geometry
     seen = [None if one is None else (one.x, one.y) for one in points]
     assert seen == [at[plant] for plant in sorted(at)]
+
+
+def test_what_a_phone_says_that_it_finds_holds_and_is_in_the_file_that_it_saves(season, key):
+    season.plan(BEGINS)
+    told = [a_finding(3, FOUND, detects=0.3), a_finding(4, CLEAN), a_finding(5, CLEAN, detects=1.5),
+            a_finding(6, CLEAN, detects=0.0)]  # fmt: skip
+    taken = take(season, key, told, NOW)
+    assert [one.problem[:26] for one in taken] == ["", "", *["The chance to see an infes"] * 2]
+    usual = season.settings.robot.detects
+    history = Season(season.path).history
+    read = dict(zip(history.inspections.plant.tolist(), history.detections.tolist(), strict=True))
+    assert (read[3], read[4]) == (0.3, usual)
+    assert season.log()[-1].sentence().endswith("told to find 30 % of what is there")
+    assert [one.who for one in season.told_otherwise(BEGINS)] == ["Ann"]
+    again = Finding(**fields_of(json.loads(json.dumps({
+        "id": told[0].id, "at": told[0].at.isoformat(), "plant": 3, "result": "found",
+        "detects": 0.3,
+    }))))  # fmt: skip
+    (once,) = take(season, key, [again], NOW)
+    assert (once.new, once.problem) == (False, "")
+
+
+def test_a_phone_of_the_team_that_says_its_own_says_nothing_else(season, key):
+    ann = TeamMember("Ann", Robot(hours=1.5, detection=0.6))
+    season.change(replace(season.settings, team=(ann,)), season.settings)
+    day = BEGINS + timedelta(days=1)
+    season.plan_each(day)
+    take(season, key, [a_finding(3, FOUND, detects=0.6, on=day)], NOW)
+    assert season.history.detections[-1] == 0.6
+    assert "told to find" not in season.log()[-1].sentence()
+    assert season.told_otherwise(day) == ()
 
 
 def test_each_field_of_a_finding_is_read_by_a_gis_as_it_was_told(season, key):

@@ -16,7 +16,7 @@ REPLACED = (
     "REPLACE INTO inspections (plant, day, date, result, digest, undone) "
     "SELECT plant, day, date, 'found', digest, 0 FROM inspections WHERE fid = 20"
 )
-COLUMNS = ("plant", "result", "date", "second", "count", "who", "notes")
+COLUMNS = ("plant", "result", "date", "second", "count", "who", "notes", "detects")
 
 
 @pytest.fixture(scope="module")
@@ -43,6 +43,7 @@ def in_lots(recorded, tmp_path_factory):
                 count=np.where((rng.random(k) < 0.5) | (results != FOUND), np.nan, 7.5),
                 who=rng.choice(["Ann", "דנה", ""], k).astype(object),
                 notes=rng.choice(["", "ends in nothing\0", "🌿"], k).astype(object),
+                detects=rng.choice([np.nan, 0.3, 1 / 3], k),
             ),
             "taps",
         )

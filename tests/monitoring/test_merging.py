@@ -76,7 +76,8 @@ def record(db, rng, who):
     plant = np.array([rng.randrange(4) for _ in range(n)])
     result = np.array([rng.choice((CLEAN, FOUND)) for _ in range(n)])
     on = np.datetime64(BEGINS) + rng.randrange(3)
-    found = Inspections.of(plant, result, on)
+    told = np.full(n, 0.3 if who == "Ann" else np.nan)
+    found = Inspections.of(plant, result, on, detects=told)
     store(db, found, who)
     if rng.random() < 0.3:
         store(db, found, who)  # the same once more
@@ -98,7 +99,7 @@ def store(db, found, who):
     batches.end(db, batch, new)
     if new:
         states = season_log.states(db, [batch])
-        said = inspection_table.in_words(found.result, found.date)
+        said = inspection_table.in_words(found, [])
         season_log.append(db, "seen", who, states=states, batch=batch, source="taps", **said)
 
 
@@ -490,7 +491,8 @@ def test_what_both_copies_hold_stays_untouched_and_nothing_comes_out_otherwise(m
     "UPDATE inspections SET notes = NULL WHERE fid = 2",  # comes out as an empty text
     "UPDATE inspections SET batch = 9 WHERE fid = 2",
     "UPDATE inspections SET undone = 1 WHERE fid = 2",
-    "INSERT INTO inspections SELECT 9, {names}, 0 FROM inspections WHERE fid = 2",
+    "INSERT INTO inspections (fid, undone, {0}) SELECT 9, 0, {0} FROM inspections WHERE fid = 2",
+    "UPDATE inspections SET detects = 0.25 WHERE fid = 2",
     "UPDATE inspections SET fid = 9 WHERE fid = 2",
     "UPDATE inspections SET digest = NULL WHERE fid = 2",
     "UPDATE batches SET fid = 5 WHERE fid = 1",
@@ -504,9 +506,9 @@ def test_rows_that_come_out_otherwise_do_not_stay(monkeypatch, change, where):
     if "INSERT" in change:
         one.execute("UPDATE inspections SET undone = 1 WHERE fid = 2")
     one.backup(other)
-    names = ", ".join(schema.INSPECTIONS.names[:-1])
+    names = ", ".join(name for name in schema.INSPECTIONS.names if name != "undone")
     for db in (one,) if where == "one" else (one, other):
-        db.execute(change.format(names=names))
+        db.execute(change.format(names))
     whole = copied(one)
     merging.merge(one, other)
     monkeypatch.setattr(merging, "_n_staying", lambda *_: 0)
@@ -519,20 +521,23 @@ def test_rows_that_come_out_otherwise_do_not_stay(monkeypatch, change, where):
 @pytest.mark.parametrize("seed", range(20))
 def test_a_batch_is_the_same_in_both_copies_where_each_of_its_rows_is(seed):
     rng, said = random.Random(seed), (None, "", "a", ",", "a,", ",a", "a,a")
+    told = (None, None, 0.3, 0.84)
     both = [sqlite3.connect(":memory:", isolation_level=None) for _ in range(2)]
     for db in both:
         schema.lay_out(db)
     answers = []
     for batch in range(1, 60):
         n = rng.randrange(1, 4)
-        rows = [[rng.choice(said[-6:]) + str(k), 1, *rng.choices(said, k=2)] for k in range(n)]
+        rows = [[rng.choice(said[-6:]) + str(k), 1, *rng.choices(said, k=2), rng.choice(told)]
+                for k in range(n)]  # fmt: skip
         others = [[*row] for row in rows]
         if rng.random() < 0.6:
-            rng.choice(others)[rng.randrange(4)] = rng.choice(said)
+            at = rng.randrange(5)
+            rng.choice(others)[at] = rng.choice(told if at == 4 else said)
         for db, written in zip(both, (rows, others), strict=True):
-            into = "INSERT INTO inspections (batch, digest, undone, who, notes)"
-            db.executemany(f"{into} VALUES ({batch}, ?, ?, ?, ?)", written)
-        alike = rows == others and not any(None in row for row in rows)
+            into = "INSERT INTO inspections (batch, digest, undone, who, notes, detects)"
+            db.executemany(f"{into} VALUES ({batch}, ?, ?, ?, ?, ?)", written)
+        alike = rows == others and not any(None in row[:4] for row in rows)
         answers.append(alike)
         assert merging._is_same_batch(both, batch, n) == alike
     assert {*answers} == {True, False}

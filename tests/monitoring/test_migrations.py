@@ -5,10 +5,13 @@ from contextlib import closing
 from dataclasses import replace
 from datetime import timedelta
 
-from fieldmon.monitoring import Season, geopackage, migrations, schema
+import numpy as np
+
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring import Season, geopackage, inspection_lots, migrations, schema
 from fieldmon.planning.members import team_of
 from tests.monitoring.phone import without_phones
-from tests.monitoring.seasons import BEGINS, state
+from tests.monitoring.seasons import BEGINS, a_season, state
 
 
 def test_every_older_version_has_a_way_to_the_next():
@@ -73,3 +76,22 @@ def test_a_file_of_version_1_becomes_one_of_today(path):
     season.treat(BEGINS, 0.5)
     season.plan(BEGINS)
     assert state(path) == 12
+
+
+def test_lots_of_a_file_of_version_12_are_made_anew(tmp_path, monkeypatch):
+    season = a_season(tmp_path / "season.gpkg")
+    monkeypatch.setattr(schema, "LOT_BITS", 2)
+    plants = np.arange(8)
+    season.record(Inspections.of(plants, plants % 2, np.datetime64(BEGINS)))
+    with closing(sqlite3.connect(season.path)) as db:
+        assert db.execute("SELECT count(*) FROM inspection_lots").fetchone() != (0,)
+        triggers = db.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'").fetchall()
+        for (name,) in triggers:
+            if name.endswith("_outside"):
+                db.execute(f"DROP TRIGGER {name}")
+        db.execute("ALTER TABLE inspections DROP COLUMN detects")
+        db.execute("UPDATE fieldmon SET value = '12' WHERE key = 'version'")
+        db.commit()
+    with Season(season.path).store.reading() as db:
+        assert db.execute("SELECT count(*) FROM inspection_lots").fetchone() == (0,)
+        assert inspection_lots.load(db, BEGINS).plant.tolist() == plants.tolist()

@@ -83,6 +83,20 @@ def test_a_correction_counts_in_every_column_and_is_taken_back_as_a_whole(path, 
     assert season.held_to_log() == ()
 
 
+def test_what_an_inspection_finds_is_corrected_and_refused_as_the_rest_of_it(path):
+    before = Season(path).history.detections.tolist()
+    outside(path, "UPDATE inspections SET detects = 0.3 WHERE fid = 1")
+    season = Season(path)
+    assert season.correct("Ann") == 1
+    assert season.history.detections.tolist() == [0.3, *before[1:]]
+    assert "is now detects 0.3" in season.log()[-1].sentence()
+    season.undo()
+    assert season.history.detections.tolist() == before
+    outside(path, "UPDATE inspections SET detects = 30 WHERE fid = 1")
+    with pytest.raises(FileProblem, match="above 0, and 1 at most"):
+        Season(path).correct("Ann")
+
+
 @pytest.mark.parametrize("edit", EDITS.values(), ids=EDITS)
 def test_undoing_a_correction_brings_back_what_stood_there_in_either_copy(path, tmp_path, edit):
     other, was = (shutil.copy(path, tmp_path / name) for name in ("other.gpkg", "was.gpkg"))

@@ -113,6 +113,7 @@ def test_inspections_read_back_are_those_that_the_season_holds(tmp_path, faces):
         "second": np.array([73_831.0, 73_800.0, np.nan]),
         "count": np.array([0.0, np.nan, 2.5]),
         "notes": np.array(["=1", "two\nlines", ""], object),
+        "detects": np.array([0.3, np.nan, 0.6]),
     }
     results = np.array([FOUND, SKIPPED, FOUND])
     made.record(Inspections.of(plants, results, np.datetime64(BEGINS), **seen), "taps", "Ann")
@@ -123,6 +124,9 @@ def test_inspections_read_back_are_those_that_the_season_holds(tmp_path, faces):
     assert [line["time"] for line in read(inspections_table(made))] == ["20:30:00", "20:30:31", ""]
     back = read_inspections(file, grid)
     assert sorted(back.value.plant.tolist()) == sorted(done.plant.tolist())
+    assert dict(zip(back.value.plant, back.value.detects, strict=True)) == pytest.approx(
+        dict(zip(done.plant, done.detects, strict=True)), nan_ok=True
+    )
     assert "its count is 0: taken as found" in " ".join(str(one) for one in back.messages)
     told = made.record(back.value, file.name, "Dan")
     assert (told.new, told.known) == (0, 3)

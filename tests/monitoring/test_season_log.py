@@ -314,22 +314,26 @@ SAYS = st.tuples(
     st.sampled_from([None, "", "a", "b", ",", "a,b", "é"]),
     st.sampled_from([0, 1, None]),
     st.sampled_from([None, "", "Ann", "Ben|", ","]),
+    st.sampled_from([None, None, 0.3, 0.84]),
 )
 
 
 @given(st.lists(SAYS, max_size=6), st.lists(SAYS, max_size=2))
 def test_the_digest_of_a_batch_is_of_all_that_its_rows_say_in_order(inspected, treated):
     said = [None if None in row[:2] else "|".join(map(str, row[:2])) for row in inspected]
-    said = [one and f"{one}|{row[2] or ''}" for one, row in zip(said, inspected, strict=True)]
+    said = [one and f"{one}|{row[2] or ''}{'' if row[3] is None else f'|{row[3]}'}"
+            for one, row in zip(said, inspected, strict=True)]  # fmt: skip
     said += [None if None in row[:2] else f"{row[0]}|{row[1]}" for row in treated]
     in_order = sorted(said, key=lambda one: (one is not None, one or ""))
     with closing(sqlite3.connect(":memory:", isolation_level=None)) as db:
         db.execute("CREATE TABLE batches (fid, at, kind, source, who)")
         db.execute("INSERT INTO batches VALUES (1, '2026', 'findings', 'x.csv', 'Ann')")
         for name, rows in (("inspections", inspected), ("treatments", treated)):
-            columns = "fid INTEGER PRIMARY KEY, digest TEXT, undone INTEGER, who TEXT, batch"
-            db.execute(f"CREATE TABLE {name} ({columns})")
-            into = f"INSERT INTO {name} (digest, undone, who, batch) VALUES (?, ?, ?, 1)"  # noqa: S608
+            columns = "digest TEXT, undone INTEGER, who TEXT, detects REAL, batch"
+            db.execute(f"CREATE TABLE {name} (fid INTEGER PRIMARY KEY, {columns})")
+            into = (
+                f"INSERT INTO {name} (digest, undone, who, detects, batch) VALUES (?, ?, ?, ?, 1)"  # noqa: S608
+            )
             db.executemany(into, rows)
         state = season_log.states(db, [1])["batch 1"]
     own = ("2026", "findings", "x.csv", "Ann")

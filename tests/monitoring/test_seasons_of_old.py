@@ -7,6 +7,8 @@ changed): planned, recorded, undone, treated, changed. Beside each lies what ``f
 
 import re
 import shutil
+import sqlite3
+from contextlib import closing
 from dataclasses import replace
 from datetime import date, datetime
 from pathlib import Path
@@ -49,6 +51,10 @@ def test_a_season_says_what_it_said(season, capsys):
         since = [line for line in said if line.startswith(new)]
         assert len(since) == 1
         said.remove(since[0])
+    how = "Say it as its label does: fieldmon labels", "It names no product: fieldmon undo"
+    since = [line for line in said if any(one in line for one in how)]
+    assert len(since) == 1
+    said.remove(since[0])
     flagged = "were found and only flagged, are still", "that the plot is clean leaves these out."
     planned = "  planned, not recorded  2026-04-09", "  Record it; if nobody went, record one stop"
     for new, there in (
@@ -175,10 +181,36 @@ def test_a_season_of_format_11_holds_and_knows_its_treatments_again(tmp_path):
     assert season.verify() == ()
 
 
-def test_in_a_season_of_format_12_what_was_taken_back_is_a_change_that_can_be_taken_back(tmp_path):
-    """Made before a taking back was noted: harvest said, then 4 hours said and taken back."""
-    season = Season(shutil.copy(FOLDER / "of_format_12.gpkg", tmp_path))
+def test_a_season_of_format_12_is_read_as_before_and_takes_what_is_said_from_now_on(tmp_path):
+    """Made before inspections said what they find: 40 s a plant, then 25 s, and a correction."""
+    path = Path(shutil.copy(FOLDER / "of_format_12.gpkg", tmp_path))
+    season = Season(path)
     assert (tmp_path / "of_format_12.gpkg.format-12").is_file()
+    assert season.verify() == ()
+    assert season.history.detections.tolist() == [0.84] * 20 + [0.6] * 12
+    assert np.isnan(season.inspections.detects).all()
+    assert "1 correction" in season.undo(3)
+    more = Inspections.of(np.array([80]), np.array([CLEAN]), LAST, detects=np.array([0.3]))
+    season.record(more, "rex.geojson")
+    assert Season(season.path).history.detections[-1] == 0.3
+    assert season.verify() == ()
+
+
+def test_what_another_program_changed_in_a_season_of_format_12_can_be_corrected(tmp_path):
+    path = Path(shutil.copy(FOLDER / "of_format_12.gpkg", tmp_path))
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("UPDATE inspections SET result = 'found' WHERE fid = 20")
+        db.commit()
+    season = Season(path)
+    assert season.correct("Ann") == 1
+    assert season.history.detections.tolist() == [0.84] * 20 + [0.6] * 12
+    assert "1 correction" in season.undo()
+
+
+def test_in_a_season_of_format_13_what_was_taken_back_is_a_change_that_can_be_taken_back(tmp_path):
+    """Made before a taking back was noted: harvest said, then 4 hours said and taken back."""
+    season = Season(shutil.copy(FOLDER / "of_format_13.gpkg", tmp_path))
+    assert (tmp_path / "of_format_13.gpkg.format-13").is_file()
     assert season.held_to_log() == ()
     seen = season.settings
     assert (seen.robot.hours, seen.harvest) == (1.5, date(2026, 5, 6))

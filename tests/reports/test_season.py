@@ -202,6 +202,27 @@ def test_lists_that_are_too_long_begin_with_what_counts_and_say_how_much_is_miss
     assert (len(beware), beware[-1]) == (7, "... and 3 more.")
 
 
+def test_another_detection_that_was_said_with_inspections_stands_below_them(tmp_path, monkeypatch):
+    season = a_season(tmp_path / "s.gpkg")
+    for day, detects in enumerate((0.3, 0.6)):
+        plants, date = np.arange(3), np.datetime64(BEGINS + timedelta(days=day))
+        told = np.full(3, detects)
+        season.record(Inspections.of(plants, plants % 2, date, detects=told), "rex.csv", "Rex")
+
+    def said(on):
+        blocks = on_sheet(season_report(season, on, Units()), 3, Listing)
+        return [one for block in blocks for one in block.sentences if "was said with" in one]
+
+    (first,) = said(BEGINS)
+    assert first == (
+        "Rex, 2026-04-06: 3 inspections find 30 % of what is there, as was said with them; the "
+        "season's own is 84 %."
+    )
+    assert len(said(BEGINS + timedelta(days=1))) == 2
+    monkeypatch.setattr(season_module, "_MOST_OTHERWISE", 1)
+    assert len(said(BEGINS + timedelta(days=1))) == 1
+
+
 def test_what_no_page_has_room_for_is_counted(worked, last, monkeypatch):
     spots = len(worked.status(last).hot_spots)
     monkeypatch.setattr(sentences, "_MOST_SPOTS", spots - 1)

@@ -373,7 +373,9 @@ export class Field {
     const { id, plant, count, stage, leaves, notes, photos } = this.draft;
     if (plant < 0) return Promise.resolve();
     const of = result === "found" ? { count: count ?? null, stage: stage ?? "", leaves: leaves ?? null } : {};
-    const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute, photos: photos ?? 0 };
+    const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute, photos: photos ?? 0,
+      // of the route that one goes by; a server of before said none
+      ...(this.day.route.detects == null ? {} : { detects: this.day.route.detects }) };
     // the hours of a day ahead begin on it
     const isAhead = this.meant() !== null && this.day.past === false;
     const begun = this.begun ?? (isAhead ? null : this.#begins(plant));

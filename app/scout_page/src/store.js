@@ -149,7 +149,7 @@ export class Store {
 }
 
 const SENT = ["id", "at", "plant", "result", "count", "stage", "leaves", "notes", "lon", "lat",
-  "accuracy_m", "on", "after", "off_route", "undoes"];
+  "accuracy_m", "on", "after", "off_route", "undoes", "detects"];
 
 /** A record as the interface describes a finding. */
 export function asSent(record) {

@@ -74,6 +74,24 @@ test("a free find is off the route, and the route goes on", async () => {
   assert.ok(field.ahead.includes(0) && field.ahead[0] === 13);
 });
 
+test("each record says what the route that one goes by finds, and none where the route says nothing", async () => {
+  const day = aDay();
+  day.route.detects = 0.3;
+  const { season, field, sync } = await aField(new ASeason(day));
+  await field.tell("clean");
+  season.day = { ...day, plan: 9, route: { ...day.route, detects: 0.6 } };
+  await field.refresh();
+  await field.tell("clean");
+  await field.undo();
+  await sync.send();
+  const said = [...season.taken.values()];
+  assert.deepEqual(said.map((one) => one.detects), [0.3, 0.3, undefined]);
+  const silent = await aField();
+  await silent.field.tell("clean");
+  await silent.sync.send();
+  assert.ok(!("detects" in [...silent.season.taken.values()][0]));
+});
+
 test("all goes in once, byte for byte, and only then is forgotten", async () => {
   const { season, store, field, sync } = await aField();
   await field.addPhoto(field.photoOf(), PICTURE());

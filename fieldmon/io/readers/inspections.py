@@ -359,6 +359,7 @@ def _inspections(
     count[count == 0] = np.nan
     when, date = rows.when[records], rows.day[records]
     since_midnight = when - when.astype("datetime64[D]")
+    detects = np.full(len(records), np.nan) if rows.detects is None else rows.detects[records]
     return Inspections.of(
         plant[records],
         result,
@@ -367,6 +368,7 @@ def _inspections(
         count=count,
         who=rows.who[records],
         notes=rows.notes[records],
+        detects=detects,
     )
 
 

@@ -15,7 +15,7 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.ranges import MOST_COUNTED
+from fieldmon.compute.ranges import DETECTS, MOST_COUNTED
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, ObservationError
 from fieldmon.infestation.inspections import RESULT_NAMES
@@ -132,7 +132,7 @@ def phone_file_of(source: Source, workroom: Workroom) -> Imported[PhoneFile]:
 def fields_of(said: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of a finding from how the interface of a season describes it.
 
-    Raise `ObservationError` where a time or a day is none.
+    Raise `ObservationError` where a time, a day or a chance is none.
     """
     lon, lat, result = said.get("lon"), said.get("lat"), said.get("result")
     plant = said.get("plant")
@@ -151,7 +151,23 @@ def fields_of(said: Mapping[str, Any]) -> dict[str, Any]:
         "after": moment(said["after"]) if said.get("after") else None,
         "off_route": said.get("off_route", False),
         "undoes": said.get("undoes", ""),
+        "detects": _chance(said.get("detects")),
     }
+
+
+def _chance(said: object) -> float | None:
+    """Return a chance to see an infested plant; raise `ObservationError` where it is none."""
+    if said is None:
+        return None
+    number = said if isinstance(said, int | float) and not isinstance(said, bool) else math.nan
+    if rule := DETECTS.broken(number):
+        raise ObservationError(
+            worded(
+                "The chance to see an infested plant (detects) must be {rule}, but it says {said}.",
+                rule=rule, said=str(said)[:60],
+            )
+        )  # fmt: skip
+    return float(number)
 
 
 def moment(text: str) -> datetime:

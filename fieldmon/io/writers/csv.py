@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 #: columns that are left empty for whoever inspects; of one of a team ``who`` is its name
 TO_FILL_IN = ("found", "count", "who", "notes")
 _BEFORE = ("row", "number")
-_AFTER = ("plant", "lon", "lat", "arrive", "arrive_s", "inspect_s", "chance", "plot")
+_AFTER = ("plant", "lon", "lat", "arrive", "arrive_s", "inspect_s", "chance", "detects", "plot")
 _FORMULA = ("=", "+", "-", "@")
 
 
@@ -49,7 +49,7 @@ def _cells(stop: Stop, plan: HandoffPlan) -> tuple[object, ...]:
         stop.plant,
         f"{stop.lon:.{DECIMALS}f}",
         f"{stop.lat:.{DECIMALS}f}",
-        *(stop.arrive, stop.arrive_s, stop.inspect_s, f"{stop.chance:.6f}"),
+        *(stop.arrive, stop.arrive_s, stop.inspect_s, f"{stop.chance:.6f}", stop.detects),
         safe_cell(plan.notes.plot),
     )
 

@@ -36,7 +36,8 @@ class Stop(NamedTuple):
 
     ``order``, ``block``, ``row``, ``number`` and ``face`` count from 1; ``plant`` is the plant's
     number in the grid, from 0. ``row_name`` is what the plot's file calls the row, where that is
-    more than its number. ``vertex`` tells where on the driven line the robot stands.
+    more than its number. ``vertex`` tells where on the driven line the robot stands, ``detects``
+    how likely it sees an infested plant there.
     """
 
     order: int
@@ -52,7 +53,8 @@ class Stop(NamedTuple):
     chance: float
     vertex: int
     block: int
-    row_name: str = ""
+    row_name: str
+    detects: float
 
     @property
     def plant_label(self) -> str:
@@ -96,6 +98,11 @@ class DrivenRoute(Protocol):
     @property
     def chance(self) -> Floats:
         """Return believed chance of infestation at each stop, ``(k,)``."""
+        ...
+
+    @property
+    def detects(self) -> Floats:
+        """Return chance at each stop that an infested plant is seen, ``(k,)``."""
         ...
 
     @property
@@ -257,6 +264,7 @@ class HandoffPlan:
             route.line_stop.tolist(),
             block_label(self.grid, route.plant).tolist(),
             [plain_text(self.grid.row_names.get(line, "")) for line in label.line.tolist()],
+            np.round(route.detects, 6).tolist(),
             strict=True,
         )
         return tuple(Stop(*values) for values in columns)

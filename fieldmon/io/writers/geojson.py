@@ -65,7 +65,8 @@ def route_geojson(route: DrivenRoute, notes: RouteNotes) -> str:
 
     A stop lies at its plant; its ``line_vertex`` tells where on the line the robot stands for it.
     ``found``, ``count``, ``who`` and ``notes`` are empty, to be filled in by whoever inspects;
-    of one of a team ``who`` is its name.
+    of one of a team ``who`` is its name. ``detects`` comes back with them: the chance to see an
+    infested plant, by which a season reads them.
     """
     line_lonlat = np.round(route.line_lonlat(), DECIMALS)
     features = [_line_feature(route, notes, line_lonlat), *_stop_features(route, notes)]
@@ -119,6 +120,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
         route.arrive_s.tolist(),
         route.leave_s.tolist(),
         route.chance.tolist(),
+        route.detects.tolist(),
         route.line_stop.tolist(),
         block_label(grid, route.plant).tolist(),
         strict=True,
@@ -140,6 +142,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
                 **({} if notes.start is None else {"arrive": _clock(grid, notes.start, arrive_s)}),
                 "inspect_s": round(leave_s - arrive_s, 3),
                 "chance": round(chance, 6),
+                "detects": round(sees, 6),
                 "line_vertex": vertex,
                 "found": None,
                 "count": None,
@@ -147,7 +150,7 @@ def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]
                 "notes": None,
             },
         }
-        for order, (place, plant, row, number, arrive_s, leave_s, chance, vertex, block) in (
+        for order, (place, plant, row, number, arrive_s, leave_s, chance, sees, vertex, block) in (
             enumerate(columns, 1)
         )
     ]

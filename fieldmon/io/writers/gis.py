@@ -37,7 +37,7 @@ _SHOWN = {
     "skipped": ("could not look", qml.Symbol("marker", qml.GREY, 2.0, "cross2")),
     "": ("to inspect", qml.Symbol("marker", qml.YELLOW, 2.2)),
 }
-_NOT_FILLED_IN = {"fid", "plant", "arrive_s", "inspect_s", "chance"}
+_NOT_FILLED_IN = {"fid", "plant", "arrive_s", "inspect_s", "chance", "detects"}
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can name: equal days make equal files
 
 
@@ -142,6 +142,7 @@ def _stops(plan: HandoffPlan) -> gpd.GeoDataFrame:
             ("arrive_s", "arrive_s", "float64"),
             ("inspect_s", "inspect_s", "float64"),
             ("chance", "chance", "float64"),
+            ("detects", "detects", "float64"),
         )
     }
     for name, kind in (("found", object), ("count", "Int32"), ("who", object), ("notes", object)):

@@ -78,6 +78,7 @@ def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
         "arrive_s": stop.arrive_s,
         "inspect_s": stop.inspect_s,
         "chance": stop.chance,
+        "detects": stop.detects,
         "found": "",
         "count": "",
         "who": plan.notes.who or "",

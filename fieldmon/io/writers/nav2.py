@@ -177,6 +177,7 @@ def waypoints_yaml(plan: HandoffPlan) -> bytes:
             f"    number: {stop.number}",
             f"    arrive_s: {stop.arrive_s}",
             f"    pause_s: {stop.inspect_s}",
+            f"    detects: {stop.detects}",
         ]
     return "\n".join([*lines, ""]).encode()
 

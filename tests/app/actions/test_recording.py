@@ -119,6 +119,19 @@ def test_a_file_of_findings_is_recorded_once(season_app, season):
     assert season().history.inspections.result.tolist() == [1, 0]
 
 
+def test_what_a_route_file_says_that_it_finds_reaches_the_season_and_its_page(season_app, season):
+    go(season_app, "record")
+    for detects, said in ((30, "record 2 of rex.csv says '30'"), (0.3, "2 recorded")):
+        table = f"row,number,found,who,detects\n1,1,yes,Rex,0.3\n1,2,no,Rex,{detects}\n".encode()
+        boxed(season_app.file_uploader, "findings_file").upload("rex.csv", table).run()
+        season_app.button(key="record_file").click().run()
+        (told,) = [*season_app.error, *season_app.success]
+        assert said in told.value
+    assert season().history.detections.tolist() == [0.3, 0.3]
+    go(season_app, "season")
+    assert "2 inspections find 30 % of what is there, as was said with them" in texts_of(season_app)
+
+
 def test_a_file_of_which_some_was_left_out_is_a_warning_that_can_be_closed(season_app, season):
     go(season_app, "record")
     table = b"row,number,found,count\n1,1,yes,3\n999,1,yes,\n"

@@ -7,7 +7,6 @@ import zipfile
 from contextlib import nullcontext
 from dataclasses import replace
 from types import SimpleNamespace
-from unittest import mock
 
 import numpy as np
 import pytest
@@ -16,11 +15,7 @@ from app.actions import sharing_plots
 from app.state import estate, shared_plots
 from app.state.shared_plots import EstateCrew
 from app.words import texts
-from fieldmon.monitoring.estate_day import EstatePlot
-from fieldmon.planning.members import team_of
-from fieldmon.plot.robot import Robot, scout
 from tests.app.driving import go, layer, map_of, press, texts_of
-from tests.monitoring.seasons import BEGINS, a_season
 
 
 def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
@@ -81,23 +76,6 @@ def test_a_few_plots_that_wait_are_named_and_very_many_are_counted(said):
         assert told.startswith(words)
         assert len(told) < 120
         said.clear()
-
-
-def test_whose_results_a_season_would_read_otherwise_is_said(said, tmp_path):
-    robot = SimpleNamespace(members=lambda _: team_of(1, Robot(hours=1)), move_min=15)
-    scouts = SimpleNamespace(members=lambda _: team_of(1, scout()), move_min=15)
-    season = a_season(tmp_path / "gate.gpkg", robot=Robot(hours=1))
-    known = EstatePlot.of(season, BEGINS)
-    ready = shared_plots._Ready(SimpleNamespace(name="Gate"), "gate", "naive", known)
-    with mock.patch.object(shared_plots, "_ready", return_value=ready):
-        made = [shared_plots.planned([None], crew, lambda *_: None) for crew in (robot, scouts)]
-    assert [one.otherwise for one in made] == [(), (("robot-1", "Gate"),)]
-    sharing_plots._say(replace(made[1], turns=()))
-    assert "but \u2068robot-1\u2069 would find another share" in said[-1]
-    assert said[-1].endswith("and then plan the day again, in: \u2068Gate\u2069.")
-    many = tuple(("robot-1", f"plot {k}") for k in range(40))
-    sharing_plots._say(shared_plots.SharedPlots((), otherwise=many))
-    assert said[-1].endswith("in 40 seasons.")
 
 
 def test_where_no_plot_is_due_none_is_planned_until_those_seen_are_asked_for(app, monkeypatch):

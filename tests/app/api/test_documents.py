@@ -75,6 +75,24 @@ def test_the_day_is_what_the_season_says(served, scout):
     assert np.abs(line - route.line_lonlat()).max() < 1e-7
 
 
+def test_the_route_says_what_it_was_planned_to_find_until_it_is_planned_anew(served, scout):
+    season = served.season
+
+    def told(document, *more):
+        return json.loads(document(season, scout, BEGINS, *more))["route"]["detects"]
+
+    assert told(day_document) == season.settings.robot.detects == 0.84
+    sees_less = replace(season.settings.robot, detection=1 / 3)
+    season.change(replace(season.settings, robot=sees_less), season.settings)
+    assert told(day_document) == 0.84
+    later = BEGINS + timedelta(days=1)
+    rest = json.loads(rest_document(season, scout, later, None))
+    assert rest["route"]["detects"] == 0.333333
+    day = json.loads(day_document(season, scout, later))
+    jsonschema.validate(day, description.DAY)
+    assert day["route"]["detects"] == 0.333333
+
+
 def test_who_has_a_part_is_sent_to_its_rows(served):
     scouts.withdraw_key(served.season, "Ann")
     key = scouts.let_in(served.season, "Ben", (1, 5))

@@ -1,5 +1,6 @@
 """What inspections tell of the insects, in words with intervals."""
 
+from datetime import date
 from types import SimpleNamespace
 
 import pytest
@@ -9,22 +10,25 @@ from app.show import learnt
 from app.words import texts
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.learnt import Learnt
+from fieldmon.monitoring.told_detection import ToldOtherwise
 from tests.app.driving import apart
 
 DETECTION = Learnt("detection", 0.84, 0.71, 0.94)
+ON = date(2026, 11, 2)
 
 
 @pytest.fixture
 def shown(monkeypatch):
     """Return what is shown of given estimates."""
 
-    def show(*estimates, inspected=3, taught=None):
+    def show(*estimates, inspected=3, taught=None, said=()):
         lines = []
         monkeypatch.setattr(st, "markdown", lines.append)
         monkeypatch.setattr(st, "caption", lines.append)
         monkeypatch.setattr(learnt.chosen_day, "learnt", lambda _: estimates)
         progress = SimpleNamespace(inspected=inspected)
         monkeypatch.setattr(learnt.chosen_day, "progress", lambda _: progress)
+        monkeypatch.setattr(learnt.chosen_day, "told_otherwise", lambda _: said)
         learnt.show(SimpleNamespace(season=SimpleNamespace(taught=lambda: taught)))
         return apart("\n".join(lines[1:])).splitlines()
 
@@ -52,6 +56,19 @@ def test_before_anything_was_inspected_it_is_said_to_be_believed_only(shown):
 
 def test_an_earlier_season_is_named(shown):
     assert shown(DETECTION, taught=worded("Begun with it."))[0].startswith("Begun with it. ")
+
+
+def test_another_detection_that_was_said_with_inspections_is_shown_with_the_seasons_own(shown):
+    said = [ToldOtherwise("Ben", 0.3, 0.84, ON, ON, 5), ToldOtherwise("", 0.6, 0.84, ON, ON, 1)]
+    for estimates in ((DETECTION,), ()):
+        *_, ben, nobody = shown(*estimates, said=said)
+        assert ben.startswith("- Ben, ")
+        assert ben.endswith(
+            ": 5 inspections find 30 % of what is there, as was said with them; the season's own "
+            "is 84 %."
+        )
+        assert nobody.startswith("- nobody named, ")
+        assert ": 1 inspection finds 60 % of" in nobody
 
 
 def test_a_season_that_traces_to_neighbours_only_says_so(shown):

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
+from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem, ObservationError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.import_report import Severity
@@ -44,6 +44,27 @@ def test_counts_alone_say_whether_and_how_many():
     assert findings.plant.tolist() == [1, 2, 3, 5]
     assert findings.result.tolist() == [CLEAN, FOUND, FOUND, FOUND]
     np.testing.assert_array_equal(findings.count, [np.nan, 4, np.nan, np.nan])
+
+
+def test_what_inspections_find_is_read_with_each_and_may_be_left_out():
+    said = read("plant,found,detects\n1,yes,0.3\n2,no,\n3,no,0.84\n").value
+    assert said.detects.tolist()[::2] == [0.3, 0.84]
+    assert np.isnan(said.detects[1])
+    assert np.isnan(read("plant,found\n1,yes\n").value.detects[0])
+    # as a spreadsheet saves it where decimals have a comma
+    said = read("plant;found;detects\n1;yes;0,375\n2;no;0,3\n").value
+    assert said.detects.tolist() == [0.375, 0.3]
+    # whether something was detected is a result, as ever
+    assert read("plant,detection\n1,yes\n2,no\n").value.result.tolist() == [FOUND, CLEAN]
+
+
+@pytest.mark.parametrize("cell", ["30", "30 %", "0", "-0.3", "1.01", "often", "inf"])
+def test_what_is_no_chance_to_see_anything_is_refused_with_file_record_and_value(cell):
+    with pytest.raises(ObservationError) as refused:
+        read(f"plant,found,detects\n1,yes,0.3\n2,no,{cell}\n", name="rex.csv")
+    said = str(refused.value)
+    assert "must be above 0, and 1 at most" in said
+    assert f"record 2 of rex.csv says {cell!r}" in said
 
 
 def test_result_and_count_that_contradict_are_left_out_unless_one_asks():

@@ -41,6 +41,14 @@ def test_findings_and_photos_come_out_as_they_were_told(tmp_path):
     assert (photo.fields["finding"], photo.fields["data"]) == (ID, b"\xff\xd8\xffx")
 
 
+def test_what_a_finding_detects_is_read_and_what_is_no_chance_is_left_out_with_its_value():
+    read = read_phone_file(saved([GOOD | {"detects": 0.3}, GOOD, GOOD | {"detects": 1.4}]))
+    assert [one.fields["detects"] for one in read.value.findings] == [0.3, None]
+    (said,) = read.messages
+    assert said.feature == "finding 3"
+    assert "must be above 0, and 1 at most, but it says 1.4" in said.sentence
+
+
 def test_a_file_says_what_the_clock_said_and_one_from_before_does_not():
     clocks = {"clock": "2026-04-07T06:00:00.000Z", "time": "2026-04-06T06:00:00.000Z"}
     read = read_phone_file(saved([GOOD], saved=clocks)).value.of("gate").by("Ann")

@@ -48,6 +48,7 @@ def wanted(plan):
         "arrive_s": route.arrive_s.round(3).tolist(),
         "inspect_s": (route.leave_s - route.arrive_s).round(3).tolist(),
         "chance": route.chance.round(6).tolist(),
+        "detects": route.detects.round(6).tolist(),
         "lon": route.stops_lonlat()[:, 0].round(8).tolist(),
         "lat": route.stops_lonlat()[:, 1].round(8).tolist(),
     }
@@ -103,7 +104,9 @@ def from_kml(data, _):
 def from_waypoints(data, _):
     waypoints = yaml.load(data, yaml.CSafeLoader)["waypoints"]
     rows = [waypoints[f"waypoint{k}"] for k in range(len(waypoints))]
-    told = {name: [row[name] for row in rows] for name in ("stop", "plant", "row", "number")}
+    told = {
+        name: [row[name] for row in rows] for name in ("stop", "plant", "row", "number", "detects")
+    }
     return told | {"arrive_s": [row["arrive_s"] for row in rows],
                    "inspect_s": [row["pause_s"] for row in rows]}  # fmt: skip
 
@@ -150,13 +153,14 @@ def test_waypoints_of_gpx_say_plant_arrival_pause_and_chance_in_words(tmp_path, 
         assert point.findtext(f"{GPX}name").startswith(f"{told['stop'][k]:03d} R{told['row'][k]}/")
         said = point.findtext(f"{GPX}desc")
         assert point.findtext(f"{GPX}cmt") == said, "gpsbabel keeps one of the two"
-        plant, arrive, pause, chance = said.split("; ")
+        plant, arrive, pause, chance, detects = said.split("; ")
         assert plant == f"plant {told['plant'][k]}"
         assert arrive == f"arrive {told['arrive'][k]}"
         assert float(pause.split()[1]) == pytest.approx(told["inspect_s"][k])
         assert float(chance.split()[1].rstrip("%")) == pytest.approx(
             100 * told["chance"][k], abs=0.06
         )
+        assert float(detects.removeprefix("detects ")) == pytest.approx(told["detects"][k])
 
 
 def test_the_line_of_a_geojson_says_when_the_robot_is_where(tmp_path):

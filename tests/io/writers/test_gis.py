@@ -106,7 +106,7 @@ def test_in_the_form_of_a_stop_only_what_is_filled_in_stands_beside_what_names_i
     widgets = {one.get("name"): one.find("editWidget").get("type") for one in form}
     columns = set(pyogrio.read_info(path, layer="stops")["fields"])
     hidden = {name for name, kind in widgets.items() if kind == "Hidden"}
-    assert hidden == {"plant", "arrive_s", "inspect_s", "chance"}
+    assert hidden == {"plant", "arrive_s", "inspect_s", "chance", "detects"}
     assert widgets.keys() - hidden == {"found", "count"}
     assert hidden < columns
     assert {"who", "notes", "time", "stop", "row", "number", "face"} <= columns - hidden

@@ -213,6 +213,18 @@ def _filled_in(path, said):
 
 
 @pytest.mark.parametrize("ending", ["csv", "geojson", "gpkg", "kml", "gpx"])
+def test_what_each_stop_finds_comes_back_from_every_format(tmp_path, ending):
+    plan = usual()
+    detects = np.where(np.arange(len(plan.route)) % 2, 1 / 3, 0.84)
+    plan = replace(plan, route=replace(plan.route, detects=detects))
+    (path,) = write_handoff(plan, tmp_path / f"day.{ending}")
+    _filled_in(path, {0: (True, 3, "on the fruit"), 1: (False, None, ""), 4: (False, None, "dry")})
+    read = read_inspections(path, plan.grid).value
+    assert read.detects.tolist() == [0.84, 0.333333, 0.84]
+    assert read.notes.tolist() == ["on the fruit", "", "dry"]
+
+
+@pytest.mark.parametrize("ending", ["csv", "geojson", "gpkg", "kml", "gpx"])
 @pytest.mark.parametrize("make", [usual, crooked])
 def test_a_day_filled_in_alike_comes_in_alike_from_every_format(tmp_path, make, ending):
     """Planned arrivals are no times of inspections, and what is planned is no note of a scout."""

@@ -7,10 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.ranges import DETECTS
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ChoiceNeeded
+from fieldmon.errors import ChoiceNeeded, ObservationError, SettingError
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find, is_confidence, is_id, plain, recognised
+from fieldmon.io.parse.values import told_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -30,6 +32,7 @@ _NAMES = {
     "prüfer kontrolleur quién quien inspecteur בודק פקח שםהבודק מי",
     "notes": "notes note remark remarks comment comments bemerkung bemerkungen notiz kommentar "
     "notas observaciones remarques commentaire cmt הערה הערות",
+    "detects": "detects",
     "face": "face side seite cara lado צד",
     "id": "plantid idplant",
     "leaf": "leaf leafno leafnr leafnumber leafid blatt blattnr blattnummer hoja numerohoja "
@@ -40,7 +43,7 @@ _IDS = frozenset(_PLAIN["id"])
 #: what a waypoint given out says of its plan, in front of what its scout noted: see `writers.gpx`
 PLANNED = re.compile(
     r"^plant \d+; (?:arrive (?P<arrive>[^;]*)|after [^;]* s); stay [^;]* s; "
-    r"chance [\d.]+ ?%[\s.,;]*"
+    r"chance [\d.]+ ?%(?:; detects (?P<detects>[\d.]+(?<!\.)))?[\s.,;]*"
 )
 _BLANK = frozenset({"", "nan", "nat", "none", "null", "<na>"})
 
@@ -144,6 +147,37 @@ def notes_in(layer: Layer) -> NDArray[np.str_]:
     """Return what was noted of each ``(n,)``, without the plan that a waypoint given out says."""
     noted = texts_in(layer, own_column("notes", layer))
     return np.array([PLANNED.sub("", note) for note in noted.tolist()], dtype=np.str_)
+
+
+def detects_in(layer: Layer, columns: InspectionColumns, file: str) -> NDArray[np.float64]:
+    """Return what inspections find of what is there ``(n,)``; NaN where nothing is said.
+
+    Raise `ObservationError` where what is said is no such chance: in which file and record.
+    """
+    name = own_column("detects", layer, columns)
+    cells = texts_in(layer, name).tolist()
+    if name is None:
+        plans = [PLANNED.match(one) for one in texts_in(layer, own_column("notes", layer)).tolist()]
+        cells = [(plan and plan["detects"]) or "" for plan in plans]
+    known = {cell: _number(cell) for cell in set(cells)}
+    for record, cell in enumerate(cells, 1):
+        if cell and (rule := DETECTS.broken(known[cell])):
+            raise ObservationError(
+                worded(
+                    "The chance to see an infested plant (detects) must be {rule}, but record "
+                    "{record} of {name} says {cell!r}. Write 0.3 for 30 %, or leave it empty: "
+                    "then the season's own counts.",
+                    rule=rule, record=record, name=file, cell=cell,
+                )
+            )  # fmt: skip
+    return np.array([known[cell] for cell in cells], np.float64)
+
+
+def _number(cell: str) -> float:
+    try:
+        return told_number(cell, "detects", DETECTS.most) if cell else np.nan
+    except SettingError:
+        return np.nan
 
 
 def arrivals_in(layer: Layer, columns: InspectionColumns) -> NDArray[np.str_]:

@@ -56,6 +56,8 @@ class InspectionRows:
         where nothing is. None: all empty.
     rest
         What all other columns say that tells it from another. None: nothing.
+    detects
+        Chance to see an infested plant that is inspected; NaN where none is said. None: all NaN.
     """
 
     plant: NDArray[np.int64]
@@ -79,6 +81,7 @@ class InspectionRows:
     row_called: NDArray[np.str_] | None = None
     plant_called: NDArray[np.str_] | None = None
     rest: NDArray[np.str_] | None = None
+    detects: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         """Return the number of records."""

@@ -16,9 +16,11 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, guessed, seen
+from fieldmon.io.options import source_name
 from fieldmon.io.parse.columns import is_position, plain
 from fieldmon.io.readers.inspection_file.columns import (
     columns_of,
+    detects_in,
     is_own,
     notes_in,
     texts_in,
@@ -54,22 +56,22 @@ def rows_of(
     is read: QField and QGIS edit a layer of plants, of stops or of inspections in place.
     """
     if options.member is not None or options.layer is not None:
-        return rows_in(open_layer(source, options, workroom), options)
+        return rows_in(open_layer(source, options, workroom), options, source_name(source))
     known = _known_layers(layers_of(source, workroom))
     said_nothing: list[Imported[InspectionRows]] = []
     for info in known:
         own = replace(options, member=info.member, layer=info.layer)
         try:
-            read = rows_in(open_layer(source, own, workroom), own)
+            read = rows_in(open_layer(source, own, workroom), own, source_name(source))
         except (ChoiceNeeded, FileProblem):
             continue  # this one has no columns for inspections
         said = seen(worded("Findings were read from layer {layer}.", layer=info.layer))
         if len(read.value):
             return Imported(read.value, (said, *read.messages))
         said_nothing.append(Imported(read.value, (said, *read.messages)))
-    return (
-        said_nothing[0] if said_nothing else rows_in(open_layer(source, options, workroom), options)
-    )
+    if said_nothing:
+        return said_nothing[0]
+    return rows_in(open_layer(source, options, workroom), options, source_name(source))
 
 
 def _known_layers(infos: tuple[LayerInfo, ...]) -> list[LayerInfo]:
@@ -80,8 +82,8 @@ def _known_layers(infos: tuple[LayerInfo, ...]) -> list[LayerInfo]:
     return sorted(ours, key=lambda info: _LAYERS.index(info.layer.casefold()))
 
 
-def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows]:
-    """Return what one layer or table says of plants that were inspected."""
+def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Imported[InspectionRows]:
+    """Return what one layer or table of a `file` says of plants that were inspected."""
     layer, messages = _each_point(*_without_lines(layer))
     layer = by_day(_without_undone(layer), options)
     columns = columns_of(layer, options)
@@ -135,6 +137,7 @@ def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows
         row_called=texts_in(layer, columns.line),
         plant_called=texts_in(layer, columns.number or columns.plant),
         rest=_rest(layer, columns, options),
+        detects=detects_in(layer, columns, file or layer.name),
     )
     kept = InspectionRows(**{name: values[said] for name, values in vars(whole).items()})
     mixed = _mixed(kept, columns.species, texts_in(layer, columns.species)[said])
@@ -144,7 +147,9 @@ def rows_in(layer: Layer, options: InspectionOptions) -> Imported[InspectionRows
 
 def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> NDArray[np.str_]:
     """Return what columns say that are not read ``(n,)``, where they tell things apart."""
-    read = {name for name in layer.columns if is_position(name) or is_own("who", name)}
+    said = ("who", "detects")
+    read = {name for name in layer.columns
+            if is_position(name) or any(is_own(role, name) for role in said)}  # fmt: skip
     read |= {name for name in columns if name} | set(dict(options.columns).values())
     told = telling(layer, np.arange(len(layer)), read)
     cells = ["\0".join(row) for row in zip(*told.values(), strict=True)]

@@ -16,6 +16,10 @@ from ..words import texts
 from ..words.language import in_words
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fieldmon.monitoring import Caution
+    from fieldmon.monitoring.advice import Advice
     from fieldmon.planning.plan import DayPlan
 
     from ..state.choices import Choices
@@ -26,9 +30,19 @@ def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
     if choices.season is None:
         return
     found = choices.season.cautions(choices.on, choices.units.in_sentences(choices.on))
-    said = [in_words(one.sentence) for one in found if not kinds or one.kind in kinds]
+    _warn([one for one in found if not kinds or one.kind in kinds])
+
+
+def show_if_treated(choices: Choices, advice: Advice, product: str) -> None:
+    """Show what treating the zones with a product would bring."""
+    units = choices.units.in_sentences(choices.on)
+    _warn(choices.season.cautions_if_treated(choices.on, product, advice.sprayed, units))
+
+
+def _warn(found: Iterable[Caution]) -> None:
+    said = dict.fromkeys(in_words(one.sentence) for one in found)
     if said:
-        st.warning("\n".join(f"- {sentence}" for sentence in dict.fromkeys(said)))
+        st.warning("\n".join(f"- {sentence}" for sentence in said))
 
 
 def show_today(choices: Choices, plan: DayPlan) -> None:

@@ -28,6 +28,7 @@ def show(choices: Choices) -> None:
     shown.headline(choices, advice)
     deciding.threshold()
     shown.figures(choices, advice, asked.product())
+    cautions.show_if_treated(choices, advice, asked.product())
     deciding.assumed(advice)
     shown.zones(advice)
     deciding.files(choices, advice)

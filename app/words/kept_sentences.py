@@ -62,7 +62,12 @@ class KeptWords:
         if not all(literal in sentence for literal in self.literals):
             return None
         found = self._pattern.fullmatch(sentence)
-        return None if found is None else found.groupdict()
+        if found is None:
+            return None
+        told = found.groupdict()
+        # what begins with a blank must not take the sentence before for it
+        begins = next(iter(told.values()), "") if self.words.startswith("{") else ""
+        return None if _ENDS.search(begins) else told
 
 
 def _for_any(form: str) -> str:

@@ -20,7 +20,7 @@ from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
 from fieldmon.compute import wording
-from fieldmon.compute.wording import Worded, estimate, joined, worded, written
+from fieldmon.compute.wording import KeptText, Worded, counted, estimate, joined, worded, written
 from fieldmon.reports.language import ENGLISH as ENGLISH_REPORTS
 from fieldmon.reports.language import ReportLanguage
 
@@ -38,6 +38,10 @@ _SHARE_APART = frozenset({ENGLISH, "es"})
 FOLDER = Path(__file__).with_name("languages")
 #: the context of the library's sentences
 LIBRARY = "fieldmon"
+# so many things, as `counted` says them
+_COUNTED = re.compile(r"([\d,]*\d) ([a-z][a-z ]*)")
+# how the contexts of the names of shipped pests begin
+_PEST_TITLES = "PEST_TITLES."
 #: names, signs and files, which are the same in every language
 SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_name"})
 
@@ -49,7 +53,7 @@ _LEADING = re.compile(r"\](?=[\[(:])|!(?=\[)|:(?=//)|www(?=\.)|(?<=\S)@(?=\S)", 
 _UNIT = re.compile(r"(?<=\d) (?=%|(?:h|m|km|ha|ft|mi|l|°C)\b)")
 _SHARE = re.compile(r"(?<=\d) (?=%)")
 
-_NUMBER = re.compile(r"[+−-]?\d[\d,]*(\.\d+)?")
+_NUMBER = re.compile(r"[+−-]?\d[\d,]*(\.\d+)?( %)?")
 
 _NOW: ContextVar[str | None] = ContextVar("language", default=None)
 _ASKED: list[Callable[[], str]] = []
@@ -212,6 +216,13 @@ class _Catalogue(gettext.GNUTranslations):
         keys = (key for key in texts_ if isinstance(key, str))
         return [key.removeprefix(before) for key in keys if key.startswith(before)]
 
+    @cache  # noqa: B019 - there are three, for good
+    def pest_titles(self) -> dict[str, str]:
+        """Return the names of shipped pests by their English ones: the library names them so."""
+        texts_: dict[object, str] = self._catalog  # type: ignore[attr-defined]
+        keys = (key for key in texts_ if isinstance(key, str) and key.startswith(_PEST_TITLES))
+        return {key.partition("\x04")[2]: texts_[key] for key in keys}
+
 
 class _Unknown(gettext.NullTranslations):
     """Says nothing of what a catalogue has no words for."""
@@ -317,7 +328,7 @@ def _said(sentence: object, language: str) -> str | None:
     if isinstance(sentence, BaseException) and sentence.args:
         sentence = sentence.args[0]
     if not isinstance(sentence, Worded):
-        return None
+        return _said_again(sentence, language) if isinstance(sentence, KeptText) else None
     found = _catalogue(language)
     if sentence.parts:
         parts = {part: _said(part, language) for part in sentence.parts}
@@ -329,6 +340,7 @@ def _said(sentence: object, language: str) -> str | None:
         form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.number)
     else:
         form = found.pgettext(LIBRARY, sentence.words)
+        form = form or found.pest_titles().get(sentence.words, "")
     if not form and _is_wordless(sentence.words):
         apart = language in _SHARE_APART
         form = sentence.words if apart else sentence.words.replace(" %", "%")
@@ -366,14 +378,27 @@ def _one_again(sentence: str, language: str) -> str | None:
     words, blanks = told
     form = _catalogue(language).pgettext(LIBRARY, words)
     values = {
-        name: _one_again(value, language) or _number_again(value, language)
+        name: _one_again(value, language) or _counted_again(value, language)
         for name, value in blanks.items()
     }
     return _AsKept().vformat(form, (), values) if form else None
 
 
+def _counted_again(value: str, language: str) -> str:
+    """Return so many things, "7 zones", or a number, or what it is, in a language."""
+    if said := _COUNTED.fullmatch(value):
+        thing = said[2] if said[1] == "1" else said[2].removesuffix("s")
+        made = _said(counted(int(said[1].replace(",", "")), thing), language)
+        if made is not None:
+            return made
+    return _number_again(value, language)
+
+
 def _number_again(value: str, language: str) -> str:
-    return _separated(value, language) if _NUMBER.fullmatch(value) else value
+    if not _NUMBER.fullmatch(value):
+        return value
+    said = value if language in _SHARE_APART else value.replace(" %", "%")
+    return together(_separated(said, language))
 
 
 @cache

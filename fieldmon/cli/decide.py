@@ -95,7 +95,9 @@ class ZoneFileOptions:
             help="Litres per hectare in the zones, for the files.", callback=within(RATE_L_HA)
         ),
     ] = USUAL_RATE_L_HA
-    product: Annotated[str, typer.Option(help="What is sprayed, for the files.")] = ""
+    product: Annotated[
+        str, typer.Option(help="What is sprayed, for the files; it is held to its label.")
+    ] = ""
     output: Annotated[
         list[Path] | None,
         typer.Option(
@@ -265,6 +267,8 @@ def decide(
         short = " ".join([*said, advice.zones.sentence()])
     where = advice.said_of_zones(above=of_plants)
     typer.echo("\n".join([f"{when}, after the day's work.", threshold.sentence(), *said, *where]))
+    for caution in kept.cautions_if_treated(when, files.product, advice.sprayed):
+        typer.echo(f"warning: {caution.sentence}", err=True)
     refused = _write(_AdviceAsked(kept, when, advice, files.product), files.output or [])
     kept.advise(when, short)
     if refused is not None:

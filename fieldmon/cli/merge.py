@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,6 +11,9 @@ from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring import Season
 
 OtherCopy = Annotated[Path, typer.Argument(help="The other copy of the season; it is not changed.")]
 
@@ -30,6 +33,7 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     if other.exists() and other.samefile(season):
         raise SettingError(f"{other} must be another copy of the season, but it is the same file.")
     kept = Season(season)
+    early = _entered_early(kept)
     with working_folder() as folder:
         copy = Path(folder) / "other.gpkg"
         copy_season(other, copy)  # an older one is brought up to date in the copy
@@ -44,8 +48,13 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         typer.echo(
             "  numbered anew: batches have other numbers now than before; the log shows both"
         )
+    if done.chosen:
+        typer.echo(f"  taken over: {joined('; ', done.chosen)}")
     for sentence in done.contradictions:
         typer.echo(f"  differs: {sentence}")
+    for sentence in _entered_early(kept):
+        if sentence not in early:
+            typer.echo(f"  warning: {sentence}")
     if done.codes:
         typer.echo(
             f"  codes: of {joined(', ', [*dict.fromkeys(done.codes)])}. They read this season and "
@@ -54,3 +63,9 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     for sentence in done.overlaps:
         typer.echo(f"  codes: {sentence}")
     typer.echo("\n".join(lines(kept, kept.status(kept.day_meant()))))
+
+
+def _entered_early(season: Season) -> list[str]:
+    """Return who was where before entry was allowed: one copy may know who, the other why."""
+    beware = season.cautions(season.last_date())
+    return [one.sentence for one in beware if one.kind == "entered"]

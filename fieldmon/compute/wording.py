@@ -46,6 +46,15 @@ class Worded(str):  # noqa: SLOT000 - it holds what it was made of
         return made
 
 
+class KeptText(str):
+    """Sentences that were kept as plain English, as in a log, among those that are said now.
+
+    Who speaks another language knows them again by their words.
+    """
+
+    __slots__ = ()
+
+
 def written(value: Any, form: str) -> str:  # noqa: ANN401 - whatever can be written
     """Return a value as `format` writes it, but a share as all texts here have it.
 

@@ -150,10 +150,12 @@ def label_for(
 ) -> ProductLabel | None:
     """Return what the labels of a product allow; None: there is none of it.
 
-    Where several lines hold, since nobody said the crop or the pest, the strictest of each counts.
-    Which dose is the strictest is seen from the `dose` used and its water: without, none is.
+    Where none is for that crop and pest, all of the product hold (`of_others`). Where several lines
+    hold, since nobody said the crop or the pest, the strictest of each counts. Which dose is the
+    strictest is seen from the `dose` used and its water: without, none is.
     """
-    fit = [one for one in labels if one.fits(product, crop, pest)]
+    own = [one for one in labels if _same(one.product, product)]
+    fit = own if of_others(own, product, crop, pest) else _fitting(own, product, crop, pest)
     if len(fit) < 2:
         return fit[0] if fit else None
     doses = [one.max_dose for one in fit if one.max_dose is not None]
@@ -165,6 +167,23 @@ def label_for(
         min((one.max_uses for one in fit if one.max_uses is not None), default=None),
         "; ".join(dict.fromkeys(one.source for one in fit if one.source)),
     )  # fmt: skip
+
+
+def of_others(
+    labels: Iterable[ProductLabel], product: str, crop: str, pest: str
+) -> tuple[ProductLabel, ...]:
+    """Return the lines of a product where all are for another crop or pest, else none.
+
+    The other may be the same by another name: nobody knows that but the user.
+    """
+    own = [one for one in labels if _same(one.product, product) and one.source != SAID_BY_HAND]
+    return () if _fitting(own, product, crop, pest) else tuple(own)
+
+
+def _fitting(
+    labels: Iterable[ProductLabel], product: str, crop: str, pest: str
+) -> list[ProductLabel]:
+    return [one for one in labels if one.fits(product, crop, pest)]
 
 
 def _strictest(doses: list[Dose], used: Dose | None, water_l_ha: float | None) -> Dose | None:

@@ -226,6 +226,11 @@ class Advice:
         return sum(one.verdict == TREAT for one in self.said.zones)
 
     @property
+    def sprayed(self) -> NDArray[np.bool_]:
+        """Return ``(n,)`` the plants in the zones; all where there is none: whoever treats then."""
+        return self.zones.treated if len(self.zones) else np.ones(len(self.grid), np.bool_)
+
+    @property
     def litres(self) -> float:
         """Return what is sprayed in the zones altogether."""
         return self.zones.m2 / 10_000 * self.asked.rate_l_ha

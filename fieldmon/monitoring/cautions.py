@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from fieldmon.compute.units import Units
-from fieldmon.compute.wording import counted, figure, worded
-from fieldmon.decisions.labels import label_for, plain_name
+from fieldmon.compute.wording import counted, figure, first_few, worded
+from fieldmon.decisions.labels import label_for, of_others, plain_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -30,8 +30,10 @@ _Wait = TypeVar("_Wait", int, float)
 _Said = tuple["KeptTreatment", "ProductLabel | None"]
 #: uses of one mode-of-action group after another that breed resistance
 MOST_IN_A_ROW = 2
+# crops and pests of labels that a sentence names
+_MOST_LINES = 5
 # kinds of caution, the most urgent first
-_URGENT = ("entry", "harvest", "dose", "uses", "group", "waiting", "label")
+_URGENT = ("entry", "entered", "harvest", "dose", "uses", "group", "waiting", "label")
 
 
 @dataclass(frozen=True)
@@ -41,8 +43,8 @@ class Caution:
     Parameters
     ----------
     kind
-        ``"harvest"``, ``"entry"``, ``"group"``, ``"dose"``, ``"uses"``, ``"waiting"`` or
-        ``"label"``.
+        ``"harvest"``, ``"entry"``, ``"entered"``, ``"group"``, ``"dose"``, ``"uses"``,
+        ``"waiting"`` or ``"label"``.
     sentence
         What, where and from when on.
     batch
@@ -125,6 +127,11 @@ def _urgent_first(
         *(caution for one, label in said for caution in _of_dose(one, label, rules)),
     ]
     found.reverse()
+    return by_urgency(found)
+
+
+def by_urgency(found: Iterable[Caution]) -> tuple[Caution, ...]:
+    """Return cautions, the most urgent kind first; those of one kind stay in order."""
     return tuple(sorted(found, key=lambda one: _URGENT.index(one.kind)))
 
 
@@ -206,6 +213,19 @@ def counts_no_more(one: KeptTreatment, label: ProductLabel | None, why: str) -> 
         f"The treatment with {one.application.product or 'a product that nobody named'} on "
         f"{one.on} {why}: it does not count, nor do its warnings{wait}. If it was done, record it "
         f"again with: fieldmon treat"
+    )
+
+
+def same_plants_twice(one: KeptTreatment, other: KeptTreatment) -> str:
+    """Return that two sprayings with one product on one day may be one; "": of other plants."""
+    n = int(np.count_nonzero(one.place.plants & other.place.plants))
+    if not n:
+        return ""
+    product = one.application.product or "a product that nobody named"
+    first, second = sorted((one.batch, other.batch))
+    return (
+        f"Two sprayings of {counted(n, 'plant')} with {product} on {one.on}: batches {first} and "
+        f"{second}. Both count; undo one if it was the same."
     )
 
 
@@ -335,6 +355,26 @@ def _beyond(uses: NDArray[np.int64], most: int) -> list[tuple[int, int]]:
     return list(zip(numbers.tolist(), plants.tolist(), strict=True))
 
 
+def _of_another_crop(one: KeptTreatment, rules: RulesToKeep) -> Iterator[Caution]:
+    """Yield that no label of the product is for the crop and the pest, as they are written."""
+    said = one.application
+    lines = of_others(rules.labels, said.product, said.crop, said.pest)
+    if not lines:
+        return
+    each = dict.fromkeys(_crop_and_pest(line.crop, line.pest) for line in lines)
+    sentence = worded(
+        "The label of {product} in the season's table is for {lines}, but the treatment on {day} "
+        "says {said}. Until both are written alike, the strictest line of {product} counts.",
+        lines=first_few([*each], _MOST_LINES), said=_crop_and_pest(said.crop, said.pest),
+        **_named(one, rules.units),
+    )  # fmt: skip
+    yield Caution("label", sentence, one.batch)
+
+
+def _crop_and_pest(crop: str, pest: str) -> str:
+    return " / ".join(filter(None, (crop, pest)))
+
+
 def _of_dose(
     one: KeptTreatment, label: ProductLabel | None, rules: RulesToKeep
 ) -> Iterator[Caution]:
@@ -347,6 +387,7 @@ def _of_dose(
             )  # fmt: skip
             yield Caution("label", said, one.batch)
         return
+    yield from _of_another_crop(one, rules)
     if dose is None or label.max_dose is None:
         return
     share = dose.share_of(label.max_dose, one.application.water_l_ha)

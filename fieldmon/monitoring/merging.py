@@ -19,6 +19,7 @@ from itertools import combinations, count
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import first_few, worded
+from fieldmon.decisions.labels import plain_name
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import (
     phone_tables,
@@ -85,6 +86,8 @@ class Merged:
         Names of those whose keys hold and were not there, one for each key.
     overlaps
         A sentence for each two codes whose rows overlap.
+    chosen
+        Settings that were otherwise before, each from what to what, and the table of labels.
     """
 
     new: int
@@ -94,6 +97,7 @@ class Merged:
     treatments: int = 0
     codes: tuple[str, ...] = ()
     overlaps: tuple[str, ...] = ()
+    chosen: tuple[str, ...] = ()
 
 
 class MergedCopy(NamedTuple):
@@ -113,6 +117,10 @@ class MergedCopy(NamedTuple):
     gone
         Numbers of treatments that do not count any more: those that counted here alone, there
         alone, and (by their numbers here) in both.
+    chosen
+        As `Merged` has it.
+    alike
+        Numbers of each two treatments that count, one of each copy alone, of one day and product.
     """
 
     new: int
@@ -122,6 +130,8 @@ class MergedCopy(NamedTuple):
     codes: tuple[str, ...]
     numbers: Numbers
     gone: tuple[set[int], set[int], set[int]]
+    chosen: tuple[str, ...]
+    alike: tuple[tuple[int, int], ...]
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -156,10 +166,15 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     _write(db, schema.BATCHES, list(batches.values()), numbers=numbered)
     _write_routes(db, copies, _given_out(db, other))
     chosen = _once(copies, "settings", _CHOICE, "changed")
+    chosen_before = settings_log.as_written_now(settings_log.now(db))
     _write(db, schema.SETTINGS, chosen)
+    taken_over = settings_log.differences(
+        chosen_before, settings_log.as_written_now(settings_log.now(db))
+    )
     _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, "at"))
     tables_kept = [season_log.labels_kept(one) for one in (db, other)]
     labels, replaced_twice = _kept_last(copies, tables_kept)
+    taken_over += _other_labels(copies[0]["labels"], labels)
     _write(db, schema.LABELS, labels)
     for batch, _ in phone_tables.bring_together(db, phones):
         close_if_empty(db, batch)
@@ -174,7 +189,10 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         *_alike_but_for_labels(treated, held),
     )  # fmt: skip
     anew = {old: number for old, number in numbers[0].items() if old != number}
-    return MergedCopy(new, taken_back, said, n_treated, codes, anew, undone)
+    return MergedCopy(
+        new, taken_back, said, n_treated, codes, anew, undone, tuple(taken_over),
+        tuple(_of_one_product(treated, held)),
+    )  # fmt: skip
 
 
 def _changed_treatments(
@@ -634,12 +652,24 @@ def _kept_last(
     last = [(max(kept[k].values(), default=""), own[k][-1:], repr(lines[k])) for k in (0, 1)]
     if bool(own[0]) != bool(own[1]):
         return tables[int(bool(own[1]))], ()
-    names = sorted({line[0] for line in {*lines[0]} ^ {*lines[1]}})
     said = (
-        f"The table of labels differs ({first_few(names, 3)}): each copy replaced it. What was "
-        f"kept last counts, as a whole: the one {'here' if last[0] > last[1] else 'there'}."
+        f"The table of labels differs ({_products_apart(*tables)}): each copy replaced it. "
+        "What was kept last counts, as a whole: "
+        f"the one {'here' if last[0] > last[1] else 'there'}."
     )
     return tables[int(last[1] > last[0])], (said,)
+
+
+def _products_apart(one: list[Row], other: list[Row]) -> str:
+    """Return the first products of which two tables of labels say something else."""
+    lines = [{_key(row, schema.LABELS.names) for row in table} for table in (one, other)]
+    return first_few(sorted({line[0] for line in lines[0] ^ lines[1]}), 3)
+
+
+def _other_labels(before: list[Row], after: list[Row]) -> list[str]:
+    """Return that the table of labels is another one now, if it is."""
+    apart = _products_apart(before, after)
+    return [f"table of labels ({apart})"] if apart else []
 
 
 def _members(team: str) -> str:
@@ -732,6 +762,26 @@ def _alike_but_for_labels(
                 f"Treatments with {named}, batches {one['batch']} and {other['batch']}, say the "
                 f"same but for {differ}{why}. Both count; if they are one, undo a batch."
             )
+
+
+def _of_one_product(
+    treated: list[Row], held: list[set[tuple[str | None, int | None]]]
+) -> Iterator[tuple[int, int]]:
+    """Yield the numbers of each two treatments of one day and product that people may have doubled.
+
+    Both count, and one is of each copy: `held` is as above. What differs in what a label may add
+    alone is told there.
+    """
+    same: dict[tuple[str, str], list[tuple[int, Row, list[bool]]]] = {}
+    for number, row in enumerate(treated, 1):
+        of = [(row["digest"], row["batch"]) in had for had in held]
+        if row["undone"] == COUNTS and not all(of):
+            product = row["date"], plain_name(row["product"] or "")
+            same.setdefault(product, []).append((number, row, of))
+    for one, other in (pair for rows in same.values() for pair in combinations(rows, 2)):
+        alike = treatments.but_for_labels(one[1]) == treatments.but_for_labels(other[1])
+        if one[2] != other[2] and not alike:
+            yield one[0], other[0]
 
 
 def _or_none(value: object) -> str:

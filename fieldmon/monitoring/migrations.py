@@ -59,6 +59,11 @@ def _corrections_keep_what_was(db: sqlite3.Connection) -> None:
         add_column(db, "outside_changes", column)
 
 
+def _undone_changes_are_named(db: sqlite3.Connection) -> None:
+    """Version 13 did not say of settings which change they take back, if any."""
+    add_column(db, "settings", "undoes TEXT")
+
+
 def _records_come(db: sqlite3.Connection) -> None:
     """Version 6 knew of treatments only where, when, how well and the product; it had no log."""
     _applications_say_all(db)
@@ -95,4 +100,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     10: _corrections_keep_what_was,
     11: _applications_say_all,
     12: _inspections_say_what_they_find,
+    13: _undone_changes_are_named,
 }

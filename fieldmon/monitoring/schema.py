@@ -11,7 +11,7 @@ from fieldmon.monitoring.qgis_styles import add_asked_styles, add_photo_styles, 
 if TYPE_CHECKING:
     import sqlite3
 
-VERSION = 13
+VERSION = 14
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
@@ -24,7 +24,7 @@ META = GeoPackageTable(
 )
 SETTINGS = GeoPackageTable(
     "settings",
-    ("name TEXT NOT NULL", "value TEXT NOT NULL", "changed TEXT NOT NULL"),
+    ("name TEXT NOT NULL", "value TEXT NOT NULL", "changed TEXT NOT NULL", "undoes TEXT"),
     None,
     "Settings of the season as JSON; the last of a name counts.",
 )

@@ -257,11 +257,13 @@ class Season(SeasonPlans, SeasonFrames):
             )
             settings = settings_log.undo(db)
             _refuse_other_days(db, begins, settings.begins)
-            self._log_change(db, before, who)
+            self._log_change(db, before, who, back=True)
             self._refresh(db)
         return settings
 
-    def _log_change(self, db: sqlite3.Connection, before: settings_log.Parts, who: str) -> None:
+    def _log_change(
+        self, db: sqlite3.Connection, before: settings_log.Parts, who: str, *, back: bool = False
+    ) -> None:
         now = settings_log.as_written_now(settings_log.now(db))
         names = [name for name in now if now[name] != before.get(name)]
         season_log.append(
@@ -269,6 +271,7 @@ class Season(SeasonPlans, SeasonFrames):
             states={"settings": season_log.settings_state(db)},
             names=", ".join(names), now={name: now[name] for name in names},
             said="; ".join(settings_log.differences(before, now)),
+            **({"back": True} if back else {}),
         )  # fmt: skip
 
     @contextmanager

@@ -77,6 +77,7 @@ class LogEntry:
     def sentence(self) -> str:
         """Return what happened, in words."""
         what = _Blank(self.what)
+        kind = "changed back" if self.kind == "changed" and what.get("back") else self.kind
         if isinstance(number := what.get("expected"), int | float):
             what["expected"] = estimate(number)
         if self.kind == "changed":  # earlier versions wrote the names of the parts alone
@@ -86,7 +87,8 @@ class LogEntry:
             what["rows"] = "; ".join([*said[:_MOST_NAMED], *more])
         anew = "; batches were numbered anew" if what.get("moved") else ""
         undone = f"; undone there: {', '.join(gone)}" if (gone := what.get("undone")) else ""
-        said = filled(_SAID[self.kind], what) + undone + anew
+        chosen = f"; taken over: {'; '.join(over)}" if (over := what.get("chosen")) else ""
+        said = filled(_SAID[kind], what) + chosen + undone + anew
         for old, now in self.numbers.items():
             said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
         if detects := what.get("detects"):
@@ -123,6 +125,7 @@ _SAID = {
     "undone": "{said}",
     "corrected": "changes of another program taken as corrections: {rows}",
     "changed": "settings: {said}",
+    "changed back": "settings, the last change taken back: {said}",
     "labels": "{labels} {labels:label|labels} from {source}",
     "merged": "another copy of the season taken in: {new} {new:inspection|inspections}, "
     "{entries} {entries:entry|entries}",
@@ -219,7 +222,9 @@ def states(db: sqlite3.Connection, batches: Iterable[int] | None = None) -> dict
 
 def settings_state(db: sqlite3.Connection) -> str:
     """Return the digest of all that was ever chosen for the season."""
-    return _digest(db.execute("SELECT name, value FROM settings ORDER BY fid"))
+    chosen = db.execute("SELECT name, value, undoes FROM settings ORDER BY fid")
+    # as earlier versions, which did not know of undoing, noted it
+    return _digest(row if row[2] is not None else row[:2] for row in chosen)
 
 
 def labels_state(db: sqlite3.Connection) -> str:

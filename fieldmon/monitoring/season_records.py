@@ -419,14 +419,28 @@ class SeasonRecords(OpenSeason):
                 season_log.append(
                     db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
                     moved=moved, numbers=taken.numbers, undone=undone,
+                    chosen=taken.chosen,
                 )  # fmt: skip
+            by_number = {one.number: one for one in treatments.kept(db, self._inside, clock)}
+            twice = (
+                cautions.same_plants_twice(by_number[one], by_number[other])
+                for one, other in taken.alike
+            )
+            twice_said = tuple(said for said in twice if said)
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
         undone_in_one = (
             cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in gone
         )
-        said = *contradict.sentences(self.plot.grid), *taken.differing, *undone_in_one
+        said = *contradict.sentences(self.plot.grid), *taken.differing, *twice_said, *undone_in_one
         return Merged(
-            taken.new, said, taken.taken_back, moved, taken.treatments, taken.codes, overlaps
+            taken.new,
+            said,
+            taken.taken_back,
+            moved,
+            taken.treatments,
+            taken.codes,
+            overlaps,
+            taken.chosen,
         )
 
     def batches(self) -> tuple[Batch, ...]:

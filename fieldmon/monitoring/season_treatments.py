@@ -13,6 +13,7 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.decisions.labels import SAID_BY_HAND, label_for, plain_name, with_wait
 from fieldmon.decisions.zones import ground_m2, outline_of
 from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import (
     batches,
     cautions,
@@ -25,10 +26,12 @@ from fieldmon.monitoring import (
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.cautions import RulesToKeep
+from fieldmon.monitoring.early_entries import early_entries
 from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
 from fieldmon.monitoring.people import written_in
-from fieldmon.monitoring.treatments import TreatedPlace
+from fieldmon.monitoring.treatments import KeptTreatment, TreatedPlace
+from fieldmon.monitoring.waiting_periods import end_of
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.named_rows import place_in_words
 
@@ -44,9 +47,10 @@ if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.monitoring.cautions import Caution
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
-    from fieldmon.monitoring.treatments import KeptTreatment
 
 
+# kinds of caution that can be told of a treatment before it is done
+_BEFORE_TREATING = ("harvest", "uses", "group", "label")
 # products in a sentence
 _NAMED = 5
 
@@ -131,6 +135,12 @@ class SeasonTreatments(OpenSeason):
         return TreatedPlace(ground, plants, ground_m2(self.plot.grid, plants) / 1e4)
 
     def _treated_one_by_one(self, given: object) -> TreatedPlace:
+        grid, plants = self.plot.grid, self._each_plant(given)
+        area_ha = ground_m2(grid, plants) / 1e4
+        return TreatedPlace(outline_of(grid, plants), plants, area_ha, by_plant=True)
+
+    def _each_plant(self, given: object) -> NDArray[np.bool_]:
+        """Return a caller's mask of plants, or raise `SettingError`."""
         grid = self.plot.grid
         plants = array_of(
             np.bool_, "The mask of treated plants", given,
@@ -145,9 +155,7 @@ class SeasonTreatments(OpenSeason):
                     size=plants.size,
                 )
             )
-        plants = np.asarray(plants, bool)
-        area_ha = ground_m2(grid, plants) / 1e4
-        return TreatedPlace(outline_of(grid, plants), plants, area_ha, by_plant=True)
+        return np.asarray(plants, bool)
 
     def _efficacy(self, product: str) -> float:
         """Return how well a product works, as the season learnt it."""
@@ -226,9 +234,12 @@ class SeasonTreatments(OpenSeason):
     def cautions(self, on: date, units: Units | None = None) -> tuple[Caution, ...]:
         """Return what to beware of on a day: harvest, entry, resistance, what labels allow.
 
-        Sentences speak in `units`; None: the usual ones.
+        And who was where before entry was allowed. Sentences speak in `units`; None: the usual
+        ones.
         """
-        return cautions.cautions(*self._held_to(units), on)
+        done, rules, seen = self._held_to(units)
+        early = early_entries(done, rules, seen, self.plot.grid, on)
+        return cautions.by_urgency((*cautions.cautions(done, rules, on), *early))
 
     def cautions_because_of(
         self, batch: int, on: date, units: Units | None = None
@@ -237,16 +248,45 @@ class SeasonTreatments(OpenSeason):
 
         Sentences speak in `units`; None: the usual ones.
         """
-        done, rules = self._held_to(units)
-        return cautions.because_of(done, batch, rules, on)
+        done, rules, seen = self._held_to(units)
+        own = [one for one in done if one.batch == batch and one.on <= on]
+        early = early_entries(own, rules, seen, self.plot.grid, self.last_date())
+        return cautions.by_urgency((*cautions.because_of(done, batch, rules, on), *early))
 
-    def _held_to(self, units: Units | None) -> tuple[tuple[KeptTreatment, ...], RulesToKeep]:
-        """Return the treatments that count, and what they are held to."""
+    def cautions_if_treated(
+        self, on: date, product: str, plants: NDArray[np.bool_], units: Units | None = None
+    ) -> tuple[Caution, ...]:
+        """Return what a treatment of plants ``(n,)`` with a product on a day would bring.
+
+        As `cautions_because_of` says it once it is done: nothing is kept. Empty where there is no
+        product, or no plant. Sentences speak in `units`; None: the usual ones.
+        """
+        plants = self._each_plant(plants)
+        if not product.strip() or not plants.any():
+            return ()
+        done, rules, _ = self._held_to(units)
+        batch = max((one.batch for one in done), default=0) + 1
+        clock = local_clock(self.plot.field)
+        place = TreatedPlace(self.plot.field.boundary, plants, None)
+        with self._lock, self.store.reading() as db:
+            day = settings_of(db).day(on)
+        wanted = KeptTreatment(
+            batch, batch, day, on, place, 0.0, Application(product.strip()),
+            end_of(clock, on, None), clock,
+        )  # fmt: skip
+        found = cautions.because_of([*done, wanted], batch, rules, on)
+        return tuple(one for one in found if one.kind in _BEFORE_TREATING)
+
+    def _held_to(
+        self, units: Units | None
+    ) -> tuple[tuple[KeptTreatment, ...], RulesToKeep, Inspections]:
+        """Return the treatments that count, what they are held to, and what was inspected."""
         with self._lock, self.store.reading() as db:  # all of one moment
             done = self._treatments(db)
             settings, labels = settings_of(db), label_table.read(db)
+            seen = self._inspections(db) if done else Inspections.none()
         rules = RulesToKeep(labels, settings.harvest, settings.starts)
-        return done, rules if units is None else replace(rules, units=units)
+        return done, rules if units is None else replace(rules, units=units), seen
 
     def harvest_from(self, on: date) -> tuple[date | None, KeptTreatment] | None:
         """Return the first day of harvest that treatments until `on` allow, and which one waits.

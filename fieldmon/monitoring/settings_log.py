@@ -1,13 +1,14 @@
 """What was chosen for a season, choice after choice, and how the last change is taken back.
 
-Nothing is deleted: a change is rows that are added, and so is its taking back. Whoever goes back
-to what counted before, by undoing or by hand, has taken the last change back.
+Nothing is deleted: a change is rows that are added, and so is its taking back, whose rows name the
+change that they take back. Whoever goes back by hand has made another change. Earlier versions did
+not name it: what they took back is a change like any other, and taking that back makes it anew.
 """
 
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
@@ -94,14 +95,19 @@ def pest_in(kept: str) -> str:
     return "" if chosen is None else str(chosen["name"])
 
 
-def write(db: sqlite3.Connection, parts: Parts) -> list[str]:
-    """Keep what differs from what counts now; return the names of what does."""
+def write(db: sqlite3.Connection, parts: Parts, undoes: str | None = None) -> list[str]:
+    """Keep what differs from what counts now; return the names of what does.
+
+    `undoes` is when the change was made that this takes back; None: it is a change of its own.
+    """
     before, at = now(db), utc_text()
     # a part that is no longer chosen, as a pest, is null
     wanted = {**dict.fromkeys(before, "null"), **parts}
-    changed = [(name, text, at) for name, text in wanted.items() if before.get(name) != text]
+    changed = [
+        (name, text, at, undoes) for name, text in wanted.items() if before.get(name) != text
+    ]
     insert(db, schema.SETTINGS, changed)
-    return [name for name, _, _ in changed]
+    return [name for name, *_ in changed]
 
 
 def change(db: sqlite3.Connection, settings: MonitoringSettings) -> None:
@@ -164,33 +170,67 @@ def _in_short(value: object) -> str:
     return "" if isinstance(value, list) else "none" if value is None else str(value)
 
 
+class _Change(NamedTuple):
+    """Parts that were chosen at one moment; `undoes` is the moment of what that took back."""
+
+    at: str
+    parts: Parts
+    undoes: str | None
+
+
+def _changes(db: sqlite3.Connection) -> list[_Change]:
+    """Return what was chosen, choice after choice; the first is what the season began with."""
+    made: list[_Change] = []
+    for name, value, at, undoes in db.execute(
+        "SELECT name, value, changed, undoes FROM settings ORDER BY fid"
+    ):
+        if not made or made[-1].at != at:
+            made.append(_Change(at, {}, undoes))
+        made[-1].parts[name] = value
+    return made
+
+
+def _last_that_counts(db: sqlite3.Connection) -> tuple[str, Parts] | None:
+    """Return when the last change was made that was not taken back, and what counted before it.
+
+    Of two copies that were merged one may have chosen otherwise since: what made no difference by
+    now is passed over.
+    """
+    made = _changes(db)
+    gone = {one.undoes for one in made}
+    counting = [one for one in made[1:] if one.undoes is None and one.at not in gone]
+    present = _chosen_in(now(db))
+    while made and counting:
+        last = counting.pop()
+        others = (made[0], *counting)
+        before = {name: text for one in others for name, text in one.parts.items()}
+        again = {name: before.get(name, "null") for name in last.parts}
+        if (parts := _chosen_in(present | again)) != present:
+            return last.at, parts
+    return None
+
+
+def _chosen_in(parts: Parts) -> Parts:
+    """Return the parts that are chosen: one that is null is as if it had never been."""
+    return {name: text for name, text in parts.items() if text != "null"}
+
+
 def before_now(db: sqlite3.Connection) -> Parts | None:
     """Return what counted before the last change that was not taken back; None: nothing."""
-    counted: list[Parts] = []
-    parts: Parts = {}
-    rows = db.execute("SELECT name, value, changed FROM settings ORDER BY fid").fetchall()
-    for number, (name, value, at) in enumerate(rows):
-        parts = {**parts, name: value}
-        if value == "null":  # as if it had never been chosen
-            del parts[name]
-        if number + 1 < len(rows) and rows[number + 1][2] == at:
-            continue  # of the same change
-        if parts in counted[-2:-1]:
-            counted.pop()
-        elif parts not in counted[-1:]:
-            counted.append(parts)
-    return counted[-2] if len(counted) > 1 else None
+    found = _last_that_counts(db)
+    return None if found is None else found[1]
 
 
 def undo(db: sqlite3.Connection) -> MonitoringSettings:
     """Take the last change back; return what counts again, or raise `SettingError`."""
-    parts = before_now(db)
-    if parts is None:
+    found = _last_that_counts(db)
+    if found is None:
         raise SettingError(
             worded(
                 "There must be a change of settings to take back, but there "
                 "is none: they are those that the season began with."
             )
         )
-    write(db, parts)
+    at, parts = found
+    write(db, parts, undoes=at)
     return from_json(parts)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, figure, joined, worded
+from fieldmon.compute.wording import KeptText, counted, figure, joined, worded
 from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.cautions import groups, label_of, waits
@@ -115,7 +115,10 @@ class _PlotRecord:
                 said = [what for what in said if on != before or what["date"] > before]
             if entry.kind == "advised" and before <= on <= day and not (treated and on == day):
                 said.append(entry.what)
-        return f"{said[-1]['said']} ({said[-1]['date']})" if said else ""
+        if not said:
+            return ""
+        on = self.units.day(said[-1]["date"])
+        return worded("{said} ({day})", said=KeptText(said[-1]["said"]), day=on)
 
 
 def certification_report(

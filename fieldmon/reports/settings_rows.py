@@ -204,7 +204,8 @@ def _of_nights(settings: WorkSettings, spread: Spread) -> Iterator[Row]:
 
 def _of_pest(pest_in_weather: PestInWeather, units: Units) -> Iterator[Row]:
     pest, weather = pest_in_weather.pest, pest_in_weather.weather
-    yield words.PEST, Worded(words.isolated(pest.title or pest.name)), words.FROM_CHOSEN
+    title = worded(words.isolated("{pest}"), pest=Worded(pest.title or pest.name))
+    yield words.PEST, title, words.FROM_CHOSEN
     if weather is None or not len(weather):
         yield words.WEATHER, words.WEATHER_NONE, words.FROM_USUAL
         return

@@ -6,8 +6,9 @@ import geopandas as gpd
 import numpy as np
 import pytest
 
+from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import FOUND, Inspections
-from fieldmon.monitoring import Season
+from fieldmon.monitoring import Application, Season
 from fieldmon.monitoring.advice import AdviceSettings
 from tests.cli.estate import BEGINS
 
@@ -133,3 +134,22 @@ def test_nothing_is_written_or_kept_where_one_of_the_files_cannot_be(run, season
     assert (code, made) == (2, set())
     assert says in err
     assert season.read_bytes() == before
+
+
+def test_what_the_label_says_of_a_product_is_told_before_it_is_sprayed(run, season):
+    kept, on = Season(season), date.fromisoformat(BEGINS)
+    kept.keep_labels([ProductLabel("Borneo", irac_groups=("10B",), max_uses=1, waiting_days=3)])
+    words = ["decide", season, "--threshold", "5%", "--product", "borneo "]
+    assert "warning: " not in run(*words, "--date", BEGINS)[2]
+    kept.treat(on, 0.8, application=Application("Borneo"))
+    tomorrow = on + timedelta(days=1)
+    err = run(*words, "--date", tomorrow)[2]
+    zones = kept.advice(tomorrow, AdviceSettings(0.05)).sprayed
+    said = f"Use 2 in this season on {zones.sum()} plants: borneo on {tomorrow}."
+    assert f"warning: {said} Its label allows 1." in err
+    assert len(kept.treatments()) == 1
+    done = kept.treat(tomorrow, 0.8, application=Application("borneo"), plants=zones)
+    told = [one.sentence for one in kept.cautions_because_of(done.batch, tomorrow)]
+    assert f"{said} Its label allows 1." in told
+    assert "No label of Oil stands" in run(*words[:-1], "Oil", "--date", tomorrow)[2]
+    assert "warning: " not in run(*words[:-2], "--date", tomorrow)[2]

@@ -2,6 +2,7 @@
 
 import shutil
 
+from fieldmon.decisions.labels import ProductLabel
 from fieldmon.monitoring import Season, scouts
 from tests.cli.estate import BEGINS, ZIP, begin_next_year, filled_in
 
@@ -51,6 +52,33 @@ def test_treatments_and_codes_that_came_in_are_counted_and_hours_have_a_unit(run
     assert "0 inspections, 1 treatment, 1 scout's code were new" in out
     assert "codes: of Ann. They read this season and record into it: take back" in out
     assert "robot differs: 1.5 h here, 2 h there" in out
+
+
+def test_who_was_where_another_copy_knows_that_nobody_might_enter_is_named(run, season, tmp_path):
+    other = shutil.copy(season, tmp_path / "other.gpkg")
+    worked(run, season, "a.csv", {0}, "Ann")
+    treated = "--efficacy", "0.8", "--product", "Oil", "--reentry-hours", "24"
+    run("treat", other, *treated, "--began", "00:00", "--ended", "00:10", "--date", BEGINS)
+    _, out, err, _ = run("merge", season, other)
+    (line,) = (one for one in out.splitlines() if one.startswith("  warning: "))
+    assert line.startswith("  warning: Ann was at 6 plants in"), err
+    assert f"where Oil was applied on {BEGINS}: entry was allowed from 00:10 on" in line
+    assert line.removeprefix("  warning: ") in run("status", season)[1]
+    assert "warning: " not in run("merge", season, other)[1]
+
+
+def test_settings_that_a_merge_takes_over_are_said_and_in_the_log(run, season, tmp_path):
+    run("change", season, "--flag-only")
+    other = shutil.copy(season, tmp_path / "other.gpkg")
+    run("change", other, "--treat-finds", "--hours", "2", "--harvest", "2026-12-10")
+    Season(other).keep_labels([ProductLabel("Acarol", waiting_days=7)])
+    _, out, err, _ = run("merge", season, other)
+    said = "finds treated at once no to yes; robot hours 1 to 2; season harvest none to 2026-12-10"
+    (line,) = (one for one in out.splitlines() if one.startswith("  taken over: "))
+    told = line.removeprefix("  taken over: ")
+    assert sorted(told.split("; ")) == sorted([*said.split("; "), "table of labels (Acarol)"]), err
+    assert f"; taken over: {told}" in run("log", season)[1]
+    assert "taken over" not in run("merge", season, other)[1]
 
 
 def test_a_season_is_not_merged_with_itself_and_a_like_copy_changes_nothing(run, season, tmp_path):

@@ -30,3 +30,16 @@ def test_one_inspection_alone_is_taken_back(run, season, tmp_path):
     left = Season(season).history.inspections.plant.tolist()
     assert len(left) == 2
     assert set(left) < set(plants)
+
+
+def test_a_change_to_an_earlier_value_is_taken_back_and_no_other(run, season):
+    for hours in ("4", "3", "4"):
+        run("change", season, "--hours", hours)
+    run("change", season, "--harvest", "2026-12-10")
+    run("change", season, "--hours", "3")
+    run("change", season, "--hours", "4")
+    code, out, _, _ = run("undo", season, "--change")
+    assert (code, out.splitlines()[0]) == (
+        0, "The last change was taken back: hours 4 (now 3 again).",
+    )  # fmt: skip
+    assert "the last change taken back: robot hours 4 to 3" in run("log", season)[1]

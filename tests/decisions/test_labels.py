@@ -3,7 +3,14 @@
 import pytest
 
 from fieldmon.decisions.doses import Dose
-from fieldmon.decisions.labels import ProductLabel, checked_waits, irac_groups, label_for, with_wait
+from fieldmon.decisions.labels import (
+    ProductLabel,
+    checked_waits,
+    irac_groups,
+    label_for,
+    of_others,
+    with_wait,
+)
 from fieldmon.errors import SettingError
 
 FULL = ProductLabel(
@@ -59,4 +66,16 @@ def test_a_wait_said_by_hand_replaces_what_was_said_so_and_never_shortens_the_ta
     assert [one.waiting_days for one in longer] == [3, 2]
     assert label_for(longer, "Acarol", "tomato").waiting_days == 3
     assert label_for(longer, "Acarol", "tomato").irac_groups == FULL.irac_groups
-    assert label_for(longer, "Acarol", "rose").waiting_days == 2
+    # of another crop, or of this one by another name: the strictest line
+    assert label_for(longer, "Acarol", "rose").waiting_days == 3
+
+
+def test_a_crop_or_pest_by_another_name_is_held_to_the_strictest_line_of_the_product():
+    rose = ProductLabel("acarol", "rose", "", None, 1, 24.0, (), 1)
+    label = label_for([FULL, rose, ProductLabel("Oil", max_uses=1)], "Acarol", "pimiento", "mites")
+    assert (label.waiting_days, label.reentry_hours, label.max_uses) == (3, 24.0, 1)
+    assert label.irac_groups == ("4A", "28")
+    assert of_others([FULL, rose], "ACAROL", "pimiento", "mites") == (FULL, rose)
+    assert of_others([FULL, rose], "Acarol", "rose", "mites") == ()
+    assert of_others(with_wait([FULL], "Acarol", 9), "Acarol", "", "mites") == (FULL,)
+    assert of_others(with_wait([], "Acarol", 9), "Acarol", "", "mites") == ()

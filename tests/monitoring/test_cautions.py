@@ -201,6 +201,22 @@ def test_a_product_without_a_label_is_said_where_there_is_a_table():
     assert kinds([treated(0, product="")], [LABEL]) == []
 
 
+def test_a_label_for_a_crop_or_pest_that_is_written_otherwise_is_named_and_its_strictest_counts():
+    lines = [replace(LABEL, crop="pepper", pest="spider mites"),
+             replace(LABEL, crop="rose", max_uses=1)]  # fmt: skip
+    said = {"crop": "pimiento", "pest": "araña roja", "dose": Dose(0.6, "l/ha"),
+            "waiting_days": 3}  # fmt: skip
+    told = found([treated(0, **said), treated(4, **said)], lines)
+    kinds_ = ["dose", "dose", "uses", "waiting", "waiting", "label", "label"]
+    assert [one.kind for one in told] == kinds_
+    assert told[-1].sentence == (
+        "The label of Acarol in the season's table is for pepper / spider mites, rose, but the "
+        "treatment on 2026-04-06 says pimiento / araña roja. Until both are written alike, the "
+        "strictest line of Acarol counts."
+    )
+    assert kinds([treated(0, crop="Pepper ", pest="spider  Mites")], lines) == []
+
+
 def test_what_comes_after_the_day_is_not_looked_at():
     assert kinds([treated(9, dose=Dose(9, "l/ha"))], [LABEL], on=8) == []
 

@@ -840,6 +840,42 @@ def test_sprayings_of_which_nobody_knows_whether_they_are_one_both_count_and_are
     assert merging.merge(ours, other).differing == ()
 
 
+@pytest.mark.parametrize(
+    ("efficacy", "said"),
+    [
+        (0.7, SPRAYED),
+        (0.5, replace(SPRAYED, operator="Paco")),
+        (0.5, Application("acarol ")),
+    ],
+)
+def test_two_sprayings_of_one_day_and_product_of_the_same_plants_are_named(
+    path, other, efficacy, said
+):
+    here, there = Season(path), Season(other)
+    here.treat(BEGINS, 0.5, application=SPRAYED)
+    there.treat(BEGINS, efficacy, application=said)
+    there.treat(BEGINS, 0.5, application=replace(SPRAYED, product="Oil"))
+    there.treat(BEGINS + timedelta(days=1), 0.5, application=SPRAYED)
+    done = here.merge(there)
+    n = len(here.plot.grid)
+    twice = (
+        f"Two sprayings of {n} plants with Acarol on {BEGINS}: batches 2 and 3. Both count; undo "
+        "one if it was the same."
+    )
+    assert done.contradictions[-1] == twice
+    assert [one for one in done.contradictions if one.startswith("Two sprayings")] == [twice]
+    assert len(here.treatments()) == 4
+    assert here.merge(there).contradictions == ()
+
+
+def test_two_sprayings_of_other_plants_are_not_named(path, other):
+    here, there = Season(path), Season(other)
+    n = len(here.plot.grid)
+    here.treat(BEGINS, 0.5, application=SPRAYED, plants=np.arange(n) < 5)
+    there.treat(BEGINS, 0.7, application=SPRAYED, plants=np.arange(n) > 4)
+    assert not [one for one in here.merge(there).contradictions if "Two sprayings" in one]
+
+
 def test_what_an_earlier_version_recorded_is_known_by_all_its_values():
     one, other = copies_of(2)
     sprayed(one, 0, SPRAYED, {"waiting_days": 7}, noted=False)

@@ -159,6 +159,8 @@ def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(p
     assert said[2] == "monday.csv: 3 found, 9 clean, 0 could not be inspected, batch 1"
     assert said[4].startswith("2026-04-06: soap on ")
     assert said[5] == "Batch 2 was undone: 1 treatment with soap."
+    assert said[6].startswith("settings: ")
+    assert said[7].startswith("settings, the last change taken back: ")
     assert season.held_to_log() == ()
     assert [one.number for one in log] == list(range(1, 9))
     assert list(season_log.lines(log, CLOCK))[-1].endswith(log[-1].digest)
@@ -395,9 +397,10 @@ def test_a_change_of_settings_is_told_from_what_to_what(path):
     season.change(replace(first, robot=first.robot.with_hours(6.0), sampler="naive"), first)
     season.undo_change()
     changed = [one.sentence() for one in season.log() if one.kind == "changed"]
+    back = "robot hours 6 to 1.5; sampler name naive to adaptive"
     assert changed == [
         "settings: robot hours 1.5 to 6; sampler name adaptive to naive",
-        "settings: robot hours 6 to 1.5; sampler name naive to adaptive",
+        f"settings, the last change taken back: {back}",
     ]
     of_old = {"names": "robot, sampler", "now": {}}
     assert season_log.LogEntry(1, "", "changed", "", of_old, "").sentence() == (

@@ -135,6 +135,10 @@ def test_changes_of_then_are_taken_back_now(tmp_path):
     assert season.undo_change().sampler == "adaptive"
     flagged = Season(shutil.copy(FOLDER / "both_faces_flagged.gpkg", tmp_path))
     assert not flagged.settings.belief.treated
+    # taken back then, which nobody noted: a change as any other, whose taking back makes it anew
+    assert flagged.settings.starts.hour == 6
+    assert flagged.undo_change().starts.hour == 7
+    assert flagged.undo_change().starts.hour == 6
     assert flagged.before_change() is None
 
 
@@ -213,6 +217,23 @@ def test_what_another_program_changed_in_a_season_of_format_12_can_be_corrected(
     assert season.correct("Ann") == 1
     assert season.history.detections.tolist() == [0.84] * 20 + [0.6] * 12
     assert "1 correction" in season.undo()
+
+
+def test_in_a_season_of_format_13_what_was_taken_back_is_a_change_that_can_be_taken_back(tmp_path):
+    """Made before a taking back was noted: harvest said, then 4 hours said and taken back."""
+    season = Season(shutil.copy(FOLDER / "of_format_13.gpkg", tmp_path))
+    assert (tmp_path / "of_format_13.gpkg.format-13").is_file()
+    assert season.held_to_log() == ()
+    seen = season.settings
+    assert (seen.robot.hours, seen.harvest) == (1.5, date(2026, 5, 6))
+    season.change(replace(seen, robot=seen.robot.with_hours(3.0)), seen)
+    assert season.undo_change() == seen
+    again = season.undo_change()
+    assert (again.robot.hours, again.harvest) == (4.0, seen.harvest)
+    assert season.undo_change() == seen
+    assert season.undo_change().harvest is None
+    assert season.before_change() is None
+    assert season.held_to_log() == ()
 
 
 def _only_the_map_differs(season, day):

@@ -44,10 +44,44 @@ def test_changes_are_taken_back_one_by_one_until_there_is_none(db):
         settings_log.undo(db)
 
 
-def test_whoever_goes_back_by_hand_has_taken_the_change_back(db):
-    for parts in (FIRST, LONGER, FIRST):
+def test_whoever_goes_back_by_hand_has_made_a_change_that_can_be_taken_back(db):
+    harvest = {**FIRST, "season": as_json(MonitoringSettings(BEGINS, harvest=BEGINS))["season"]}
+    back = {**harvest, "robot": LONGER["robot"]}
+    for parts in (FIRST, harvest, back, harvest):
         settings_log.write(db, parts)
+    assert as_json(settings_log.undo(db)) == back
+    assert as_json(settings_log.undo(db)) == harvest
+    assert as_json(settings_log.undo(db)) == FIRST
     assert settings_log.before_now(db) is None
+
+
+def test_what_an_earlier_version_took_back_is_a_change_and_no_other_is_taken_back_for_it(db):
+    for parts in (FIRST, OTHER, LONGER, OTHER):  # the last by an undo that nobody noted
+        settings_log.write(db, parts)
+    assert as_json(settings_log.undo(db)) == LONGER
+    assert as_json(settings_log.undo(db)) == OTHER
+    assert as_json(settings_log.undo(db)) == FIRST
+
+
+def test_of_two_copies_each_takes_back_its_own_change(db):
+    settings_log.write(db, FIRST)
+    settings_log.write(db, LONGER)
+    at = settings_log.all_moments(db)[-1]
+    settings_log.write(db, {**LONGER, "sampler": OTHER["sampler"]})  # came from the other copy
+    settings_log.write(db, {**FIRST, "sampler": OTHER["sampler"]}, undoes=at)
+    assert as_json(settings_log.undo(db)) == FIRST
+    assert settings_log.before_now(db) is None
+
+
+def test_what_the_other_copy_changed_since_is_passed_over(db):
+    settings_log.write(db, FIRST)
+    settings_log.write(db, LONGER)
+    at = settings_log.all_moments(db)[-1]
+    settings_log.write(db, {**LONGER, "robot": OTHER["robot"]})
+    settings_log.write(db, FIRST, undoes=at)
+    assert settings_log.before_now(db) is None
+    settings_log.write(db, {**FIRST, "sampler": OTHER["sampler"]})
+    assert as_json(settings_log.undo(db)) == FIRST
 
 
 def test_a_choice_that_is_taken_back_counts_as_never_made(db):

@@ -4,17 +4,23 @@ import shutil
 from dataclasses import replace
 from datetime import time, timedelta
 
+import numpy as np
 import pytest
 
+from fieldmon.cli.report_languages import spoken
 from fieldmon.compute.units import Units
 from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import CLEAN, Inspections
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Application, Season
+from fieldmon.reports import words
 from fieldmon.reports.certification import certification_report
 from fieldmon.reports.content import Listing, Table
 from fieldmon.reports.html import html_text
 from fieldmon.reports.pdf import pdf_bytes
+from fieldmon.reports.season import season_report
 from tests.monitoring.seasons import BEGINS, a_season, some_results
 from tests.monitoring.test_season_log import by_hand
 from tests.reports.reading import texts
@@ -147,3 +153,42 @@ def test_what_was_advised_stands_with_the_first_treatment_after_it_and_with_no_l
     report = certification_report([season], Units())
     said = [texts_of.get("Advised") for texts_of in cards(report)]
     assert said == ["Treat the zones. (2026-04-06)", "not said", "Treat the rest. (2026-04-09)"]
+
+
+def test_who_was_where_before_entry_was_allowed_stands_in_the_record(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    said = Application("Oil", began=time(0), ended=time(0, 10), waiting_days=1, reentry_hours=72.0)
+    season.treat(BEGINS, 0.8, application=said)
+    ann = np.full(12, "Ann", object)
+    seen = Inspections.of(
+        np.arange(12), np.full(12, CLEAN), np.datetime64(BEGINS + timedelta(1)), who=ann
+    )
+    season.record(seen, "monday.csv", "Ann")
+    report = certification_report([season], Units(), BEGINS + timedelta(days=6))
+    told = [
+        sentence
+        for sheet in report.sheets
+        for block in sheet.blocks
+        if isinstance(block, Listing)
+        for sentence in block.sentences
+    ]
+    assert any("Ann was at 12 plants in" in one and "entry was allowed" in one for one in told)
+    assert words.CERT_CAUTIONS_NONE not in told
+
+
+def test_what_was_advised_and_the_pest_s_name_are_in_the_record_s_language(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    season.change(replace(season.settings, pest=shipped_pest("spider-mite")), season.settings)
+    advice = season.advice(BEGINS)
+    season.advise(BEGINS, advice.in_short())
+    season.treat(BEGINS, 0.8, application=FULL)
+    language, units = spoken("es", "")
+    record = " ".join(certification_report([season], units).said_in(language).words())
+    advised = record.partition("Aconsejado: ")[2]
+    assert advised.startswith(spoken("es", "")[0].say(advice.headline()))
+    assert "Se cree infestado el" in advised
+    assert "believed" not in record
+    of_season = season_report(season, BEGINS, units).said_in(language)
+    said = " ".join(of_season.words())
+    assert "Araña roja, por grados-día" in said
+    assert "Two-spotted" not in said

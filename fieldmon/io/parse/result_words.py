@@ -15,8 +15,12 @@ if TYPE_CHECKING:
     from fieldmon.io.options import RecordOptions
 
 #: English; German; Dutch; French; Spanish; Italian; Portuguese; Polish; Turkish; Russian; Greek;
-#: Hebrew; Arabic; Hindi; Chinese, Japanese; signs
+#: Hebrew; Arabic; Hindi; Chinese, Japanese; signs. First that a find was flagged, in all of them
 _FOUND = """
+flagged|markiert|gemarkeerd|marqué|marquée|signalé|signalée|marcado|marcada|señalado|señalada
+segnato|segnata|segnalato|segnalata|sinalizado|sinalizada|oznaczony|oznaczone|işaretlendi
+отмечено|помечено|σημειωμένο|מסומן|מסומנת|סומן|סומנה|معلم|معلمة|معلَّم|معلَّمة|مُعلَّم|مُعلَّمة|चिह्नित
+标记|已标记|標記
 yes|y|true|t|present|positive|pos|p|found|detected|infested|infected|diseased|sick|attacked|pest
 pests|mite|mites|some|few|many|low|medium|high|x|v|1
 ja|gefunden|befall|befallen|nachweis|nachgewiesen|positiv|vorhanden|krank|schädlinge

@@ -5,7 +5,9 @@ import shutil
 import numpy as np
 import pytest
 
+from app.state import deciding
 from app.words import texts
+from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import Inspections
 from tests.app.driving import go, map_of, metric, opened, texts_of
 
@@ -91,3 +93,19 @@ def test_how_well_treating_works_is_as_learnt_until_somebody_says(
     assert not app.exception
     assert learnt not in texts_of(app)
     assert "As you said: treating cleans 70 %" in texts_of(app)
+
+
+def test_what_a_label_says_of_what_is_to_be_sprayed_is_told_before_it_is(
+    begun_file, seasons_folder, season
+):
+    shutil.copy(begun_file, seasons_folder)
+    of, day = season(), "2026-11-16"
+    of.keep_labels([ProductLabel("soap", max_uses=1, waiting_days=0)])
+    of.treat(np.datetime64(day).item(), 0.6, product="soap")
+    app = opened("Gate 2026", day="2026-11-17")
+    go(app, "decide")
+    assert "Use 2 in this season" not in texts_of(app)
+    app.text_input(key=deciding.PRODUCT).set_value("Soap").run()
+    assert not app.exception
+    assert "Use 2 in this season on" in texts_of(app)
+    assert "Its label allows 1." in texts_of(app)

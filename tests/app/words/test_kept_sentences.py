@@ -4,7 +4,7 @@ import pytest
 
 from app.words import language
 from app.words.kept_sentences import KnownSentences, sentences
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import KeptText, counted, share_figure, worded
 
 KNOWN = KnownSentences([
     "{n} record(s) lie on {name}.", "{n} record(s) lie on {name}, {far} away.", "{a}, {b}",
@@ -49,3 +49,25 @@ def test_a_sentence_kept_as_text_is_said_as_the_one_it_was_made_of(speaking):
     both = language.in_words(f"{said} {also}")
     assert both == f"{language.in_words(said)} {language.in_words(also)}"
     assert language.in_words(f"{said} Nobody knows it.").endswith("[English]")
+
+
+def test_a_sentence_that_begins_with_a_blank_does_not_take_the_one_before_for_it(speaking):
+    zones = counted(7, "zone")
+    treat = worded(
+        "Treat {area} in {zones}, {share} of the {of} under plants.",
+        area="1 ha", zones=zones, share=share_figure(0.15), of="7 ha",
+    )  # fmt: skip
+    believed = worded(
+        "{share:.1%} of the plants are believed infested. Treating pays if it is {level:.1%} or "
+        "more; the chance of that is {chance:.0%}.", share=0.024, level=0.02, chance=0.95,
+    )  # fmt: skip
+    kept = KeptText(f"{treat} {believed}")
+    speaking("es")
+    assert "7 zonas" in language.in_words(treat)
+    for code in ("es", "he", "ar"):
+        speaking(code)
+        both = " ".join(language.in_words(one) for one in (treat, believed))
+        assert language.in_words(kept) == both
+    speaking("es")
+    both = " ".join(language.in_words(one) for one in (treat, believed))
+    assert language.in_words(worded("{what}: {said}", what="x", said=kept)) == f"x: {both}"

@@ -20,6 +20,9 @@ def test_no_word_says_two_things():
             for w in ("Sì", "POSITIF", "positiva", "infestado", "да", "有", "نعم", "हाँ")
         ),
         *((w, PRESENT) for w in ("befallen", "aangetast", "evet", "nachweis", "נגוע", "+")),
+        # found and only flagged, as a season calls it that does not treat its finds
+        *((w, PRESENT) for w in ("Flagged", "marcada", "marcado", "מסומן", "סומן", "مُعلَّمة")),
+        *((w, PRESENT) for w in ("markiert", "marqué", "segnalata", "отмечено", "标记")),
         *((w, ABSENT) for w in ("NEG", "Négatif", "sano", "негатив", "无", "لا", "नहीं", "hayır")),
         *(
             (w, ABSENT)

@@ -73,12 +73,12 @@ def odds_times(chance: NDArray[np.floating[Any]], factor: float) -> Floats:
     return times
 
 
-class _Map(Protocol):
+class _Weighed(Protocol):
     @property
     def likely(self) -> float: ...
 
 
-M = TypeVar("M", bound=_Map)
+M = TypeVar("M", bound=_Weighed)
 
 
 def likeliest(maps: Sequence[M], finds: float) -> tuple[M, tuple[M, ...]]:

@@ -371,7 +371,7 @@ class TracedPairs:
 
     def _inspected(
         self, plants: NDArray[np.int32], found: NDArray[np.bool_], learning: Learning
-    ) -> _Inspected:
+    ) -> _LearntDay:
         """Return what inspections change about them, by this map alone."""
         n, nothing = len(self.chance), np.zeros((2, N_ORIGINS))
         none = np.zeros((2, n))
@@ -410,7 +410,7 @@ class TracedPairs:
                 self._expected_finds(plants, shown), self._variance_since_inspected
             ),
         )  # fmt: skip
-        return _Inspected(self, after, day, jumps * self.beyond)
+        return _LearntDay(self, after, day, jumps * self.beyond)
 
     def _doubt_known(
         self,
@@ -668,7 +668,7 @@ class TracedPairs:
         )  # fmt: skip
 
 
-class _Inspected(NamedTuple):
+class _LearntDay(NamedTuple):
     """What a day's inspections say to a map, before the whole plot is thought over.
 
     Parameters

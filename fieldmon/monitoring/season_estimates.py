@@ -150,7 +150,13 @@ class SeasonEstimates(OpenSeason):
         return history.forecast(morning, day)  # others may plan meanwhile
 
     def still_infested(self, on: date) -> PlotEstimate:
-        """Return how many plants are still infested after a day: not found yet, and flagged."""
+        """Return how many plants are still infested after a day: not found yet, and flagged.
+
+        Parameters
+        ----------
+        on
+            The day.
+        """
         if self._now().settings.belief.treated:
             return self.day_figures(on).estimate  # it stands in the file
         with self._asked(on) as (contents, morning, day):

@@ -277,6 +277,7 @@ def test_in_hindsight_an_evening_says_what_the_next_morning_does_of_the_same_fin
 
 def test_once_it_is_told_who_infested_whom_the_number_is_in_less_doubt():
     belief, plants = TracedPairs.of(GRID, FLAT), np.arange(40, dtype=np.int32)
+    belief = replace(belief, others=())  # no heavier infestation is thought of
     idle, evening = belief.overnight(QUIET), belief.learn(plants, plants == 7, LEARNING)
     for untold in (belief, idle, evening):
         assert untold.doubt == replace(untold, ancestry=None).doubt

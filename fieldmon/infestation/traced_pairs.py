@@ -54,7 +54,7 @@ from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.plot_estimate import drawn_numbers
-from fieldmon.infestation.prior import scaled
+from fieldmon.infestation.prior import odds_ratio
 from fieldmon.infestation.reach import pest_reach_of, reach_of
 from fieldmon.infestation.traced_day import KernelRoom, TracedDay, learn_day
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
@@ -348,17 +348,16 @@ class TracedPairs:
         if not len(told):
             return []
         return [
-            self._told_of(scaled(told, share), known, likely)
+            self._told_of(odds_ratio(told, share), known, likely)
             for share, likely in heavier_than(
                 float(told.mean()), found, learning.detects(len(found))
             )
         ]
 
-    def _told_of(self, told: Floats, known: NDArray[np.bool_], likely: float) -> TracedPairs:
-        """Return this map with other chances of the plants that are not `known` ``(n,)``."""
-        chance = self.chance.copy()
-        chance[~known] = np.clip(told, LEAST_CHANCE, _UNKNOWN)
-        factor = float(_odds(told[0]) / _odds(self.chance[~known][0]))
+    def _told_of(self, factor: float, known: NDArray[np.bool_], likely: float) -> TracedPairs:
+        """Return this map with so much higher odds of the plants that are not `known` ``(n,)``."""
+        told = np.clip(odds_times(self.chance, factor), LEAST_CHANCE, _UNKNOWN)
+        chance = np.where(known, self.chance, told)
         ancestry = self.ancestry and replace(
             self.ancestry, start=odds_times(self.ancestry.start, factor)
         )

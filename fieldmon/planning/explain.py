@@ -133,7 +133,7 @@ def _block(
         np.zeros(len(plants), np.bool_) if left_out is None else left_out[plants]
         for left_out in (scene.skipped, scene.flagged)
     )
-    wished = skipped | flagged
+    wished = scene.left_out[plants]
     unseen = last == NEVER
     never = int(np.count_nonzero(unseen & ~recorded[plants]))
     known = int(np.count_nonzero(unseen)) - never

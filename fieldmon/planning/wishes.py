@@ -64,9 +64,7 @@ class Wishes:
         wanted, unwanted = (np.array(some, np.intp) for some in (self.wanted, self.unwanted))
         chance, seen = scene.chance.copy(), scene.last_inspected.copy()
         chance[wanted] = np.maximum(chance[wanted], _SURE)
-        for left_out in (scene.skipped, scene.flagged):
-            if left_out is not None:
-                seen[wanted[left_out[wanted]]] = NEVER
+        seen[wanted[scene.left_out[wanted]]] = NEVER
         seen[unwanted] = scene.day
         pairs = scene.pair_chance
         if pairs is not None and len(wanted):

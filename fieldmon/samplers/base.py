@@ -177,15 +177,22 @@ class Scene:
             return self.at
         return int(self.trail[-1]) if len(self.trail) else NEVER
 
+    @property
+    def left_out(self) -> NDArray[np.bool_]:
+        """Return which plants are left out of what is planned, `skipped` or `flagged`, ``(n,)``."""
+        out = np.zeros(len(self.last_inspected), np.bool_)
+        for mask in (self.skipped, self.flagged):
+            if mask is not None:
+                out |= mask
+        return out
+
     def are_open(self, plants: NDArray[np.integer]) -> NDArray[np.bool_]:
         """Return which plants ``(k,)`` a route given out may lead to still.
 
         Those that are left out only of what is planned: who gave it out wished for them.
         """
         opened: NDArray[np.bool_] = self.last_inspected[plants] != self.day
-        for left_out in (self.skipped, self.flagged):
-            if left_out is not None:
-                opened |= left_out[plants]
+        opened |= self.left_out[plants]
         return opened
 
     def seen(self) -> Scene:

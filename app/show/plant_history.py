@@ -12,8 +12,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.inspections import FOUND, SKIPPED
-from fieldmon.io.parse.result_words import says_gone
+from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import photos
 from fieldmon.pests.weather import DAY_S
 from fieldmon.plot.grid import plant_at, row_label
@@ -182,12 +181,13 @@ def _events(choices: Choices, plant: int) -> list[str]:
     season = choices.season
     if season is None:
         return [texts.HISTORY_NEVER]
-    done = season.history.inspections
-    done = done.take(done.plant == plant)
+    history = season.history
+    own = history.inspections.plant == plant
+    done, gone = history.inspections.take(own), history.says_gone[own]
     days, lines = done.date.tolist(), []
     for k, second in enumerate(done.second.tolist()):
         result = texts.HISTORY_RESULTS[int(done.result[k])]
-        if done.result[k] == SKIPPED and says_gone(str(done.notes[k])):
+        if gone[k]:
             result = texts.RESULTS_OF[3]
         lines.append(_line(choices, days[k], second, result))
     treated = [one for one in season.treatments() if one.place.plants[plant]]

@@ -349,8 +349,10 @@ class History:
     ) -> Belief:
         """Return what is believed after a day, and after inspections `later` in its work."""
         rows = self._rows_of(day)
-        which = np.append(np.arange(rows.start, rows.stop), [] if later is None else later)
-        which = which.astype(np.int64)[self.inspections.result[which.astype(np.int64)] != SKIPPED]
+        which = np.arange(rows.start, rows.stop)
+        if later is not None:
+            which = np.append(which, later)
+        which = which[self.inspections.result[which] != SKIPPED]
         second = self.inspections.second[which] + np.where(self.days[which] > day, DAY_S, 0.0)
         today = [one for one in self.treatments if one.day == day]
         believed = morning
@@ -438,8 +440,7 @@ class History:
 
         A treatment leaves some of them in doubt, as all other plants.
         """
-        flagged = self._flagged(day)
-        return None if flagged is None else flagged & (evening.chance > KNOWN)
+        return still_certain(evening, self._flagged(day))
 
     def level_range(self, morning: Belief, day: int) -> LevelRange:
         """Return how far the chances of plants not found yet may be off together, after a day."""
@@ -698,6 +699,14 @@ def in_hindsight(evening: Belief, night: Spread) -> Belief:
     return evening.in_hindsight(night) if isinstance(evening, TracedPairs) else evening
 
 
+def still_certain(believed: Belief, flagged: NDArray[np.bool_] | None) -> NDArray[np.bool_] | None:
+    """Return of which `flagged` plants ``(n,)`` it is certain that they are infested (None: none).
+
+    A treatment, or a clean inspection, leaves them in doubt.
+    """
+    return None if flagged is None else flagged & (believed.chance > KNOWN)
+
+
 def infested_in_all(
     grid: PlantGrid, believed: Belief, flagged: NDArray[np.bool_] | None, sure: float = 0.9
 ) -> PlotEstimate:
@@ -705,8 +714,7 @@ def infested_in_all(
 
     With one of which it is certain the plot is not clean. A treatment leaves them in doubt.
     """
-    certain = None if flagged is None else flagged & (believed.chance > KNOWN)
-    made = estimate_of(grid, believed, sure, certain)
+    made = estimate_of(grid, believed, sure, still_certain(believed, flagged))
     return made.beside(made.found)
 
 

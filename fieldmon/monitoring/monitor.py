@@ -26,13 +26,18 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.ranges import DAYS
 from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.chance_bounds import KNOWN
 from fieldmon.infestation.forecast import NIGHTS, forecast
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.monitoring.history import BeliefSettings, in_hindsight, in_sight, not_found_yet
+from fieldmon.monitoring.history import (
+    BeliefSettings,
+    in_hindsight,
+    in_sight,
+    not_found_yet,
+    still_certain,
+)
 from fieldmon.planning.plan import plan_in
 from fieldmon.planning.skips import Skips, without_flagged, without_skipped
 from fieldmon.plot.grid import row_label
@@ -327,7 +332,7 @@ class Monitor:
     @property
     def _known(self) -> NDArray[np.bool_] | None:
         """Those of which it is certain, as nobody treated the plot since; None: there are none."""
-        return None if self._left is None else self._left & (self._belief.chance > KNOWN)
+        return still_certain(self._belief, self._left)
 
     @property
     def last_inspected(self) -> NDArray[np.int32]:

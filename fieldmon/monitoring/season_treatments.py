@@ -264,12 +264,12 @@ class SeasonTreatments(OpenSeason):
         plants = self._each_plant(plants)
         if not product.strip() or not plants.any():
             return ()
-        done, rules, _ = self._held_to(units)
+        with self._lock, self.store.reading() as db:  # all of one moment
+            done, rules = self._done_and_rules(db, units)
+            day = settings_of(db).day(on)
         batch = max((one.batch for one in done), default=0) + 1
         clock = local_clock(self.plot.field)
         place = TreatedPlace(self.plot.field.boundary, plants, None)
-        with self._lock, self.store.reading() as db:
-            day = settings_of(db).day(on)
         wanted = KeptTreatment(
             batch, batch, day, on, place, 0.0, Application(product.strip()),
             end_of(clock, on, None), clock,
@@ -282,11 +282,16 @@ class SeasonTreatments(OpenSeason):
     ) -> tuple[tuple[KeptTreatment, ...], RulesToKeep, Inspections]:
         """Return the treatments that count, what they are held to, and what was inspected."""
         with self._lock, self.store.reading() as db:  # all of one moment
-            done = self._treatments(db)
-            settings, labels = settings_of(db), label_table.read(db)
-            seen = self._inspections(db) if done else Inspections.none()
-        rules = RulesToKeep(labels, settings.harvest, settings.starts)
-        return done, rules if units is None else replace(rules, units=units), seen
+            done, rules = self._done_and_rules(db, units)
+            return done, rules, self._inspections(db) if done else Inspections.none()
+
+    def _done_and_rules(
+        self, db: sqlite3.Connection, units: Units | None
+    ) -> tuple[tuple[KeptTreatment, ...], RulesToKeep]:
+        """Return the treatments that count, and what they are held to."""
+        settings = settings_of(db)
+        rules = RulesToKeep(label_table.read(db), settings.harvest, settings.starts)
+        return self._treatments(db), rules if units is None else replace(rules, units=units)
 
     def harvest_from(self, on: date) -> tuple[date | None, KeptTreatment] | None:
         """Return the first day of harvest that treatments until `on` allow, and which one waits.

@@ -173,7 +173,14 @@ class _OfDay(NamedTuple):
 def told_detection(db: sqlite3.Connection, inspections: Inspections, begins: date) -> Floats:
     """Return what each inspection of a season was told to find of what is there, ``(k,)``."""
     told = _told(db)
-    own = _own(db, inspections, begins, told)
+    return _held(db, inspections, begins, (told, _own(db, inspections, begins, told)))
+
+
+def _held(
+    db: sqlite3.Connection, inspections: Inspections, begins: date, read: tuple[_Told, Floats]
+) -> Floats:
+    """Return the same by all that was told, and by what a season reads them of itself, ``(k,)``."""
+    told, own = read
     said = _said_otherwise(inspections, own)
     if len(said) and any(told.before_pest):
         recorded = _moments(db, inspections, begins, said)
@@ -191,8 +198,9 @@ def told_otherwise(
     """Return which inspections are read by what was said with them, and not by the season's own."""
     if np.isnan(inspections.detects).all():
         return ()
-    own = _own(db, inspections, begins, _told(db))
-    held = told_detection(db, inspections, begins)
+    told = _told(db)
+    own = _own(db, inspections, begins, told)
+    held = _held(db, inspections, begins, (told, own))
     apart = held != own
     done, held, own = inspections.take(apart), held[apart], own[apart]
     people = {name: person_key(name) for name in dict.fromkeys(done.who.tolist())}

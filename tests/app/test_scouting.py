@@ -528,6 +528,15 @@ def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone,
     page.locator("#close").click()
     clean, found = page.evaluate(lefts)
     assert clean < found, "under the left thumb"
+    page.locator("#open_menu").click()
+    page.evaluate(  # the other hand, and closed before that is kept
+        "document.querySelectorAll('fieldset button')[1].click();"
+        "document.getElementById('close').click(); document.getElementById('menu').id = 'old_menu'"
+    )
+    page.locator("#menu").wait_for(state="attached")
+    assert not page.locator("#menu").evaluate("(menu) => menu.open")
+    clean, found = page.evaluate(lefts)
+    assert clean > found, "under the right thumb again"
 
 
 def test_texts_that_do_harm_are_text_on_the_page_too(season, line, phone):

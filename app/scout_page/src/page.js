@@ -40,14 +40,17 @@ export class Page {
     this.bar = h("header", { id: "bar" });
     this.note = h("p", { id: "note", role: "status", "aria-live": "polite" });
     this.sheet = h("main", { id: "sheet" });
+    const before = this.menu; // it may have been closed since something was chosen in it
     this.menu = h("dialog", { id: "menu" });
     const tool = (name, act, sign) => h("button", { type: "button", class: "tool", title: say(name), "aria-label": say(name), onclick: act }, sign);
     const tools = h("div", { id: "tools" }, tool("zoom_in", () => this.map.zoom(1.6), "+"), tool("zoom_out", () => this.map.zoom(1 / 1.6), "−"),
       tool("to_next", () => this.map.look(this.field.plant), "◎"), tool("whole_plot", () => this.map.fit(), "⛶"));
+    const chosenInMenu = before?.open && before.dataset.of === "menu";
     this.root.replaceChildren(this.bar, h("section", { id: "stage", "aria-label": say("map_of") }, this.canvas, tools, this.note), this.sheet, this.menu);
     this.map = new PlotMap(this.canvas, { picked: (plant) => this.#act(() => this.field.goTo(plant)) });
     this.map.theme = this.theme;
     this.#laidOut = null;
+    if (chosenInMenu) this.#openMenu();
     await this.refresh();
   }
 
@@ -67,9 +70,9 @@ export class Page {
 
   async choose(changes) {
     Object.assign(this.choices, changes);
+    this.#dress(); // hand and theme are seen at once
     await this.store.put({ choices: this.choices });
     await this.build(this.choices);
-    this.#openMenu();
   }
 
   /** How sending goes. */

@@ -23,19 +23,21 @@ TREATED_SINCE = 2
 def latest_states(history: History, day: int, *, own: bool = False) -> NDArray[np.int8]:
     """Return ``(n,)`` 1 found infested, 0 only looked clean, -1 never seen, or `TREATED_SINCE`.
 
-    A treatment works after the inspections of its day. Of a plant that was inspected after its last
-    treatment only that counts. `own`: by the season's inspections alone, without the records of
-    before.
+    Of a plant that was inspected after its last treatment only that counts; what was inspected on
+    the day of a treatment without a time was so before it, as in `History.inspected_after`. `own`:
+    by the season's inspections alone, without the records of before.
     """
     n, done = len(history.grid), history.until(day)
     looked = done.result != SKIPPED
     plant, result = done.plant[looked], done.result[looked]
-    on = history.days[: len(done)][looked]
-    treated = np.full(n, -1, np.int64)
-    for treatment in history.treatments:
+    on, second = history.days[: len(done)][looked], done.second[looked]
+    treated, treated_s = np.full(n, -1, np.int64), np.zeros(n)
+    for treatment in sorted(history.treatments, key=lambda one: (one.day, one.second)):
         if treatment.day <= day:
-            treated[treatment.plants] = np.maximum(treated[treatment.plants], treatment.day)
-    since = on > treated[plant]
+            treated[treatment.plants] = treatment.day
+            treated_s[treatment.plants] = treatment.second
+    last = treated[plant]
+    since = (on > last) | ((on == last) & (second > treated_s[plant]))
     before, after = np.full((2, n), UNKNOWN, np.int8)
     np.maximum.at(before, plant[~since], result[~since])
     np.maximum.at(after, plant[since], result[since])

@@ -1,17 +1,27 @@
 """What was seen of a plant since its last treatment is what is known of it."""
 
+from dataclasses import replace
+from datetime import date
+
 import numpy as np
 import pytest
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
+from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.history import History, Treatment
 from fieldmon.monitoring.plant_states import (
     TREATED_SINCE,
     hot_spots_on,
     latest_states,
     shown_states,
 )
-from tests.monitoring.seasons import a_season, on
+from tests.monitoring.seasons import a_plot, a_season, on
+
+PLOT = a_plot()
+N = len(PLOT.grid)
+BEGINS = date(2026, 4, 6)
+MORNING = PairApproximation.of(PLOT.grid, np.full(N, 0.02))
 
 
 def seen(season, day, **results):
@@ -52,6 +62,20 @@ def test_a_later_treatment_puts_a_find_in_doubt_again(season):
     assert latest_states(season.history, 3)[[101, 200]].tolist() == [TREATED_SINCE] * 2
     seen(season, 4, clean=[101])
     assert latest_states(season.history, 4)[[101, 200]].tolist() == [CLEAN, TREATED_SINCE]
+
+
+def test_what_was_seen_later_on_the_day_of_a_treatment_counts_after_it():
+    done = Inspections.of(
+        np.array([5, 6, 7, 8]), np.array([FOUND, FOUND, CLEAN, FOUND]), np.datetime64(BEGINS),
+        second=np.array([21_600.0, 43_200.0, 43_200.0, np.nan]),
+    )  # fmt: skip
+    at_7, at_10 = (Treatment(0, np.ones(N, bool), 0.5, hour * 3600.0) for hour in (7, 10))
+    history = History(PLOT.grid, BEGINS, MORNING, done, (at_10, at_7))
+    assert latest_states(history, 0)[[5, 6, 7, 8, 9]].tolist() == [
+        *(TREATED_SINCE, FOUND, CLEAN, TREATED_SINCE, -1),
+    ]
+    untold = replace(history, treatments=(Treatment(0, np.ones(N, bool), 0.5), at_7))
+    assert latest_states(untold, 0)[[5, 6, 7]].tolist() == [TREATED_SINCE, TREATED_SINCE, CLEAN]
 
 
 def test_records_of_before_count_as_seen_before_a_treatment(tmp_path):

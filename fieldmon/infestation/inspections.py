@@ -211,3 +211,26 @@ class Inspections:
     def inspected(self) -> Inspections:
         """Return those at which the plant was really inspected."""
         return self.take(self.result != SKIPPED)
+
+
+def after_their_find(
+    plants: NDArray[np.integer[Any]], found: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Return which inspections are of a plant that was found infested before, ``(k,)``.
+
+    Parameters
+    ----------
+    plants, found
+        ``(k,)`` plants in the order in which they were inspected, and whether each was found
+        infested.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> after_their_find(np.array([7, 7, 3, 7]), np.array([False, True, True, True])).tolist()
+    [False, False, False, True]
+    """
+    which, nth = np.unique(plants, return_inverse=True)
+    first = np.full(len(which), len(plants))
+    np.minimum.at(first, nth[found], np.flatnonzero(found))
+    return np.arange(len(plants)) > first[nth]

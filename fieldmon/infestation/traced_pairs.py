@@ -51,7 +51,7 @@ from fieldmon.infestation.origins import (
 )
 from fieldmon.infestation.pair_changes import pairs_after_arrivals, pairs_scaled
 from fieldmon.infestation.pair_nights import night_of_pairs
-from fieldmon.infestation.pairs import Neighbourhood, pair_chances
+from fieldmon.infestation.pairs import Neighbourhood, pair_chances, pairs_left
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.plot_estimate import drawn_numbers
 from fieldmon.infestation.prior import odds_ratio
@@ -656,8 +656,11 @@ class TracedPairs:
     def treated(self, left: Floats) -> TracedPairs:
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
         start, other = self.grid.adjacent
-        chance = np.maximum(self.chance * left, LEAST_CHANCE)
-        together = self.pair_chance * np.repeat(left, np.diff(start)) * left[other]
+        # found since the night, and treated then
+        found = (self.unseen == 0.0) & (self.chance < _PROBABLE)
+        apart = np.repeat(found, np.diff(start)) | found[other]
+        believed = self.chance, self.pair_chance
+        chance, together = pairs_left(believed, self.grid, left, apart)
         latency = self.latency and self.latency.treated(left)
         ancestry = self.ancestry and self.ancestry.anew(chance)
         others = self.others and tuple(one.treated(left) for one in self.others)

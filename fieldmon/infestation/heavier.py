@@ -3,8 +3,8 @@
 A map that was told of few puts finds beside finds down to clusters, however many there are. So from
 the first inspection on, maps that were told of more are kept beside it (contaminated prior: Berger
 & Berliner 1986), and the one is believed by which all inspections so far were likeliest, each as it
-was expected just before (prequential: Dawid 1984). What is hardly possible any more is dropped. Where
-none is left and a day speaks against the map, some are thought of again.
+was expected just before (prequential: Dawid 1984). What is hardly possible any more is dropped.
+Once none is left and a day speaks against the map, they are thought of again.
 """
 
 from __future__ import annotations

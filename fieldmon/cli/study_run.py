@@ -86,7 +86,11 @@ class StudyOptions:
         ),
     ] = 1
     on: Annotated[
-        str | None, typer.Option("--date", help="First day, YYYY-MM-DD; default: today.")
+        str | None,
+        typer.Option(
+            "--date",
+            help="First day, YYYY-MM-DD; default: that of the folder's study, or today.",
+        ),
     ] = None
     workers: Annotated[
         int | None,
@@ -135,9 +139,11 @@ class StudyOptions:
         from fieldmon.io.options import PlotOptions
         from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
         from fieldmon.plot.plot import planting_of
+        from fieldmon.simulation.results import first_day
         from fieldmon.simulation.study_plot import StudyPlot
 
-        told = day(self.on)
+        # the same command goes on tomorrow with the study of today
+        told = day(self.on) or first_day(self.output)
         records = None if self.observations is None else RecordSource(self.observations)
         sources = PlotSources(self.plot, PlotOptions(feature=self.feature))
         choices, terminal = self.planting(), Terminal(flags={})

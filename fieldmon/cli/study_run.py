@@ -184,9 +184,9 @@ def study_run(options: StudyOptions) -> None:
         if is_own(levels.sampler):  # what it answers wrongly is said before many work on it
             simulate_chunk((plots[0], levels), range(design.first_seed, design.first_seed + 1), 1)
     _tell_charged(design.robot_times)
+    folder = results.StudyFolder(output, plots, design)
     with executor.cluster(options.scheduler, options.workers) as workers:
         typer.echo(f"Dashboard: {workers.dashboard}", err=True)
-        folder = results.StudyFolder(output, plots, design)
         with counting("Simulating") as count:
             run(study_of(plots, design), workers, folder, count)
     for name, sentence in folder.refused.items():

@@ -98,7 +98,9 @@ class Design:
         What later versions added counts only where it is said: studies of before can go on.
         """
         said = asdict(self)
-        usual = {"robot_times": USUAL_TIMES, "visit_every": 1}
+        usual = {"robot_times": USUAL_TIMES, "visit_every": 1, "own_code": {}}
+        own = [name for name in self.samplers if is_own(name)]
+        said["own_code"] = {label_of(name): digest(own_text(name), length=DIGITS) for name in own}
         return {name: value for name, value in said.items() if value != usual.get(name)}
 
     @property

@@ -43,7 +43,7 @@ SCHEMA = pa.schema(
 )
 _ORDER = ("plot", "sampler", "hours", "look_s", "infested", "spread", "seed")
 # what later versions added to a manifest: studies of before do not say it, and can go on
-_LATER = ("first_day",)
+_LATER = ("first_day", "own_code")
 # what people call the parts of a manifest
 _CALLED = {
     "look_s": "inspection time", "infested": "share infested", "n_days": "days", "n_seeds": "seeds",
@@ -157,6 +157,11 @@ def _why_another(there: dict[str, Any], said: dict[str, Any]) -> str:
         # a plot's digest knows the day
         if _names(told) == _names(said) and "plots" in others:
             others.remove("plots")
+    if "own_code" in others:
+        others.remove("own_code")
+        own, asked = told.get("own_code", {}), said.get("own_code", {})
+        if changed := [name for name in own if asked.get(name, own[name]) != own[name]]:
+            why.append(f"its seasons of {' and '.join(changed)} are of other code than the file's")
     if others:
         why.append(f"its {' and '.join(called.get(name, name) for name in others)} are others")
     return ", and ".join(why)

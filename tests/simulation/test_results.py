@@ -100,6 +100,22 @@ def test_a_study_of_before_that_does_not_say_its_first_day_goes_on_and_says_it(t
     assert results.first_day(tmp_path) == DAY.item()
 
 
+def test_seasons_of_a_sampler_whose_file_has_changed_are_not_mixed_with_those_of_before(tmp_path):
+    file, folder = tmp_path / "own.py", tmp_path / "study"
+    code = "from fieldmon.samplers.sweeps import Naive\nclass Mine(Naive):\n    pass\n"
+    file.write_text(code)
+    asked = replace(SMALL, samplers=(f"{file}:Mine", "naive"))
+    StudyFolder(folder, [plot()], asked)
+    file.write_text(f"{code}    more = 1\n")
+    says = r"another study.*: its seasons of Mine are of other code than the file's\. Choose"
+    with pytest.raises(SettingError, match=says):
+        StudyFolder(folder, [plot()], asked)
+    with pytest.raises(SettingError, match=r": its samplers are others\."):
+        StudyFolder(folder, [plot()], SMALL)
+    file.write_text(code)
+    StudyFolder(folder, [plot()], asked)
+
+
 @pytest.mark.parametrize("text", ["", "[1]", '{"first_day": 3}', '{"first_day": "today"}'])
 def test_a_manifest_that_was_cut_or_changed_is_a_sentence(tmp_path, text):
     (tmp_path / MANIFEST).write_text(text)

@@ -14,7 +14,7 @@ from fieldmon.compute.ranges import DAYS
 from fieldmon.errors import SettingError
 from fieldmon.plot.robot import USUAL_TIMES, Robot
 from fieldmon.samplers import COMPARED, kind_of, sampler_or_name
-from fieldmon.samplers.own import is_own, label_of, own_text
+from fieldmon.samplers.own import is_own, label_of, labels_of, own_text
 from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.season import visits_in
 from fieldmon.simulation.study_plot import DIGITS, Combination, StudyPlot, as_written
@@ -67,11 +67,7 @@ class Design:
         for name in self.samplers:
             sampler_or_name(name)
         Robot().with_times(self.robot_times)
-        labels = [label_of(name) for name in self.samplers]
-        if len(set(labels)) < len(labels):
-            raise SettingError(
-                f"Samplers of a study must have different names, but they are {', '.join(labels)}."
-            )
+        labels_of(self.samplers)
         for named in fields(self)[:5]:
             values = getattr(self, named.name)
             if not values or len(set(values)) < len(values):

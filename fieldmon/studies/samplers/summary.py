@@ -33,11 +33,22 @@ OTHERS = (PAIRS, WORDED, TUNED, NAIVE)
 _NEVER_WORSE = 1.05
 
 
+def names_in(outcomes: Sequence[SeasonOutcome]) -> tuple[str, ...]:
+    """Return the names of contenders: the study's own, then those that were added."""
+    return tuple(dict.fromkeys([*NAMES, *(outcome.contender for outcome in outcomes)]))
+
+
+def others_in(outcomes: Sequence[SeasonOutcome]) -> tuple[str, ...]:
+    """Return whom Adaptive is held against: `OTHERS`, and those that were added."""
+    return *OTHERS, *(name for name in names_in(outcomes) if name not in NAMES)
+
+
 def by_scenario(outcomes: Sequence[SeasonOutcome], measure: str) -> MeasureTable:
     """Return one measure by scenario and contender, ``(seeds,)`` each, seeds in order."""
     table: dict[str, dict[str, dict[int, float]]] = {}
+    names = names_in(outcomes)
     for outcome in outcomes:
-        contenders = table.setdefault(outcome.scenario, {name: {} for name in NAMES})
+        contenders = table.setdefault(outcome.scenario, {name: {} for name in names})
         contenders[outcome.contender][outcome.seed] = getattr(outcome, measure)
     return {
         scenario: {name: np.array([v[seed] for seed in sorted(v)]) for name, v in values.items()}
@@ -46,12 +57,12 @@ def by_scenario(outcomes: Sequence[SeasonOutcome], measure: str) -> MeasureTable
 
 
 def ratios(outcomes: Sequence[SeasonOutcome]) -> dict[str, dict[str, Ratio]]:
-    """Return Adaptive's infested plant-days over each other's, by scenario and `OTHERS`."""
-    loss = by_scenario(outcomes, "infested_plant_days")
+    """Return Adaptive's infested plant-days over each other's, by scenario and `others_in`."""
+    loss, others = by_scenario(outcomes, "infested_plant_days"), others_in(outcomes)
     return {
         name: {
             other: paired_ratio(who[ADAPTIVE], who[other])
-            for other in OTHERS
+            for other in others
             if len(who[other]) == len(who[ADAPTIVE])
         }
         for name, who in loss.items()
@@ -61,10 +72,11 @@ def ratios(outcomes: Sequence[SeasonOutcome]) -> dict[str, dict[str, Ratio]]:
 def ratio_lines(outcomes: Sequence[SeasonOutcome]) -> list[str]:
     """Return the ratios as lines of text, a scenario each, after a heading."""
     made, head = ratios(outcomes), "Infested plant-days of adaptive over those of"
+    compared = others_in(outcomes)
     width = 2 + max(len(name) for name in (head, *made))
-    lines = [f"{head:{width}}" + _columns(OTHERS)]
+    lines = [f"{head:{width}}" + _columns(compared)]
     for name, others in made.items():
-        lines.append(f"{name:{width}}" + _columns(str(others.get(other, "")) for other in OTHERS))
+        lines.append(f"{name:{width}}" + _columns(str(others.get(one, "")) for one in compared))
     return lines
 
 
@@ -76,7 +88,7 @@ def sentences(outcomes: Sequence[SeasonOutcome]) -> list[str]:
     """Return what the study found, with the numbers, whichever way they fall."""
     loss = by_scenario(outcomes, "infested_plant_days")
     said = verdict(outcomes)
-    for other in (WORDED, TUNED):
+    for other in (WORDED, TUNED, *(one for one in others_in(outcomes) if one not in OTHERS)):
         ratios = {name: paired_ratio(who[ADAPTIVE], who[other]).value for name, who in loss.items()}
         half = sum(value <= 0.5 for value in ratios.values())
         below = sum(value < 1.0 for value in ratios.values())
@@ -120,7 +132,7 @@ def verdict(outcomes: Sequence[SeasonOutcome]) -> list[str]:
     first = "; ".join(f"{who} in {n}" for n, who in counts)
     said = [f"Fewest infested plant-days, of {len(loss)} scenarios: {first}."]
     made = ratios(outcomes)
-    for other in OTHERS:
+    for other in others_in(outcomes):
         held = [each[other] for each in made.values() if other in each]
         if held:
             fewer = sum(one.high < 1.0 for one in held)

@@ -15,8 +15,17 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+# what studies write into their folder
+_WRITTEN = (".csv", ".html", ".md")
+
+
 def can_be_folder(output: Path) -> None:
     """Refuse a folder that cannot be made or written to, before anything is simulated for it."""
+    if output.suffix.lower() in _WRITTEN and not output.exists():
+        raise FileProblem(
+            f"-o must be the folder into which files are written, but {output} is the "
+            "name of a file. Name a folder."
+        )
     there = next(place for place in (output, *output.absolute().parents) if place.exists())
     if not there.is_dir():
         raise FileProblem(f"{output} must be a folder, but {there} is a file. Choose another one.")

@@ -22,6 +22,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.preparing import estate
+from fieldmon.cli.study_output import can_be_folder
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, DAYS, SEASONS, SEED, SHARE
@@ -179,6 +180,7 @@ def study_run(options: StudyOptions) -> None:
     from fieldmon.simulation.experiment import run
     from fieldmon.simulation.worker import simulate_chunk
 
+    can_be_folder(options.output)
     design, plots, output = options.design(), options.plots(), options.output
     for levels in design.combinations:
         if is_own(levels.sampler):  # what it answers wrongly is said before many work on it

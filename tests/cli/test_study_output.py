@@ -31,6 +31,15 @@ def test_a_folder_is_made_when_there_is_something_to_write(tmp_path):
     assert (folder / "a.csv").read_text() == "x\n"
 
 
+@pytest.mark.parametrize("name", ["c.csv", "report.HTML"])
+def test_a_folder_that_is_called_as_a_file_is_refused_unless_it_is_there(tmp_path, name):
+    with pytest.raises(FileProblem, match=rf"but .*{name} is the name of a file\. Name a folder"):
+        can_be_folder(tmp_path / name)
+    (tmp_path / name).mkdir()
+    can_be_folder(tmp_path / name)
+    can_be_folder(tmp_path / "seasons.parquet")
+
+
 def test_what_stands_in_the_way_of_a_folder_is_named(tmp_path):
     (tmp_path / "file").touch()
     for place in ("file", "file/inside"):

@@ -36,6 +36,7 @@ def test_samplers_are_compared_on_a_plot_and_the_seasons_kept(run, tmp_path):
     ("words", "says"),
     [
         (["--sampler", "best"], "best"),
+        (["-o", "seasons.csv", "--feature", "Nursery", *FEW], "seasons.csv is the name of a file"),
         (["--infested", "2"], "between 0 and 1"),
         (["--date", "today"], "YYYY-MM-DD"),
         (["--pest", "mote"], "one of thesis, spider-mite"),

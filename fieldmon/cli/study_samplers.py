@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,6 +25,10 @@ if TYPE_CHECKING:
     from fieldmon.studies.samplers.contenders import Added
     from fieldmon.studies.samplers.scenarios import Scenario
     from fieldmon.studies.samplers.seasons import SeasonOutcome
+
+
+# names of scenarios that a sentence has room for
+_NAMED = 5
 
 
 @dataclass(frozen=True)
@@ -147,8 +152,26 @@ def _scenarios(
         scenarios = [*scenarios, *in_worlds()]
     meant = [each for each in scenarios if each.name.startswith(tuple(beginnings))]
     if not meant:
-        raise SettingError(f"A scenario must begin with {' or '.join(beginnings)}, but none does.")
+        raise SettingError(_none_begins_so(beginnings, scenarios, full=full))
     return meant
+
+
+def _none_begins_so(beginnings: list[str], known: list[Scenario], *, full: bool) -> str:
+    """Return what is said where no scenario is meant: the names that begin most alike."""
+
+    def alike(name: str) -> int:
+        pairs = [zip(name, beginning, strict=False) for beginning in beginnings]
+        return max(sum(1 for _ in takewhile(lambda two: two[0] == two[1], each)) for each in pairs)
+
+    # sorted keeps the order of those that are equally alike
+    names = sorted((each.name for each in known), key=alike, reverse=True)
+    near = ", ".join(f'"{name}"' for name in names[:_NAMED])
+    said = " or ".join(f'"{beginning}"' for beginning in beginnings)
+    more = "" if full else ", and more with --full"
+    return (
+        f"--scenario must be how a scenario's name begins, but none begins with {said}. There are "
+        f"{len(names)}, for instance {near}{more}."
+    )
 
 
 def _outcomes(

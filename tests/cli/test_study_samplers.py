@@ -10,13 +10,21 @@ from tests.cli.estate import table
     ("words", "says"),
     [
         (["-o", __file__], "must be a folder"),
-        (["--scenario", "Z", "--scenario", "Y"], "A scenario must begin with Z or Y"),
+        (["--scenario", "Z", "--scenario", "Y"], 'but none begins with "Z" or "Y". There are '),
+        (
+            ["--scenario", "C, start"],
+            ', for instance "C, spread 30% to one, clus',
+        ),
+        (["--scenario", "C, start"], '", and more with --full.'),
         (["--maps", "."], "must hold a map of plants"),
         (["--pest", "whitefly", "--tune"], "--pest goes without --maps"),
         (["--sampler", "snake", "--tune"], "--sampler goes without --tune"),
         (["--sampler", "best"], "A sampler must be one of naive, bouncy"),
         (["--visit-every", "7", "--tune"], "--visit-every goes without --maps and --tune"),
-        (["--pest", "whitefly", "--scenario", "world"], "must begin with world"),
+        (
+            ["--pest", "whitefly", "--scenario", "A, spread"],
+            ', for instance "A, whitefly',
+        ),
     ],
 )
 def test_bad_words_are_a_sentence(run, words, says):

@@ -28,7 +28,7 @@ from fieldmon.cli.options import (
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER, SamplerName
-from fieldmon.cli.study_output import can_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, PAIRED
@@ -245,7 +245,7 @@ def _outcomes(settings: list[TeamSetting], options: CompareOptions) -> list[Team
     study = study_of(settings, range(1, options.seeds + 1))
     file = options.output / "robots.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], TeamOutcome)
-    with counting("Seasons") as count, table, executor.threads() as workers:
+    with going_on(file), counting("Seasons") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     typer.echo(f"Seasons written to {file}")
     return table.asked()

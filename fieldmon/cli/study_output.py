@@ -34,13 +34,13 @@ def can_be_folder(output: Path) -> None:
 
 
 @contextmanager
-def going_on(table: Path) -> Iterator[None]:
-    """Say, where a person stops a study, that its table keeps what is done."""
+def going_on(kept: Path) -> Iterator[None]:
+    """Say, where a person stops a study, that its table or folder keeps what is done."""
     try:
         yield
     except KeyboardInterrupt:
         typer.echo(
-            f"What is done is kept in {table}; the same command goes on from there.", err=True
+            f"What is done is kept in {kept}; the same command goes on from there.", err=True
         )
         raise
 

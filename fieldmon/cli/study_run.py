@@ -22,7 +22,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.preparing import estate
-from fieldmon.cli.study_output import can_be_folder
+from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, DAYS, SEASONS, SEED, SHARE
@@ -187,7 +187,7 @@ def study_run(options: StudyOptions) -> None:
             simulate_chunk((plots[0], levels), range(design.first_seed, design.first_seed + 1), 1)
     _tell_charged(design.robot_times)
     folder = results.StudyFolder(output, plots, design)
-    with executor.cluster(options.scheduler, options.workers) as workers:
+    with going_on(output), executor.cluster(options.scheduler, options.workers) as workers:
         typer.echo(f"Dashboard: {workers.dashboard}", err=True)
         with counting("Simulating") as count:
             run(study_of(plots, design), workers, folder, count)

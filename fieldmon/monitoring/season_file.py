@@ -198,7 +198,9 @@ class Season(SeasonPlans, SeasonFrames):
         else:
             made = assumed_by(laid, prior, settings.robot, self.plot.grid)
         rate, usual = settings.belief.spread.rate_per_day, BeliefSettings()
-        if settings.pest is None and rate == usual.spread.rate_per_day:
+        if settings.pest is not None:
+            made = (*made, *settings.pest.assumed)
+        elif rate == usual.spread.rate_per_day:
             made = (*made, Assumed("rate_per_day", rate))
         if settings.belief.treated == usual.treated:
             made = (*made, Assumed("treated", 1.0))

@@ -31,11 +31,12 @@ from fieldmon.io.read import (
     read_plots,
     read_rows,
 )
-from fieldmon.io.readers.nearby import distance_m, plants_on
+from fieldmon.io.readers.nearby import plants_on
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.plot import Plot, planting_of
+from fieldmon.plot.plants_outside import distance_m
+from fieldmon.plot.plot import Plot, planting_of, plot_around
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -239,7 +240,7 @@ def lay_around(
     if not choices.in_rows:
         return Laid(Plot.among(name, measured.lonlat.copy(), sources.gate))
     plants = measured.lonlat.copy()
-    return Laid(Plot.around(name, plants, planting, sources.gate, measured.names))
+    return Laid(plot_around(name, plants, planting, sources.gate, measured.names))
 
 
 def with_plants(field: Field, measured: Plants) -> Field:

@@ -64,7 +64,7 @@ def test_a_time_of_day_is_when_plants_were_inspected(on, second):
 
 
 def test_a_time_of_day_is_said_once():
-    with pytest.raises(ObservationError, match=r"said once, but .* second is given too\. Leave one"):
+    with pytest.raises(ObservationError, match="be said once, but"):
         Inspections.of([3], [FOUND], AFTERNOON, second=[8.0])
     assert Inspections.of([3], [FOUND], MONDAY, second=[8.0]).second.tolist() == [8.0]
 

@@ -157,6 +157,11 @@ class Season(SeasonPlans, SeasonFrames):
         if settings is None:
             today = local_clock(plot.field).today()
             settings = settings_from({"begins": today} | chosen)
+        elif chosen:
+            raise SettingError(
+                "A season's settings must be given as one or one by one, but beside settings there "
+                f"is {', '.join(chosen)}. Put it into them: dataclasses.replace(settings, ...)."
+            )
         if observations is None:
             observations = Observations.none()
         _must_work(settings, plot.field)

@@ -159,8 +159,11 @@ class Season(SeasonPlans, SeasonFrames):
             settings = settings_from({"begins": today} | chosen)
         elif chosen:
             raise SettingError(
-                "A season's settings must be given as one or one by one, but beside settings there "
-                f"is {', '.join(chosen)}. Put it into them: dataclasses.replace(settings, ...)."
+                worded(
+                    "A season's settings must be given as one or one by one, but beside settings "
+                    "there is {names}. Put it into them: dataclasses.replace(settings, ...).",
+                    names=", ".join(chosen),
+                )
             )
         if observations is None:
             observations = Observations.none()

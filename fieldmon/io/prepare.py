@@ -79,7 +79,7 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
         )
     laid, measured = _laid(request, hearing)
     if (file := sources.plot or sources.plants or sources.rows) is not None:
-        role: Role = "plot" if sources.plot else "plants" if sources.plants else "rows"
+        role = sources.first
         exchanged = getattr(sources, f"{role}_options").swap_axes
         hearing.say(role, file, said_of_place(laid.plot.field, exchanged=exchanged))
     if sources.plants is not None:

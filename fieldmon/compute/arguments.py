@@ -77,6 +77,8 @@ def shown(given: object) -> str:
         return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
     if type(given).__name__ == "datetime64":
         return str(given)
+    if isinstance(given, type):
+        return f"the class {given.__name__}"
     if hasattr(given, "setflags") and hasattr(given, "dtype"):
         return f"an array of {given.dtype}"
     if isinstance(given, tuple) and len(text := repr(given)) <= _LONGEST:

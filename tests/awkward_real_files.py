@@ -705,7 +705,7 @@ def paths_whose_axes_are_exchanged():
     "records",
     near=HOME,
     asks=("crs", "OGC:CRS84"),
-    refuses="km from the place nearby",
+    refuses="km from the plot or place nearby",
 )
 def records_of_another_continent():
     return table(f"lon,lat,date,count\n{FAR[0]},{FAR[1]},{DAY},7\n")

@@ -55,7 +55,12 @@ def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to it
         given = days_of(given)
     try:
         values = np.atleast_1d(given)
-        if values.ndim != 1 or (values.size and values.dtype.kind not in letters):
+        if values.ndim != 1:
+            raise ObservationError(
+                f"The {name} of inspections must be {words} in a row, one an inspection, but they "
+                f"have the shape {values.shape}."
+            )
+        if values.size and values.dtype.kind not in letters:
             raise wrong
         with np.errstate(invalid="ignore"):
             column: NDArray[Any] = values.astype(_TYPES[name], copy=False).view()

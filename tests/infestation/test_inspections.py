@@ -63,6 +63,11 @@ def test_a_time_of_day_is_when_plants_were_inspected(on, second):
     np.testing.assert_array_equal(two.second, second)
 
 
+def test_columns_of_more_than_one_line_are_refused_for_their_shape():
+    with pytest.raises(ObservationError, match="one an inspection, but they have the shape"):
+        Inspections.of([[5, 6]], [FOUND], MONDAY)
+
+
 def test_a_time_of_day_is_said_once():
     with pytest.raises(ObservationError, match="be said once, but"):
         Inspections.of([3], [FOUND], AFTERNOON, second=[8.0])

@@ -691,7 +691,7 @@ def paths_in_metres_of_another_continent(folder):
     return shapefile(folder / "s", frame(path, crs=2039), "paths")
 
 
-@case("lines", options=ReadOptions(near=FAR, crs="EPSG:4326"), says="doubtful: km from the place")
+@case("lines", options=ReadOptions(near=FAR, crs="EPSG:4326"), says="doubtful: km from the plot")
 def paths_of_another_continent_that_are_meant():
     return paths_of_another_continent()
 

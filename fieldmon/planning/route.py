@@ -89,7 +89,8 @@ class Route:
         shapes = dict.fromkeys(stops, (k,)) | {"line_m": (m, 2), "line_s": (m,)}
         must_hold_shapes(self, "A route's", shapes)
         for name in shapes:
-            object.__setattr__(self, name, as_seen(getattr(self, name)))
+            if (values := getattr(self, name)).flags.writeable:
+                object.__setattr__(self, name, as_seen(values))
 
     def __repr__(self) -> str:
         length_km, hours = self.drive_m / 1000, self.end_s / 3600

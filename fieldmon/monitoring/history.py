@@ -29,6 +29,7 @@ from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.parse.result_words import says_gone
+from fieldmon.pests.pest import USUAL_PER_DAY
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import Skips, without_flagged, without_skipped
@@ -123,7 +124,7 @@ class BeliefSettings:
     """
 
     spread: Spread = field(
-        default_factory=lambda: Spread(rate_per_day=0.02, arrivals_per_day=0.0002)
+        default_factory=lambda: Spread(rate_per_day=USUAL_PER_DAY, arrivals_per_day=0.0002)
     )
     treated: bool = True
     traces: bool = True

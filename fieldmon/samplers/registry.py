@@ -155,7 +155,11 @@ def sampler_or_name(given: str | Sampler) -> Sampler:
     if isinstance(given, str):
         return sampler_maker(given)()
     own = all(callable(getattr(given, name, None)) for name in ("walk", "inspection_times"))
-    if isinstance(given, type) or not own:
+    if isinstance(given, type) and own:
+        raise SettingError(
+            f"A sampler must be made, but it is {shown(given)} itself. Give {given.__name__}()."
+        )
+    if not own:
         raise SettingError(
             f"A sampler must be one of {', '.join(SAMPLERS)}, or one of your own with a method "
             f"walk, but it is {shown(given)}. Give its name, or derive your own from "

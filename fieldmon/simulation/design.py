@@ -17,6 +17,7 @@ from fieldmon.samplers import COMPARED, kind_of, sampler_or_name
 from fieldmon.samplers.own import is_own, label_of, labels_of, own_text
 from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.season import visits_in
+from fieldmon.simulation.start import must_be_start_share
 from fieldmon.simulation.study_plot import DIGITS, Combination, StudyPlot, as_written
 from fieldmon.simulation.worker import simulate_chunk
 
@@ -82,10 +83,7 @@ class Design:
             )
         must_be_in("A study's visit_every", DAYS, self.visit_every)
         for share in self.infested:
-            if not 0.0 < share < 1.0:
-                raise SettingError(
-                    f"The share infested at the start must be between 0 and 1, but it is {share}."
-                )
+            must_be_start_share(share)
 
     @property
     def content(self) -> dict[str, Any]:

@@ -21,4 +21,4 @@ def test_every_plant_is_on_its_lane(grid):
     assert (np.repeat(np.arange(len(travel.side)), np.diff(travel.row_start)) == travel.row).all()
     low_m, high_m = travel.end_x_m[travel.row].T
     assert ((low_m <= travel.x_m) & (travel.x_m <= high_m)).all()
-    assert repr(travel).startswith(f"<TravelTable: {len(grid)} plant")
+    assert repr(travel).startswith(f"<TravelTable: {len(grid):,} plant")

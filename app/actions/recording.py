@@ -31,6 +31,9 @@ from ..words.language import in_words
 from . import acting, treating
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fieldmon.io.import_report import ImportMessage
     from fieldmon.monitoring.batches import Batch, BatchContents, Recorded
     from fieldmon.monitoring.brought_findings import BroughtFile
 
@@ -236,11 +239,11 @@ def _record_file(choices: Choices) -> str:
         read = read_brought(season, Upload(name, data), options, Path(folder))
         corrected = _corrected(choices, read, boxes)
     messages = [message.sentence for message in read.messages]
-    if any(message.severity in _LEFT_OUT for message in read.messages):
-        notices.warn()
+    _warn_of_lost(read.messages)
     if read.saved is None:
         # what was said of a file may be answered: it stays to be read again
-        said = said_of(recorded(choices, read.findings, name, "" if messages else _FILE))
+        form = "" if messages else _FILE
+        said = said_of(recorded(choices, read.findings, name, form, read.messages))
     else:
         done, more = record_saved(season, read.saved, choices.who or "")
         said, messages = said_of(done), [*messages, *more]
@@ -248,8 +251,19 @@ def _record_file(choices: Choices) -> str:
             notices.warn()
         if not messages:
             boxes.empty()
-    listed = "".join(f"\n- {in_words(sentence)}" for sentence in messages)
-    return "\n\n".join(part for part in (corrected, said + listed if said else "") if part)
+    said = said + _listed(messages) if said else ""
+    return "\n\n".join(part for part in (corrected, said) if part)
+
+
+def _warn_of_lost(messages: Iterable[ImportMessage]) -> None:
+    """Let what is returned be no success where something of a file was left out or is doubtful."""
+    if any(message.severity in _LEFT_OUT for message in messages):
+        notices.warn()
+
+
+def _listed(sentences: Iterable[str]) -> str:
+    """Return what was said of a file, a line for each sentence."""
+    return "".join(f"\n- {in_words(sentence)}" for sentence in sentences)
 
 
 def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes) -> str:
@@ -263,16 +277,18 @@ def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes) -> str:
 
 
 def recorded(
-    choices: Choices, results: Inspections, source: str, form: str = ""
-) -> Recorded | None:
+    choices: Choices, results: Inspections, source: str, form: str = "",
+    messages: tuple[ImportMessage, ...] = (),
+) -> Recorded | None:  # fmt: skip
     """Record results, and empty the form that they are from.
 
-    None where some contradict what is recorded: they wait for a word on it.
+    None where some contradict what is recorded: they wait for a word on it, and what was said of
+    their file waits with them.
     """
     try:
         done = choices.season.record(results, source, choices.who or "")
     except ContradictionError:
-        unconfirmed.keep(Unconfirmed(choices.key, choices.day, results, source, form))
+        unconfirmed.keep(Unconfirmed(choices.key, choices.day, results, source, form, messages))
         return None
     unconfirmed.drop()
     if form:
@@ -304,9 +320,8 @@ def ask_about_contradictions(choices: Choices) -> None:
         _ask_anew(choices, waiting)
         return
     others = len(waiting.results) - len(said)
-    asked = texts.CONTRADICTING if others else texts.CONTRADICTING_ALL
     source = recorded_batches.source(waiting.source)
-    st.warning(asked.format(n=len(said), others=others, source=source))
+    st.warning(texts.CONTRADICTING.format(n=len(said), source=source))
     st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
     if len(said) > _MOST:
         st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
@@ -337,7 +352,8 @@ def _record_these(choices: Choices) -> str:
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
-    return said_of(recorded(choices, waiting.results, waiting.source, waiting.form))
+    done = recorded(choices, waiting.results, waiting.source, waiting.form, waiting.messages)
+    return _said_at_last(waiting, done)
 
 
 def show_said_otherwise(choices: Choices) -> None:
@@ -400,7 +416,15 @@ def _end_waiting(choices: Choices, waiting: Unconfirmed, done: Recorded) -> str:
     unconfirmed.drop()
     if waiting.form:
         FreshBoxes(waiting.form, choices).empty()
-    return said_of(done)
+    return _said_at_last(waiting, done)
+
+
+def _said_at_last(waiting: Unconfirmed, done: Recorded | None) -> str:
+    """Return what was done with results that waited, and what was said of their file."""
+    if done is None:
+        return ""
+    _warn_of_lost(waiting.messages)
+    return said_of(done) + _listed(message.sentence for message in waiting.messages)
 
 
 def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others

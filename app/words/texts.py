@@ -865,19 +865,11 @@ ONE_UNSAID = (
     "in all three."
 )
 _CONTRADICTING = (
-    "what is recorded or brought of the same plants and day. Nothing is recorded yet, nor are the "
-    "{others} others. Which holds?"
+    "what is recorded or brought of the same plants and day. Nothing is recorded yet. Which holds?"
 )
 CONTRADICTING = Plural(
     "{n} result from {source} contradicts " + _CONTRADICTING,
     "{n} results from {source} contradict " + _CONTRADICTING,
-)
-_CONTRADICTING_ALL = (
-    "what is recorded or brought of the same plants and day. Nothing is recorded yet. Which holds?"
-)
-CONTRADICTING_ALL = Plural(
-    "{n} result from {source} contradicts " + _CONTRADICTING_ALL,
-    "{n} results from {source} contradict " + _CONTRADICTING_ALL,
 )
 CONTRADICTING_NO_MORE = Plural(
     "{n} result from {source} is not recorded yet, and contradicts nothing any more.",

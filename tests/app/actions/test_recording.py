@@ -13,8 +13,9 @@ import streamlit as st
 from app.actions import recording
 from app.state.fresh_boxes import FreshBoxes
 from app.words import texts
-from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.plot.grid import plant_at
 from tests.app.chosen import in_season
 from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
 from tests.monitoring.seasons import a_season
@@ -395,6 +396,25 @@ def test_what_contradicts_the_same_day_is_shown_and_confirmed(season_app, season
     assert not season_app.exception
     assert not season_app.warning
     assert season().history.inspections.result.tolist() == results
+
+
+@pytest.mark.parametrize("key", ["leave_out", "confirm", "holds"])
+def test_what_was_left_out_of_a_file_is_said_once_what_contradicts_is_settled(
+    season_app, season, key
+):
+    plant, day = np.array([plant_at(season().plot.grid, 1, 1)]), np.datetime64("2026-11-16")
+    season().record(Inspections.of(plant, np.array([CLEAN]), day), "file")
+    go(season_app, "record")
+    rows = b"row,number,found\n1,1,1\n4,1,0\n4,2,maybe\n9999,1,1\n"
+    boxed(season_app.file_uploader, "findings_file").upload("contra.csv", rows).run()
+    season_app.button(key="record_file").click().run()
+    assert "1 result from contra.csv contradicts" in season_app.warning[0].value
+    season_app.button(key=key).click().run()
+    assert len(season().history.inspections) == (3 if key == "confirm" else 2)
+    (said,) = (one.value for one in season_app.warning)
+    assert "recorded" in said
+    assert "maybe" in said
+    assert "9999" in said
 
 
 def test_the_new_results_hold_as_corrections_until_these_are_undone(season_app, season):

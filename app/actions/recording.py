@@ -22,7 +22,7 @@ from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.named_rows import plant_meant
 
-from ..show import day, plant_history, recorded_batches
+from ..show import cautions, day, plant_history, recorded_batches
 from ..state import chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
@@ -31,7 +31,7 @@ from ..words.language import in_words
 from . import acting, treating
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from fieldmon.io.import_report import ImportMessage
     from fieldmon.monitoring.batches import Batch, BatchContents, Recorded
@@ -129,7 +129,7 @@ def _record_one(choices: Choices) -> str:
         np.array([plant]), np.array([SKIPPED if note else result]), np.datetime64(choices.day),
         count=counted, notes=np.array([note], object),
     )  # fmt: skip
-    return said_of(recorded(choices, results, TYPED_IN, _ONE))
+    return said_of(choices, recorded(choices, results, TYPED_IN, _ONE), results)
 
 
 # -- the stops of the route
@@ -203,7 +203,7 @@ def _record_stops(choices: Choices, plants: np.ndarray, told: tuple[int, _Marks]
         raise SettingError(texts.RECORD_UNSAID)
     result = np.where(is_found, FOUND, CLEAN)[said]
     results = Inspections.of(plants[said], result, np.datetime64(choices.day))
-    return said_of(recorded(choices, results, _ROUTE_TABLE, _ROUTE))
+    return said_of(choices, recorded(choices, results, _ROUTE_TABLE, _ROUTE), results)
 
 
 # -- a file
@@ -243,10 +243,11 @@ def _record_file(choices: Choices) -> str:
     if read.saved is None:
         # what was said of a file may be answered: it stays to be read again
         form = "" if messages else _FILE
-        said = said_of(recorded(choices, read.findings, name, form, read.messages))
+        done = recorded(choices, read.findings, name, form, read.messages)
+        said = said_of(choices, done, read.findings)
     else:
         done, more = record_saved(season, read.saved, choices.who or "")
-        said, messages = said_of(done), [*messages, *more]
+        said, messages = said_of(choices, done), [*messages, *more]
         if more:
             notices.warn()
         if not messages:
@@ -296,14 +297,36 @@ def recorded(
     return done
 
 
-def said_of(done: Recorded | None) -> str:
-    """Return what recording did, in a sentence; nothing where results wait for a word."""
+def said_of(choices: Choices, done: Recorded | None, results: Inspections | None = None) -> str:
+    """Return what recording did, and of which days if not of that shown.
+
+    Nothing where results wait for a word.
+    """
     if done is None:
         return ""
     corrected = [texts.CORRECTED.format(n=done.corrected)] if done.corrected else []
     if done.new or done.known or not corrected:
         corrected.append(texts.RECORDED.format(new=done.new, known=done.known))
+    if results is not None:
+        corrected += _of_days(choices, results)
     return "\n\n".join(corrected)
+
+
+def _of_days(choices: Choices, results: Inspections) -> Iterator[str]:
+    """Yield of which days results are, if not of that shown, and that one has not come."""
+    days = results.date[~np.isnat(results.date)]
+    if not len(days):
+        return
+    first, last = days.min().item(), days.max().item()
+    if {first, last} != {choices.on}:
+        said = "–".join(
+            choices.units.said_day(on, choices.on) for on in dict.fromkeys((first, last))
+        )
+        day = choices.units.said_day(choices.on)
+        yield texts.RECORDED_OF.format(days=said, day=day)
+    if ahead := cautions.not_come(choices, last):
+        notices.warn()
+        yield ahead
 
 
 # -- what contradicts
@@ -353,7 +376,7 @@ def _record_these(choices: Choices) -> str:
     if waiting is None:
         return ""
     done = recorded(choices, waiting.results, waiting.source, waiting.form, waiting.messages)
-    return _said_at_last(waiting, done)
+    return _said_at_last(choices, waiting, done)
 
 
 def show_said_otherwise(choices: Choices) -> None:
@@ -416,15 +439,17 @@ def _end_waiting(choices: Choices, waiting: Unconfirmed, done: Recorded) -> str:
     unconfirmed.drop()
     if waiting.form:
         FreshBoxes(waiting.form, choices).empty()
-    return _said_at_last(waiting, done)
+    return _said_at_last(choices, waiting, done)
 
 
-def _said_at_last(waiting: Unconfirmed, done: Recorded | None) -> str:
+def _said_at_last(choices: Choices, waiting: Unconfirmed, done: Recorded | None) -> str:
     """Return what was done with results that waited, and what was said of their file."""
     if done is None:
         return ""
     _warn_of_lost(waiting.messages)
-    return said_of(done) + _listed(message.sentence for message in waiting.messages)
+    return said_of(choices, done, waiting.results) + _listed(
+        message.sentence for message in waiting.messages
+    )
 
 
 def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others

@@ -17,6 +17,7 @@ from ..words.language import in_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from datetime import date
 
     from fieldmon.monitoring import Caution
     from fieldmon.monitoring.advice import Advice
@@ -78,6 +79,23 @@ def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
     kept = np.count_nonzero(plants[chosen_day.given_out(choices)])
     told = texts.KEPT_CLOSED if len(plan.route) else texts.KEPT_ALL_CLOSED
     return [*map(in_words, said), *([told.format(n=int(kept))] if kept else [])]
+
+
+def not_come(choices: Choices, last: date) -> str:
+    """Return that the last day recorded has not come, if so: a slip in a date hides what was seen.
+
+    By the plot's calendar.
+    """
+    if choices.today is None or last <= choices.today:
+        return ""
+    day, today = (choices.units.said_day(on, choices.today) for on in (last, choices.today))
+    return texts.NOT_COME.format(day=day, today=today)
+
+
+def show_not_come(choices: Choices) -> None:
+    """Say so on the pages of days before, which show nothing of it."""
+    if choices.season is not None and (said := not_come(choices, choices.season.last_recorded())):
+        st.warning(said)
 
 
 def show_treatments(choices: Choices) -> None:

@@ -33,6 +33,7 @@ def show(choices: Choices) -> None:
     _figures(choices, days[-1], progress)
     show_day.beside_figures(choices)
     show_day.planned_only(choices)
+    cautions.show_not_come(choices)
     cautions.show(choices)
     cautions.show_treatments(choices)
     treating.ask_wait(choices)

@@ -101,7 +101,11 @@ DATE = "Day"
 DATE_HELP = "Today by the clock of {zone}, unless you choose another day."
 ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lies"
 OTHER_DAY = "This page is about **{day}**, which is not today ({today})."
-OTHER_DAY_RECORDED = "What you record here is recorded for {day}."
+OTHER_DAY_RECORDED = "What you record here is recorded for {day}, unless a file names its day."
+NOT_COME = (
+    "Something is recorded of **{day}**, which has not come: it is {today}. No day before counts "
+    "it. If that day is wrong, undo it in *Record*."
+)
 BACK_TO_TODAY = "Back to today"
 PRESSED_BEFORE = (
     "*{button}* was pressed before the plot or the day just chosen was shown, so nothing was done. "
@@ -365,6 +369,9 @@ TEAM_SETTINGS = (
     "changed with `fieldmon change --robots`."
 )
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
+CHANGED_LATE = "{day} goes by this too: nothing is recorded of it yet."
+CHANGED_LATER = "It counts from now on. {day} stays as it was planned: something is recorded of it."
+PLAN_AS_NOW = "Plan this day by what counts now: {strategy}"
 UNDO_CHANGE, UNDO_NO_CHANGE = "Take back: {what}", "Take the last change back"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
 LANGUAGE = "Language"
@@ -471,6 +478,7 @@ STEP_BUTTONS = {"look_back": "Look back", "plan": "Use this plan", "begin": "Beg
                 "next_day": "Plan the next day"}  # fmt: skip
 STEP_NOTHING, STEP_NO_VISIT = "nothing recorded", "none recorded"
 STEP_PLANNED_FOR = "Planned for {day}"
+STEP_UNUSED = "first use what you changed, with *Use from now on*, or set it back"
 STEP_UNRECORDED = "nothing recorded; if nobody went, record one stop as *could not inspect*"
 UNRECORDED = "Planned, and nothing recorded: {days}."
 STEP_FOUND = Plural(
@@ -843,6 +851,7 @@ RESULT, COUNT, RESULTS_OF = "Result", "Count", {
     0: "clean", 1: "found", 2: "could not inspect", 3: "gone (pulled out)",
 }  # fmt: skip
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
+RECORDED_OF = "Recorded for {days}, not for {day}."
 RECORD_REST = (
     "Say how many stops were done, from the first: they are recorded as clean, unless marked as "
     "found. A mark counts wherever it stands."

@@ -398,6 +398,36 @@ def test_what_contradicts_the_same_day_is_shown_and_confirmed(season_app, season
     assert season().history.inspections.result.tolist() == results
 
 
+def test_a_file_of_another_day_says_of_which_day_it_was_recorded(season_app, season):
+    go(season_app, "record")
+    season_app.date_input[0].set_value(date(2026, 11, 17)).run()
+    rows = b"row,number,found,date\n1,1,1,2026-11-16\n4,1,0,2026-11-16\n"
+    boxed(season_app.file_uploader, "findings_file").upload("day16.csv", rows).run()
+    season_app.button(key="record_file").click().run()
+    assert season().history.inspections.date.astype(str).tolist() == ["2026-11-16"] * 2
+    shown = [*season_app.success, *season_app.warning]
+    assert any("Recorded for Mon 16 Nov, not for Tue 17 Nov." in one.value for one in shown)
+
+
+def test_what_is_recorded_of_a_day_that_has_not_come_is_said_on_the_pages_of_today(
+    season_app, season
+):
+    go(season_app, "record")
+    season_app.date_input[0].set_value(date(2026, 12, 20)).run()
+    for name, value in {"one_row": 3, "one_plant": 4, "one_result": FOUND}.items():
+        season_app.session_state[key_of(season_app, name)] = value
+    season_app.run()
+    send(season_app, "one")
+    said = "of **Sun 20 Dec**, which has not come: it is Mon 16 Nov."
+    assert any("1 recorded" in one.value and said in one.value for one in season_app.warning)
+    season_app.date_input[0].set_value(date(2026, 11, 16)).run()
+    for page in ("today", "season"):
+        go(season_app, page)
+        assert any(said in one.value for one in season_app.warning)
+    season().undo()
+    assert not any(said in one.value for one in go(season_app, "today").warning)
+
+
 @pytest.mark.parametrize("key", ["leave_out", "confirm", "holds"])
 def test_what_was_left_out_of_a_file_is_said_once_what_contradicts_is_settled(
     season_app, season, key

@@ -74,7 +74,7 @@ def figures(choices: Choices, advice: Advice, product: str) -> None:
             texts.DECIDE_SAVING,
             in_words(advice.saved),
             width="content",
-            help=texts.DECIDE_SAVING_HELP,
+            help=texts.DECIDE_SAVING_HELP.format(lost=in_words(advice.lost)),
         )
         st.metric(enough, number(advice.said.enough, ".0%"), width="content",
                   help=texts.DECIDE_ENOUGH_HELP)  # fmt: skip

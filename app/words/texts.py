@@ -708,8 +708,11 @@ DECIDE_NEEDS_SEASON = (
 DECIDE_AREA, DECIDE_LIQUID = "To be sprayed, of the area under plants", "Liquid"
 DECIDE_LITRES = "{value} l"
 DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
-DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it is enough"
-DECIDE_SAVING_HELP = "In the currency in which the costs are given."
+DECIDE_SAVING, DECIDE_ENOUGH = "Spraying costs less by", "Chance that it is enough"
+DECIDE_SAVING_HELP = (
+    "Less than spraying the whole plot, in the currency in which the costs are given. The infested "
+    "plants elsewhere lose {lost}, which is no part of it."
+)
 DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
 DECIDE_ZONES = Plural("{n} zone", "{n} zones")
 DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"

@@ -950,6 +950,18 @@ def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_
     assert row.input_value() == "123"
 
 
+def test_a_day_that_is_typed_counts_by_enter_and_by_tab(page, address, served_seasons):
+    season(served_seasons / "Days.gpkg", sample()[0])
+    page.goto(f"{address}/?season=Days&part=record&day=2026-11-18")
+    rest(page)
+    for key, day in (("Enter", "20"), ("Tab", "22")):
+        page.get_by_test_id("stDateInput").first.get_by_role("spinbutton").last.click()
+        page.keyboard.type(day)
+        page.keyboard.press(key)
+        page.wait_for_url(f"**day=2026-11-{day}*")
+        rest(page)
+
+
 def test_a_double_press_begins_one_season_and_keeps_one_plan(page, address, served_seasons):
     before = {*served_seasons.glob("*.gpkg")}
     shown(page, address)

@@ -7,6 +7,7 @@
 import { Deck, FlyToInterpolator, MapView } from "@deck.gl/core";
 
 import { button, element, legendOf, Scale, signPicture } from "./chrome.js";
+import { takeDays } from "./days.js";
 import { takeCommas } from "./decimals.js";
 import { Drawing } from "./draw.js";
 import { Drive, PITCH } from "./drive.js";
@@ -38,6 +39,7 @@ const CORNER_M_A_PX = 5, CORNER_M = 30, WAIT_MS = 20000, NEAR_ZOOM = 18;
 class MapPage {
   constructor(parent) {
     takeCommas();
+    takeDays();
     waitForBoxes();
     keepUnfinished();
     const sheet = new CSSStyleSheet();

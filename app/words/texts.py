@@ -471,7 +471,7 @@ BEGIN_GATE = "Set the gate on the map"
 BEGUN = "Season {name} has begun. Its file is {path}."
 START_SCOUTING = "Start scouting"
 LAST_VISIT, VISIT_ON = "Last visit", "{day}: {what}"
-STEPS = {"look_back": "Visit before", "plan": "Plan", "begin": "Keep it", "send": "Take along",
+STEPS = {"look_back": "Earlier visit", "plan": "Plan", "begin": "Keep it", "send": "Take along",
          "record": "Record", "report": "Report", "next_day": "Next day"}  # fmt: skip
 STEP_BUTTONS = {"look_back": "Look back", "plan": "Use this plan", "begin": "Begin a season",
                 "send": "Send to phone", "record": "Record finds", "report": "Print (PDF)",

@@ -962,6 +962,18 @@ def test_a_day_that_is_typed_counts_by_enter_and_by_tab(page, address, served_se
         rest(page)
 
 
+def test_one_press_of_back_leads_to_the_room_before(page, address, served_seasons):
+    season(served_seasons / "Back.gpkg", sample()[0])
+    page.goto(f"{address}/?season=Back&day=2026-11-18")
+    rest(page)
+    open_room(page, texts.ROOMS["season"])
+    page.wait_for_url("**/season?*day=2026-11-18*")
+    rest(page)
+    page.go_back()
+    page.get_by_text(texts.STEPS["record"]).first.wait_for()
+    page.wait_for_url("**/?season=Back&day=2026-11-18")
+
+
 def test_a_double_press_begins_one_season_and_keeps_one_plan(page, address, served_seasons):
     before = {*served_seasons.glob("*.gpkg")}
     shown(page, address)

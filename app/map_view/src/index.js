@@ -6,6 +6,7 @@
 
 import { Deck, FlyToInterpolator, MapView } from "@deck.gl/core";
 
+import { keepOneStep } from "./address.js";
 import { button, element, legendOf, Scale, signPicture } from "./chrome.js";
 import { takeDays } from "./days.js";
 import { takeCommas } from "./decimals.js";
@@ -40,6 +41,7 @@ class MapPage {
   constructor(parent) {
     takeCommas();
     takeDays();
+    keepOneStep();
     waitForBoxes();
     keepUnfinished();
     const sheet = new CSSStyleSheet();

@@ -30,6 +30,8 @@ def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
     """Show what to beware of on the chosen day; `kinds`: of these alone."""
     if choices.season is None:
         return
+    if not kinds:
+        _show_not_come(choices)
     found = choices.season.cautions(choices.on, choices.units.in_sentences(choices.on))
     _warn([one for one in found if not kinds or one.kind in kinds])
 
@@ -50,6 +52,8 @@ def show_today(choices: Choices, plan: DayPlan) -> None:
     """Show what counts on the day itself: where not to enter, and a harvest that is to come."""
     harvest = None if choices.season is None else choices.season.settings.harvest
     is_ahead = harvest is not None and choices.on <= harvest
+    if choices.season is not None:
+        _show_not_come(choices)
     if choices.season is not None and (left_off := _left_off(choices, plan)):
         st.warning("\n".join(f"- {sentence}" for sentence in left_off))
     if choices.season is not None and not chosen_day.route(choices).worked:
@@ -92,9 +96,9 @@ def not_come(choices: Choices, last: date) -> str:
     return texts.NOT_COME.format(day=day, today=today)
 
 
-def show_not_come(choices: Choices) -> None:
+def _show_not_come(choices: Choices) -> None:
     """Say so on the pages of days before, which show nothing of it."""
-    if choices.season is not None and (said := not_come(choices, choices.season.last_recorded())):
+    if said := not_come(choices, choices.season.last_recorded()):
         st.warning(said)
 
 

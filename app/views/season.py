@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from ..actions import assuming, beginning, treating
+from ..actions import assuming, beginning, keeping, treating
 from ..show import cautions, charts, development, forecast, learnt, map_layers, plant_history
 from ..show import day as show_day
 from ..state import assumptions, chosen_day
@@ -33,7 +33,6 @@ def show(choices: Choices) -> None:
     _figures(choices, days[-1], progress)
     show_day.beside_figures(choices)
     show_day.planned_only(choices)
-    cautions.show_not_come(choices)
     cautions.show(choices)
     cautions.show_treatments(choices)
     treating.ask_wait(choices)
@@ -42,6 +41,7 @@ def show(choices: Choices) -> None:
     _charts(choices, days, progress)
     forecast.show(choices)
     learnt.show(choices)
+    keeping.show(choices)
 
 
 def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:

@@ -459,6 +459,21 @@ BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
     "says about the rest of the plot. Come back to it tomorrow from the list above."
 )
+KEEPING = "The season's file: backup, name, removal"
+BACKUP = "Download a backup"
+BACKUP_HELP = (
+    "The whole season as one file, as it is now. Put into the folder of seasons, it is a season."
+)
+RENAME_TO, RENAME = "New name", "Rename"
+RENAME_CODES = "Phones need a new code after that: let them send all they have first."
+RENAME_UNSAID = "The season is called {name} already. Type another name."
+RENAMED = "The season is called **{name}** now."
+REMOVE, REMOVE_YES, REMOVE_NO = "Remove from the list", "Yes, remove it", "Keep the season"
+REMOVE_ASKS = (
+    "Remove **{name}** from the list? Nothing of it is deleted: its file is moved to `{folder}`. "
+    "Phones with a code of it can send nothing any more."
+)
+REMOVED = "**{name}** is off the list. Its file is `{path}`: moved back, it is there again."
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
 EARLIER, NO_EARLIER = "Begin with what an earlier season learnt", "Without one"
 EARLIER_HELP = (

@@ -1233,8 +1233,8 @@ INVITE_NOTE = (
     "record findings of this season until you take it back."
 )
 INVITE_LOCAL = (
-    "Phones cannot reach the app as it runs now: start it with `fieldmon app --lan`. The code "
-    "below works on this machine only."
+    "Phones cannot reach the app as it runs now: start it with `fieldmon app --lan`. A code "
+    "works on this machine only."
 )
 INVITE_NAME, INVITE_FIRST, INVITE_LAST = "Name", "From row", "To row"
 INVITE_BUTTON, TAKE_BACK = "Make a code", "Take back"

@@ -16,6 +16,7 @@ import { Frames } from "./frames.js";
 import { asked, moved } from "./keys.js";
 import { Labels, rowBoxes, withHot } from "./labels.js";
 import { layersOf } from "./layers.js";
+import { letNoticesGo } from "./notice.js";
 import { nearestPlant, plantsWithin, rowUnder, tipOf } from "./pick.js";
 import { composed, freePart } from "./picture.js";
 import { Playback } from "./playback.js";
@@ -42,6 +43,7 @@ class MapPage {
     takeCommas();
     takeDays();
     keepOneStep();
+    letNoticesGo();
     waitForBoxes();
     keepUnfinished();
     const sheet = new CSSStyleSheet();

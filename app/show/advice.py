@@ -48,7 +48,7 @@ def headline(choices: Choices, advice: Advice) -> None:
 
 def _starred(choices: Choices, figure: str) -> str:
     """Return words with a star if what they say rests on what is assumed."""
-    return f"{figure} *" if assumptions.of(choices) else figure
+    return f"{figure}\N{NO-BREAK SPACE}*" if assumptions.of(choices) else figure
 
 
 def figures(choices: Choices, advice: Advice, product: str) -> None:

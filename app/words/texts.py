@@ -36,8 +36,8 @@ PARTS = {
 RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
 SAMPLE_NOTE = (
-    "A made-up estate near Paran, to try things out. Nothing of it exists, and time stands still "
-    "there on the last day of its records."
+    "A made-up estate near Paran, to try things out. Nothing of it exists, and there it is always "
+    "{day}."
 )
 PLOT_FROM = "Plot or season"
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
@@ -544,12 +544,11 @@ TODAY_DONE = Plural(
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 #: as `fieldmon.io.writers.handoff` says them, which takes long to load
 READERS = {
-    "nav2": "robots with Nav2 (ROS 2)", "nav2-pauses": "robots with Nav2 and a plugin for pauses",
-    "waypoints": "robots of any kind",
+    "gpx": "GPS handhelds and hiking apps", "kml": "Google Earth, map apps on phones",
+    "sheet": "a printer: a scout without a phone", "csv": "spreadsheets",
     "geojson": "QGIS, phones, web maps", "gpkg": "QGIS, QField, ArcGIS",
-    "shapefile": "older map programs and consoles", "csv": "spreadsheets",
-    "kml": "Google Earth, map apps on phones", "gpx": "GPS handhelds and hiking apps",
-    "sheet": "a printer: a scout without a phone",
+    "shapefile": "older map programs and consoles", "waypoints": "robots of any kind",
+    "nav2": "robots with Nav2 (ROS 2)", "nav2-pauses": "robots with Nav2 and a plugin for pauses",
 }  # fmt: skip
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."

@@ -1105,7 +1105,7 @@ def test_on_a_phone_plot_and_day_are_one_line_that_unfolds(on_a_phone):
     assert not boxes.is_visible()
     line.get_by_role("button").click()
     boxes.get_by_role("combobox", name=texts.WHICH_PLOT).wait_for(timeout=60_000)
-    assert boxes.get_by_text(texts.SAMPLE_NOTE).is_visible()
+    assert boxes.get_by_text("there it is always").is_visible()
     assert boxes.get_by_role("slider", name=texts.HOURS).is_visible()
     page.keyboard.press("Escape")
     boxes.wait_for(state="hidden", timeout=60_000)

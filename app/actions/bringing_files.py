@@ -11,7 +11,7 @@ from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import Severity
 
 from ..show import answers_map
-from ..state import brought_files, chosen_day, rasters
+from ..state import brought_files, chosen_day, plot_source, rasters
 from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS, answers, brought
 from ..state.tried_answers import tried_of_records
 from ..words import texts
@@ -197,7 +197,9 @@ def show_doubts_of_plot(choices: Choices) -> None:
 
 def show_doubts_of_records(choices: Choices) -> None:
     """Show, while no season is begun, what is doubtful about records, and which are left out."""
-    doubts = _doubts(choices, of_records=True)
+    # those of the sample are part of it: under Plot & data they are said as well
+    is_sample = plot_source.chosen() == plot_source.SAMPLE
+    doubts = [] if is_sample else _doubts(choices, of_records=True)
     if doubts or (choices.season is None and chosen_day.messages_on_records(choices)):
         with st.container(border=True, key="doubts_of_records"):
             for number, one in doubts:

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
     from ..state.comparison import Strategy
 
+_UNUSED = "settings not in use yet"
 #: who may inspect, whatever they are called in a language
 ROBOT, SCOUT = "Robot", "Scout on foot"
 WHO = (ROBOT, SCOUT)
@@ -70,10 +71,12 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
     one of a team, whose table says how each works.
     """
     season = choices.season
+    st.session_state[_UNUSED] = False
     with work.foot, st.expander(texts.WHO, expanded=work.day is not None):
         settings = season.settings
         if by != settings:
             st.caption(_earlier(by, choices.on))
+            _offer_as_now(choices)
             return
         wanted, hours = (
             _wanted(name, settings, work) if choices.who is None else _wanted_of_team(name, choices)
@@ -82,10 +85,44 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
         # what was changed with the day is used there
         with hours if others == settings else nullcontext():
             if wanted != settings:
+                st.session_state[_UNUSED] = True
                 st.caption(texts.CHANGE_NOTE)
                 acting.at_press(texts.CHANGE, _change, choices, wanted, settings,
                                 key="change_setup", at_once=False, type="primary")  # fmt: skip
         _offer_undo(choices)
+
+
+def is_unused() -> bool:
+    """Return whether boxes say what the season does not go by yet: its plan is none of theirs."""
+    unused: bool = st.session_state.get(_UNUSED, False)
+    return unused
+
+
+def _offer_as_now(choices: Choices) -> None:
+    """Offer to plan a day that was missed by what counts now."""
+    now = choices.season.settings
+    if _is_recorded(choices) or now.team:
+        return
+    strategy = strategy_name(now.sampler, now.robot.hours, now.robot.look_s)
+    acting.at_press(texts.PLAN_AS_NOW.format(strategy=strategy), _as_now, choices,
+                    key="plan_as_now")  # fmt: skip
+
+
+def _is_recorded(choices: Choices) -> bool:
+    season = choices.season
+    return len(season.history.on(season.settings.day(choices.on))) > 0
+
+
+@notices.reporting
+def _as_now(choices: Choices) -> str:
+    return _planned_as_now(choices)
+
+
+def _planned_as_now(choices: Choices) -> str:
+    """Plan a day that was missed by what counts now: it goes on by the plan that is kept of it."""
+    with choices.season.as_now(choices.on):
+        choices.season.plan(choices.on, wishes=choices.wishes)
+    return texts.CHANGED_LATE.format(day=choices.units.said_day(choices.on))
 
 
 def _earlier(by: MonitoringSettings, on: date) -> str:
@@ -167,8 +204,13 @@ def _offer_undo(choices: Choices) -> None:
 
 @notices.reporting
 def _change(choices: Choices, wanted: MonitoringSettings, settings: MonitoringSettings) -> str:
-    choices.season.change(wanted, settings)
-    return ""
+    season = choices.season
+    season.change(wanted, settings)
+    if season.planned_by(choices.on) == season.settings:
+        return ""
+    if not _is_recorded(choices):
+        return _planned_as_now(choices)
+    return texts.CHANGED_LATER.format(day=choices.units.said_day(choices.on))
 
 
 @notices.reporting

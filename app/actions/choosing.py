@@ -169,7 +169,9 @@ def _message(kept: KeptMessage) -> ImportMessage:
 def _from_files(source: str, wait: Wait, work: Work) -> Choices | None:
     kept_files.sync()
     if source == plot_source.SAMPLE:
-        st.caption(texts.SAMPLE_NOTE)
+        day = sample_estate.LAST_DAY
+        said = f"{chosen_units.units().said_day(day)} {day.year}"
+        st.caption(texts.SAMPLE_NOTE.format(day=said))
         files = plot_files.of_sample()
     elif (files := plot_files.of_session()) is None:
         return None

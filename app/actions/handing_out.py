@@ -70,8 +70,10 @@ def _show_address() -> None:
 
 def _files(choices: Choices, plan: HandoffPlan) -> None:
     """Offer the route in the formats of robots, phones and paper."""
-    name = st.selectbox(texts.FORMAT, list(FORMATS), list(FORMATS).index("gpx"), key="format",
-                        filter_mode=None, label_visibility="collapsed",
+    # the commonest first
+    names = sorted(FORMATS, key=list(texts.READERS).index)
+    name = st.selectbox(texts.FORMAT, names, names.index("gpx"), key="format", filter_mode=None,
+                        label_visibility="collapsed",
                         format_func=lambda one: f"{_reader(one)}: {one}")  # fmt: skip
     chosen = FORMATS[name]
     ending = f".{name}.zip" if chosen.several else chosen.endings[0]

@@ -51,6 +51,7 @@ def show(choices: Choices) -> None:
 
 def _show_codes(choices: Choices) -> None:
     notices.show()  # in a window of its own nothing else would
+    _show_code()  # above what made it: below it nobody would see it without scrolling
     st.markdown(texts.INVITE_NOTE)
     if not phone.base().works_offline:
         st.info(texts.INVITE_LOCAL)
@@ -70,7 +71,6 @@ def _show_codes(choices: Choices) -> None:
             right.number_input(texts.INVITE_LAST, *ends, None, key="invite_last")
         st.caption(texts.INVITE_RULES_TEAM if choices.team else texts.INVITE_RULES)
         st.form_submit_button(texts.INVITE_BUTTON, on_click=_invite, args=(choices,))
-    _show_code()
 
 
 def _ends(season: Season) -> tuple[int, int]:

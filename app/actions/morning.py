@@ -23,7 +23,7 @@ from ..state import (
 from ..state.morning import BEGIN, LOOK_BACK, NEXT_DAY, PLAN, RECORD, REPORT, SEND
 from ..words import texts
 from ..words.language import listed
-from . import acting, beginning, handing_out
+from . import acting, beginning, changing, handing_out
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -79,6 +79,8 @@ def _visit(choices: Choices, _: DayPlan) -> str:
 
 def _planned(choices: Choices, plan: DayPlan) -> str:
     """Return the plan kept of the day and what is left of it; else what there is to keep."""
+    if _is_unused(choices):
+        return texts.STEP_UNUSED
     rest = day.plan_in_short(plan) if len(plan.route) else ""
     if choices.season is None:
         return rest
@@ -121,6 +123,17 @@ def _button(step: Step, label: str, action: Callable[..., object], *arguments: o
     st.button(label, on_click=action, args=arguments, **_shown(step))
 
 
+def _is_unused(choices: Choices) -> bool:
+    """Return whether the plan goes by other settings than the boxes say: nobody means that one."""
+    return choices.season is not None and changing.is_unused()
+
+
+def _of_plan(choices: Choices, step: Step) -> dict[str, Any]:
+    """Return how a button is shown that hands the plan on."""
+    shown = _shown(step)
+    return shown | {"disabled": True, "type": "secondary"} if _is_unused(choices) else shown
+
+
 def _shown(step: Step) -> dict[str, Any]:
     return {"key": f"do_{step.name}", "type": "primary" if step.next else "secondary"}
 
@@ -139,7 +152,7 @@ def _record_of(on: date) -> None:
 
 def _plan(choices: Choices, plan: DayPlan, step: Step) -> None:
     if len(plan.route):
-        acting.at_press(texts.STEP_BUTTONS[PLAN], _use_plan, choices, **_shown(step))
+        acting.at_press(texts.STEP_BUTTONS[PLAN], _use_plan, choices, **_of_plan(choices, step))
 
 
 @notices.reporting
@@ -161,7 +174,8 @@ def _note_sent(choices: Choices) -> None:
 
 
 def _send(choices: Choices, plan: DayPlan, step: Step) -> None:
-    if st.button(texts.STEP_BUTTONS[SEND], on_click=_note_sent, args=(choices,), **_shown(step)):
+    shown = _of_plan(choices, step)
+    if st.button(texts.STEP_BUTTONS[SEND], on_click=_note_sent, args=(choices,), **shown):
         st.dialog(texts.SEND_TITLE)(handing_out.show)(choices, plan)
 
 

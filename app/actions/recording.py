@@ -22,7 +22,7 @@ from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.named_rows import plant_meant
 
-from ..show import day, plant_history, recorded_batches
+from ..show import cautions, day, plant_history, recorded_batches
 from ..state import chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
@@ -31,6 +31,9 @@ from ..words.language import in_words
 from . import acting, treating
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from fieldmon.io.import_report import ImportMessage
     from fieldmon.monitoring.batches import Batch, BatchContents, Recorded
     from fieldmon.monitoring.brought_findings import BroughtFile
 
@@ -126,7 +129,7 @@ def _record_one(choices: Choices) -> str:
         np.array([plant]), np.array([SKIPPED if note else result]), np.datetime64(choices.day),
         count=counted, notes=np.array([note], object),
     )  # fmt: skip
-    return said_of(recorded(choices, results, TYPED_IN, _ONE))
+    return said_of(choices, recorded(choices, results, TYPED_IN, _ONE), results)
 
 
 # -- the stops of the route
@@ -200,7 +203,7 @@ def _record_stops(choices: Choices, plants: np.ndarray, told: tuple[int, _Marks]
         raise SettingError(texts.RECORD_UNSAID)
     result = np.where(is_found, FOUND, CLEAN)[said]
     results = Inspections.of(plants[said], result, np.datetime64(choices.day))
-    return said_of(recorded(choices, results, _ROUTE_TABLE, _ROUTE))
+    return said_of(choices, recorded(choices, results, _ROUTE_TABLE, _ROUTE), results)
 
 
 # -- a file
@@ -236,20 +239,32 @@ def _record_file(choices: Choices) -> str:
         read = read_brought(season, Upload(name, data), options, Path(folder))
         corrected = _corrected(choices, read, boxes)
     messages = [message.sentence for message in read.messages]
-    if any(message.severity in _LEFT_OUT for message in read.messages):
-        notices.warn()
+    _warn_of_lost(read.messages)
     if read.saved is None:
         # what was said of a file may be answered: it stays to be read again
-        said = said_of(recorded(choices, read.findings, name, "" if messages else _FILE))
+        form = "" if messages else _FILE
+        done = recorded(choices, read.findings, name, form, read.messages)
+        said = said_of(choices, done, read.findings)
     else:
         done, more = record_saved(season, read.saved, choices.who or "")
-        said, messages = said_of(done), [*messages, *more]
+        said, messages = said_of(choices, done), [*messages, *more]
         if more:
             notices.warn()
         if not messages:
             boxes.empty()
-    listed = "".join(f"\n- {in_words(sentence)}" for sentence in messages)
-    return "\n\n".join(part for part in (corrected, said + listed if said else "") if part)
+    said = said + _listed(messages) if said else ""
+    return "\n\n".join(part for part in (corrected, said) if part)
+
+
+def _warn_of_lost(messages: Iterable[ImportMessage]) -> None:
+    """Let what is returned be no success where something of a file was left out or is doubtful."""
+    if any(message.severity in _LEFT_OUT for message in messages):
+        notices.warn()
+
+
+def _listed(sentences: Iterable[str]) -> str:
+    """Return what was said of a file, a line for each sentence."""
+    return "".join(f"\n- {in_words(sentence)}" for sentence in sentences)
 
 
 def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes) -> str:
@@ -263,16 +278,18 @@ def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes) -> str:
 
 
 def recorded(
-    choices: Choices, results: Inspections, source: str, form: str = ""
-) -> Recorded | None:
+    choices: Choices, results: Inspections, source: str, form: str = "",
+    messages: tuple[ImportMessage, ...] = (),
+) -> Recorded | None:  # fmt: skip
     """Record results, and empty the form that they are from.
 
-    None where some contradict what is recorded: they wait for a word on it.
+    None where some contradict what is recorded: they wait for a word on it, and what was said of
+    their file waits with them.
     """
     try:
         done = choices.season.record(results, source, choices.who or "")
     except ContradictionError:
-        unconfirmed.keep(Unconfirmed(choices.key, choices.day, results, source, form))
+        unconfirmed.keep(Unconfirmed(choices.key, choices.day, results, source, form, messages))
         return None
     unconfirmed.drop()
     if form:
@@ -280,14 +297,36 @@ def recorded(
     return done
 
 
-def said_of(done: Recorded | None) -> str:
-    """Return what recording did, in a sentence; nothing where results wait for a word."""
+def said_of(choices: Choices, done: Recorded | None, results: Inspections | None = None) -> str:
+    """Return what recording did, and of which days if not of that shown.
+
+    Nothing where results wait for a word.
+    """
     if done is None:
         return ""
     corrected = [texts.CORRECTED.format(n=done.corrected)] if done.corrected else []
     if done.new or done.known or not corrected:
         corrected.append(texts.RECORDED.format(new=done.new, known=done.known))
+    if results is not None:
+        corrected += _of_days(choices, results)
     return "\n\n".join(corrected)
+
+
+def _of_days(choices: Choices, results: Inspections) -> Iterator[str]:
+    """Yield of which days results are, if not of that shown, and that one has not come."""
+    days = results.date[~np.isnat(results.date)]
+    if not len(days):
+        return
+    first, last = days.min().item(), days.max().item()
+    if {first, last} != {choices.on}:
+        said = "–".join(
+            choices.units.said_day(on, choices.on) for on in dict.fromkeys((first, last))
+        )
+        day = choices.units.said_day(choices.on)
+        yield texts.RECORDED_OF.format(days=said, day=day)
+    if ahead := cautions.not_come(choices, last):
+        notices.warn()
+        yield ahead
 
 
 # -- what contradicts
@@ -304,9 +343,8 @@ def ask_about_contradictions(choices: Choices) -> None:
         _ask_anew(choices, waiting)
         return
     others = len(waiting.results) - len(said)
-    asked = texts.CONTRADICTING if others else texts.CONTRADICTING_ALL
     source = recorded_batches.source(waiting.source)
-    st.warning(asked.format(n=len(said), others=others, source=source))
+    st.warning(texts.CONTRADICTING.format(n=len(said), source=source))
     st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
     if len(said) > _MOST:
         st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
@@ -337,7 +375,8 @@ def _record_these(choices: Choices) -> str:
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
-    return said_of(recorded(choices, waiting.results, waiting.source, waiting.form))
+    done = recorded(choices, waiting.results, waiting.source, waiting.form, waiting.messages)
+    return _said_at_last(choices, waiting, done)
 
 
 def show_said_otherwise(choices: Choices) -> None:
@@ -400,7 +439,17 @@ def _end_waiting(choices: Choices, waiting: Unconfirmed, done: Recorded) -> str:
     unconfirmed.drop()
     if waiting.form:
         FreshBoxes(waiting.form, choices).empty()
-    return said_of(done)
+    return _said_at_last(choices, waiting, done)
+
+
+def _said_at_last(choices: Choices, waiting: Unconfirmed, done: Recorded | None) -> str:
+    """Return what was done with results that waited, and what was said of their file."""
+    if done is None:
+        return ""
+    _warn_of_lost(waiting.messages)
+    return said_of(choices, done, waiting.results) + _listed(
+        message.sentence for message in waiting.messages
+    )
 
 
 def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others

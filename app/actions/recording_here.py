@@ -55,7 +55,7 @@ def _record(choices: Choices, plant: int, result: int) -> str:
     if done is not None and done.batch is not None:
         at = {one.number: one.at for one in choices.season.batches()}
         st.session_state[_LAST] = choices.key, at[done.batch]
-    return recording.said_of(done)
+    return recording.said_of(choices, done, results)
 
 
 def _last(choices: Choices) -> int | None:

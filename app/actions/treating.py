@@ -16,6 +16,7 @@ from fieldmon.io.options import Upload
 from fieldmon.monitoring import Application
 from fieldmon.plot.named_rows import plants_in_rows
 
+from ..show import cautions
 from ..state import notices, wishes
 from ..state.fresh_boxes import FreshBoxes
 from ..words import texts
@@ -170,6 +171,9 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
             done.batch, choices.on, choices.units.in_sentences(choices.on)
         )
     ]
+    beware += [ahead] if (ahead := cautions.not_come(choices, choices.on)) else []
+    if beware:
+        notices.warn()
     noted = texts.TREATED
     if plants is not None:
         n = int(np.count_nonzero(plants))

@@ -48,7 +48,7 @@ def headline(choices: Choices, advice: Advice) -> None:
 
 def _starred(choices: Choices, figure: str) -> str:
     """Return words with a star if what they say rests on what is assumed."""
-    return f"{figure} *" if assumptions.of(choices) else figure
+    return f"{figure}\N{NO-BREAK SPACE}*" if assumptions.of(choices) else figure
 
 
 def figures(choices: Choices, advice: Advice, product: str) -> None:
@@ -74,7 +74,7 @@ def figures(choices: Choices, advice: Advice, product: str) -> None:
             texts.DECIDE_SAVING,
             in_words(advice.saved),
             width="content",
-            help=texts.DECIDE_SAVING_HELP,
+            help=texts.DECIDE_SAVING_HELP.format(lost=in_words(advice.lost)),
         )
         st.metric(enough, number(advice.said.enough, ".0%"), width="content",
                   help=texts.DECIDE_ENOUGH_HELP)  # fmt: skip

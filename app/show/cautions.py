@@ -17,6 +17,7 @@ from ..words.language import in_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+    from datetime import date
 
     from fieldmon.monitoring import Caution
     from fieldmon.monitoring.advice import Advice
@@ -29,6 +30,8 @@ def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
     """Show what to beware of on the chosen day; `kinds`: of these alone."""
     if choices.season is None:
         return
+    if not kinds:
+        _show_not_come(choices)
     found = choices.season.cautions(choices.on, choices.units.in_sentences(choices.on))
     _warn([one for one in found if not kinds or one.kind in kinds])
 
@@ -49,6 +52,8 @@ def show_today(choices: Choices, plan: DayPlan) -> None:
     """Show what counts on the day itself: where not to enter, and a harvest that is to come."""
     harvest = None if choices.season is None else choices.season.settings.harvest
     is_ahead = harvest is not None and choices.on <= harvest
+    if choices.season is not None:
+        _show_not_come(choices)
     if choices.season is not None and (left_off := _left_off(choices, plan)):
         st.warning("\n".join(f"- {sentence}" for sentence in left_off))
     if choices.season is not None and not chosen_day.route(choices).worked:
@@ -78,6 +83,23 @@ def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
     kept = np.count_nonzero(plants[chosen_day.given_out(choices)])
     told = texts.KEPT_CLOSED if len(plan.route) else texts.KEPT_ALL_CLOSED
     return [*map(in_words, said), *([told.format(n=int(kept))] if kept else [])]
+
+
+def not_come(choices: Choices, last: date) -> str:
+    """Return that the last day recorded has not come, if so: a slip in a date hides what was seen.
+
+    By the plot's calendar.
+    """
+    if choices.today is None or last <= choices.today:
+        return ""
+    day, today = (choices.units.said_day(on, choices.today) for on in (last, choices.today))
+    return texts.NOT_COME.format(day=day, today=today)
+
+
+def _show_not_come(choices: Choices) -> None:
+    """Say so on the pages of days before, which show nothing of it."""
+    if said := not_come(choices, choices.season.last_recorded()):
+        st.warning(said)
 
 
 def show_treatments(choices: Choices) -> None:

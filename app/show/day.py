@@ -65,7 +65,7 @@ def row_column(grid: PlantGrid, line: NDArray[np.int64]) -> dict[str, object]:
 
 def headline(choices: Choices, plan: DayPlan) -> str:
     """Return what there is to do on the day, in one sentence."""
-    on = choices.units.said_day(choices.day)
+    on = choices.units.said_day(choices.day, choices.today)
     if is_over(choices, plan):
         now = chosen_day.progress(choices)
         return texts.DAY_DONE.format(found=now.found_today, inspected=now.inspected_today, day=on)

@@ -12,9 +12,8 @@ import numpy as np
 from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.level_range import first_level_range
 from fieldmon.infestation.observations import usable
-from fieldmon.monitoring import day_was_worked
+from fieldmon.monitoring import day_was_worked, plant_states
 from fieldmon.monitoring.history import made_by
-from fieldmon.monitoring.plant_states import shown_states
 from fieldmon.planning import day_bound
 from fieldmon.plot.local_clock import grid_clock
 
@@ -149,7 +148,8 @@ def states(choices: Choices) -> cached.Array:
     """Return ``(n,)`` found (1), clean (0) or never inspected (-1), by records and inspections."""
     if choices.season is None:
         return cached.newest_records(*_recorded(choices)).state
-    return shown_states(choices.season.history, choices.season.settings.day(choices.on))
+    history, settings = choices.season.history, choices.season.settings
+    return plant_states.shown_states(history, settings.day(choices.on))
 
 
 def hot_spots(choices: Choices) -> HotSpots:
@@ -159,9 +159,12 @@ def hot_spots(choices: Choices) -> HotSpots:
     return season_hot_spots(choices, choices.day)
 
 
-def own_states(choices: Choices) -> cached.Array:
-    """Return ``(n,)`` what the season's own inspections say of each plant up to the day."""
-    return choices.season.history.states(choices.season.settings.day(choices.on))
+def finds_apart(choices: Choices) -> tuple[cached.Array, cached.Array] | None:
+    """Return ``(n,)`` which finds are only of records, and which count no more; None: no season."""
+    if choices.season is None:
+        return None
+    history, settings = choices.season.history, choices.season.settings
+    return plant_states.finds_apart(history, settings.day(choices.on))
 
 
 def season_hot_spots(choices: Choices, day: str) -> HotSpots:

@@ -7,17 +7,21 @@ from __future__ import annotations
 
 import os
 import re
+from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import SettingError
-from fieldmon.monitoring import is_season
+from fieldmon.monitoring import Store, is_season
 
 from ..words import texts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+#: the folder within it of seasons that are listed no more
+REMOVED = "removed"
 #: names the folder; `fieldmon app --seasons` sets it
 FOLDER = "FIELDMON_SEASONS"
 _ENDING = ".gpkg"
@@ -61,3 +65,27 @@ def new_path(name: str) -> Path:
     path = path_of(name.strip())
     path.parent.mkdir(parents=True, exist_ok=True)
     return path
+
+
+def backup_of(path: Path) -> bytes:
+    """Return a season's file as it is now, whoever works on it."""
+    with working_folder() as here:
+        copy = Path(here) / f"copy{_ENDING}"
+        Store(path).back_up(copy)
+        return copy.read_bytes()
+
+
+def rename(name: str, new: str) -> None:
+    """Give a season another name; raise if another season has it."""
+    Store(path_of(name)).move(new_path(new))
+
+
+def set_aside(name: str) -> Path:
+    """Move a season to those that are listed no more; return where it lies, whole as it was."""
+    path = path_of(name)
+    aside = path.parent / REMOVED
+    aside.mkdir(exist_ok=True)
+    names = chain((name,), (f"{name} ({n})" for n in count(2)))
+    free = next(to for one in names if not (to := aside / f"{one}{_ENDING}").exists())
+    Store(path).move(free)
+    return free

@@ -9,6 +9,7 @@ import streamlit as st
 
 if TYPE_CHECKING:
     from fieldmon.infestation.inspections import Inspections
+    from fieldmon.io.import_report import ImportMessage
 
 _KEY = "unconfirmed results"
 
@@ -17,7 +18,8 @@ _KEY = "unconfirmed results"
 class Unconfirmed:
     """Results that wait for a word: of which season, from where, and in which form (or none).
 
-    And the day (ISO) on which they were brought: nobody is asked on another.
+    And the day (ISO) on which they were brought: nobody is asked on another. And what was said of
+    their file, as of lines that were left out.
     """
 
     season: str
@@ -25,6 +27,7 @@ class Unconfirmed:
     results: Inspections
     source: str
     form: str = ""
+    messages: tuple[ImportMessage, ...] = ()
 
 
 def keep(waiting: Unconfirmed) -> None:

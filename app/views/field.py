@@ -22,8 +22,7 @@ def show(choices: Choices) -> None:
     plant_history.want(choices, map_layers.day_map(choices))
     st.markdown(f"### {texts.HOT_TITLE}")
     spots = chosen_day.hot_spots(choices)
-    own = None if choices.season is None else chosen_day.own_states(choices)
-    said = hot_spot_meanings(choices.plot.grid, spots, own)
+    said = hot_spot_meanings(choices.plot.grid, spots, chosen_day.finds_apart(choices))
     # as their numbers on the map
     signs = [f"{k}." if len(spots) else "-" for k in range(1, len(said) + 1)]
     st.markdown("\n".join(f"{sign} {in_words(one)}" for sign, one in zip(signs, said, strict=True)))

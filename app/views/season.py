@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from ..actions import assuming, beginning, treating
+from ..actions import assuming, beginning, keeping, treating
 from ..show import cautions, charts, development, forecast, learnt, map_layers, plant_history
 from ..show import day as show_day
 from ..state import assumptions, chosen_day
@@ -41,6 +41,7 @@ def show(choices: Choices) -> None:
     _charts(choices, days, progress)
     forecast.show(choices)
     learnt.show(choices)
+    keeping.show(choices)
 
 
 def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:

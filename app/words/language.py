@@ -49,6 +49,10 @@ SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_n
 _TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
 _LEADING = re.compile(r"\](?=[\[(:])|!(?=\[)|:(?=//)|www(?=\.)|(?<=\S)@(?=\S)", re.IGNORECASE)
 
+# what seasons keep of distances, and of two columns as 1.0 named them
+_AWAY = r"\d[\d,]*(?:\.\d+)? k?m"
+_BETWEEN, _TWO_NAMES = re.compile(f"({_AWAY}) to ({_AWAY})"), re.compile("('.*') and ('.*')")
+
 # what stands after a number, and not on the next line
 _UNIT = re.compile(r"(?<=\d) (?=%|(?:h|m|km|ha|ft|mi|l|°C)\b)")
 _SHARE = re.compile(r"(?<=\d) (?=%)")
@@ -391,7 +395,24 @@ def _counted_again(value: str, language: str) -> str:
         made = _said(counted(int(said[1].replace(",", "")), thing), language)
         if made is not None:
             return made
+    if said := _BETWEEN.fullmatch(value):
+        nearest, farthest = (_distance_again(one, language) for one in said.groups())
+        ends = {"nearest": nearest, "farthest": farthest}
+        form = _catalogue(language).pgettext(LIBRARY, "{nearest} to {farthest}")
+        return _AsKept().vformat(form, (), ends) if form else value
+    if re.fullmatch(_AWAY, value):
+        return _distance_again(value, language)
+    if said := _TWO_NAMES.fullmatch(value):
+        return ", ".join(said.groups())
     return _number_again(value, language)
+
+
+def _distance_again(value: str, language: str) -> str:
+    """Return a distance, "26 m", in a language."""
+    number, unit = value.split(" ")
+    form = _catalogue(language).pgettext(LIBRARY, f"{{value}} {unit}")
+    said = _number_again(number, language)
+    return together(_AsKept().vformat(form, (), {"value": said})) if form else value
 
 
 def _number_again(value: str, language: str) -> str:

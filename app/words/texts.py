@@ -36,8 +36,8 @@ PARTS = {
 RESEARCH, REPORT, STUDY = "Research", "Report", "The thesis, without records"
 SAMPLE, UPLOAD = "Sample estate", "My own files"
 SAMPLE_NOTE = (
-    "A made-up estate near Paran, to try things out. Nothing of it exists, and time stands still "
-    "there on the last day of its records."
+    "A made-up estate near Paran, to try things out. Nothing of it exists, and there it is always "
+    "{day}."
 )
 PLOT_FROM = "Plot or season"
 PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
@@ -101,7 +101,11 @@ DATE = "Day"
 DATE_HELP = "Today by the clock of {zone}, unless you choose another day."
 ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lies"
 OTHER_DAY = "This page is about **{day}**, which is not today ({today})."
-OTHER_DAY_RECORDED = "What you record here is recorded for {day}."
+OTHER_DAY_RECORDED = "What you record here is recorded for {day}, unless a file names its day."
+NOT_COME = (
+    "Something is recorded of **{day}**, which has not come: it is {today}. No day before counts "
+    "it. If that day is wrong, undo it in *Record*."
+)
 BACK_TO_TODAY = "Back to today"
 PRESSED_BEFORE = (
     "*{button}* was pressed before the plot or the day just chosen was shown, so nothing was done. "
@@ -366,6 +370,9 @@ TEAM_SETTINGS = (
     "changed with `fieldmon change --robots`."
 )
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
+CHANGED_LATE = "{day} goes by this too: nothing is recorded of it yet."
+CHANGED_LATER = "It counts from now on. {day} stays as it was planned: something is recorded of it."
+PLAN_AS_NOW = "Plan this day by what counts now: {strategy}"
 UNDO_CHANGE, UNDO_NO_CHANGE = "Take back: {what}", "Take the last change back"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
 LANGUAGE = "Language"
@@ -453,6 +460,21 @@ BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
     "says about the rest of the plot. Come back to it tomorrow from the list above."
 )
+KEEPING = "The season's file: backup, name, removal"
+BACKUP = "Download a backup"
+BACKUP_HELP = (
+    "The whole season as one file, as it is now. Put into the folder of seasons, it is a season."
+)
+RENAME_TO, RENAME = "New name", "Rename"
+RENAME_CODES = "Phones need a new code after that: let them send all they have first."
+RENAME_UNSAID = "The season is called {name} already. Type another name."
+RENAMED = "The season is called **{name}** now."
+REMOVE, REMOVE_YES, REMOVE_NO = "Remove from the list", "Yes, remove it", "Keep the season"
+REMOVE_ASKS = (
+    "Remove **{name}** from the list? Nothing of it is deleted: its file is moved to `{folder}`. "
+    "Phones with a code of it can send nothing any more."
+)
+REMOVED = "**{name}** is off the list. Its file is `{path}`: moved back, it is there again."
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
 EARLIER, NO_EARLIER = "Begin with what an earlier season learnt", "Without one"
 EARLIER_HELP = (
@@ -465,13 +487,14 @@ BEGIN_GATE = "Set the gate on the map"
 BEGUN = "Season {name} has begun. Its file is {path}."
 START_SCOUTING = "Start scouting"
 LAST_VISIT, VISIT_ON = "Last visit", "{day}: {what}"
-STEPS = {"look_back": "Visit before", "plan": "Plan", "begin": "Keep it", "send": "Take along",
+STEPS = {"look_back": "Earlier visit", "plan": "Plan", "begin": "Keep it", "send": "Take along",
          "record": "Record", "report": "Report", "next_day": "Next day"}  # fmt: skip
 STEP_BUTTONS = {"look_back": "Look back", "plan": "Use this plan", "begin": "Begin a season",
                 "send": "Send to phone", "record": "Record finds", "report": "Print (PDF)",
                 "next_day": "Plan the next day"}  # fmt: skip
 STEP_NOTHING, STEP_NO_VISIT = "nothing recorded", "none recorded"
 STEP_PLANNED_FOR = "Planned for {day}"
+STEP_UNUSED = "first use what you changed, with *Use from now on*, or set it back"
 STEP_UNRECORDED = "nothing recorded; if nobody went, record one stop as *could not inspect*"
 UNRECORDED = "Planned, and nothing recorded: {days}."
 STEP_FOUND = Plural(
@@ -522,12 +545,11 @@ TODAY_DONE = Plural(
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 #: as `fieldmon.io.writers.handoff` says them, which takes long to load
 READERS = {
-    "nav2": "robots with Nav2 (ROS 2)", "nav2-pauses": "robots with Nav2 and a plugin for pauses",
-    "waypoints": "robots of any kind",
+    "gpx": "GPS handhelds and hiking apps", "kml": "Google Earth, map apps on phones",
+    "sheet": "a printer: a scout without a phone", "csv": "spreadsheets",
     "geojson": "QGIS, phones, web maps", "gpkg": "QGIS, QField, ArcGIS",
-    "shapefile": "older map programs and consoles", "csv": "spreadsheets",
-    "kml": "Google Earth, map apps on phones", "gpx": "GPS handhelds and hiking apps",
-    "sheet": "a printer: a scout without a phone",
+    "shapefile": "older map programs and consoles", "waypoints": "robots of any kind",
+    "nav2": "robots with Nav2 (ROS 2)", "nav2-pauses": "robots with Nav2 and a plugin for pauses",
 }  # fmt: skip
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
@@ -701,8 +723,11 @@ DECIDE_NEEDS_SEASON = (
 DECIDE_AREA, DECIDE_LIQUID = "To be sprayed, of the area under plants", "Liquid"
 DECIDE_LITRES = "{value} l"
 DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
-DECIDE_SAVING, DECIDE_ENOUGH = "Saved against the whole plot", "Chance that it is enough"
-DECIDE_SAVING_HELP = "In the currency in which the costs are given."
+DECIDE_SAVING, DECIDE_ENOUGH = "Spraying costs less by", "Chance that it is enough"
+DECIDE_SAVING_HELP = (
+    "Less than spraying the whole plot, in the currency in which the costs are given. The infested "
+    "plants elsewhere lose {lost}, which is no part of it."
+)
 DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
 DECIDE_ZONES = Plural("{n} zone", "{n} zones")
 DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"
@@ -844,6 +869,7 @@ RESULT, COUNT, RESULTS_OF = "Result", "Count", {
     0: "clean", 1: "found", 2: "could not inspect", 3: "gone (pulled out)",
 }  # fmt: skip
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
+RECORDED_OF = "Recorded for {days}, not for {day}."
 RECORD_REST = (
     "Say how many stops were done, from the first: they are recorded as clean, unless marked as "
     "found. A mark counts wherever it stands."
@@ -866,19 +892,11 @@ ONE_UNSAID = (
     "in all three."
 )
 _CONTRADICTING = (
-    "what is recorded or brought of the same plants and day. Nothing is recorded yet, nor are the "
-    "{others} others. Which holds?"
+    "what is recorded or brought of the same plants and day. Nothing is recorded yet. Which holds?"
 )
 CONTRADICTING = Plural(
     "{n} result from {source} contradicts " + _CONTRADICTING,
     "{n} results from {source} contradict " + _CONTRADICTING,
-)
-_CONTRADICTING_ALL = (
-    "what is recorded or brought of the same plants and day. Nothing is recorded yet. Which holds?"
-)
-CONTRADICTING_ALL = Plural(
-    "{n} result from {source} contradicts " + _CONTRADICTING_ALL,
-    "{n} results from {source} contradict " + _CONTRADICTING_ALL,
 )
 CONTRADICTING_NO_MORE = Plural(
     "{n} result from {source} is not recorded yet, and contradicts nothing any more.",
@@ -1215,8 +1233,8 @@ INVITE_NOTE = (
     "record findings of this season until you take it back."
 )
 INVITE_LOCAL = (
-    "Phones cannot reach the app as it runs now: start it with `fieldmon app --lan`. The code "
-    "below works on this machine only."
+    "Phones cannot reach the app as it runs now: start it with `fieldmon app --lan`. A code "
+    "works on this machine only."
 )
 INVITE_NAME, INVITE_FIRST, INVITE_LAST = "Name", "From row", "To row"
 INVITE_BUTTON, TAKE_BACK = "Make a code", "Take back"

@@ -81,9 +81,7 @@ def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:
     last, today = season.last_date(), day_on(season.plot.field, None)
     if last <= max(today, season.settings.begins):
         return season.day_meant() if told is None else told
-    history = season.history
-    days = [*history.days[-1:].tolist(), *(one.day for one in history.treatments)]
-    recorded = season.settings.date(max(days, default=0))
+    recorded = season.last_recorded()
     tell_not_come(recorded, season.plot.field, "the last day recorded")
     if told is not None:
         return told

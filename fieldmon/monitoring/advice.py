@@ -179,6 +179,10 @@ class InspectAgain:
         )
 
 
+def _money(value: float) -> str:
+    return figure(value, ",.0f" if abs(value) >= _ROUND_FROM else ",.2f")
+
+
 @dataclass(frozen=True, eq=False)
 class Advice:
     """The answer to "do I have to spray, and where?".
@@ -243,7 +247,12 @@ class Advice:
     @property
     def saved(self) -> str:
         """Return that in words, in no more figures than can be meant."""
-        return figure(self.saving, ",.0f" if abs(self.saving) >= _ROUND_FROM else ",.2f")
+        return _money(self.saving)
+
+    @property
+    def lost(self) -> str:
+        """Return in words what infested plants outside the zones lose: that is no part of it."""
+        return _money(self.zones.outside * self.asked.costs.per_infested_plant)
 
     @cached_property
     def outlines(self) -> list[MultiPolygon]:
@@ -387,8 +396,9 @@ class Advice:
 
     def _worth_said(self) -> str:
         return worded(
-            "It takes {litres} l and costs {saved} less than treating the whole plot.",
-            litres=litres_figure(self.litres), saved=self.saved,
+            "It takes {litres} l and costs {saved} less than treating the whole plot; the infested "
+            "plants elsewhere lose {lost}.",
+            litres=litres_figure(self.litres), saved=self.saved, lost=self.lost,
         )  # fmt: skip
 
     def _enough_said(self) -> str:

@@ -304,6 +304,12 @@ class OpenSeason:
         with self.store.reading() as db:
             return settings_of(db).date(newest_day(db))
 
+    def last_recorded(self) -> date:
+        """Return the last day of which an inspection or a treatment counts; at first the first."""
+        history = self.history
+        days = [*history.days[-1:].tolist(), *(one.day for one in history.treatments)]
+        return self.settings.date(max(days, default=0))
+
     def day_meant(self) -> date:
         """Return the day that is meant where none is named: the last date, but today at most.
 

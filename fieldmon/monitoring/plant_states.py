@@ -56,6 +56,23 @@ def shown_states(history: History, day: int, *, own: bool = False) -> NDArray[np
     return np.where(state == TREATED_SINCE, np.int8(PRESENT), state)
 
 
+def finds_apart(history: History, day: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return ``(n,)`` which finds no inspection of the season made, and which count no more.
+
+    The first count, by the records of before alone. The others were treated since, seen again or
+    not: they make no hot spot.
+    """
+    vine = history.grid.vine
+
+    def found(states: NDArray[np.int8]) -> NDArray[np.bool_]:
+        either = np.zeros(len(vine), bool)
+        either[vine[states == PRESENT]] = True  # the two faces of a vine are one
+        return either[vine]
+
+    counts, own = (found(latest_states(history, day, own=own)) for own in (False, True))
+    return counts & ~own, found(history.known(day)) & ~counts
+
+
 def hot_spots_on(history: History, day: int) -> HotSpots:
     """Return the hot spots of a day: finds that were treated since make none."""
     state = latest_states(history, day)

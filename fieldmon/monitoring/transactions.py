@@ -154,6 +154,22 @@ class Store:
             copy_season(self.path, draft, target)
             _put(draft, target)
 
+    def move(self, to: str | Path) -> None:
+        """Give the file another name, while nobody else reads or writes it; never over a file.
+
+        A season that another program (QGIS) keeps in several files is held by it: it stays.
+        """
+        target = Path(to).absolute()
+        _refuse_old(target, to)
+        _must_be_there(self.path)
+        with _sentences(self.path, target), closing(connect(self.path)) as db:
+            _into_one_file(db)
+            if db.execute("PRAGMA journal_mode").fetchone()[0] == "wal":
+                raise sqlite3.OperationalError("database is locked")
+            db.execute("BEGIN EXCLUSIVE")
+            _put(self.path, target)
+            self.path.unlink(missing_ok=True)
+
     @classmethod
     @contextmanager
     def new(cls, path: str | Path) -> Iterator[sqlite3.Connection]:

@@ -15,6 +15,7 @@ from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
 from fieldmon.monitoring.day_figures import flagged_said, found_pct
+from fieldmon.monitoring.plant_states import finds_apart
 from fieldmon.plot.grid import row_label, rows_listed
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.reports import words
@@ -292,7 +293,8 @@ def _days(facts: _Facts) -> Table:
 def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     grid = facts.season.plot.grid
     yield from facts.plot_map(by_state=True)
-    meanings = tuple(hot_spot_meanings(grid, facts.status.hot_spots, facts.state))
+    apart = finds_apart(facts.season.history, facts.status.day)
+    meanings = tuple(hot_spot_meanings(grid, facts.status.hot_spots, apart))
     yield Listing(words.HOT_LIST, meanings, numbered=bool(len(facts.status.hot_spots)))
     yield from map(Paragraph, _left_out(facts.status.hot_spots, len(meanings), words.REST))
     plants = np.flatnonzero(facts.state == PRESENT)

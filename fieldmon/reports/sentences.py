@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import Worded, counted, estimate, hours_figure, joined, worded
-from fieldmon.infestation.observations import PRESENT
 from fieldmon.plot.grid import row_ends, row_label
 from fieldmon.reports import words
 
@@ -41,17 +40,19 @@ def headline(route: Route, day: str) -> str:
 
 
 def hot_spot_meanings(
-    grid: PlantGrid, spots: HotSpots, own: NDArray[np.int8] | None = None
+    grid: PlantGrid,
+    spots: HotSpots,
+    apart: tuple[NDArray[np.bool_], NDArray[np.bool_]] | None = None,
 ) -> list[str]:
     """Return where each hot spot is and what it means, in words; of eight at most.
 
-    `own` ``(n,)`` are the states by a season's own inspections: what is known from the records of
-    before alone is said to be so.
+    `apart` are a season's `finds_apart`, which are said: those known from the records of before
+    alone, and those that count no more.
     """
     if not len(spots):
         return [worded(words.HOT_NONE)]
     said: list[str] = []
-    brought = _brought(grid, spots, own)
+    brought, treated = _beside(grid, spots, apart)
     for k in range(min(len(spots), _MOST_SPOTS)):
         p = float(spots.p[k])
         chance = worded(words.CHANCE_P_SMALL)
@@ -62,19 +63,24 @@ def hot_spot_meanings(
                 found=spots.found[k], inspected=spots.inspected[k], plants=spots.plants[k],
                 expected=estimate(spots.expected[k]), p=chance,
             )  # fmt: skip
-        of_records = [worded(words.HOT_BROUGHT, n=brought[k])] if brought[k] else []
-        said.append(joined(" ", [meaning, *of_records]) if of_records else meaning)
+        more = [
+            worded(words_of, n=of[k])
+            for words_of, of in ((words.HOT_BROUGHT, brought), (words.HOT_TREATED, treated))
+            if of[k]
+        ]
+        said.append(joined(" ", [meaning, *more]) if more else meaning)
     return said
 
 
-def _brought(grid: PlantGrid, spots: HotSpots, own: NDArray[np.int8] | None) -> list[int]:
-    """Return how many finds of each hot spot no inspection of the season made."""
-    if own is None:
-        return [0] * len(spots)
-    found = np.zeros(len(grid), bool)
-    found[grid.vine[own == PRESENT]] = True  # the two faces of a vine are one
-    mine = np.bincount(spots.of_plant[found & (spots.of_plant >= 0)], minlength=len(spots))
-    return [int(n) for n in spots.found - mine]
+def _beside(
+    grid: PlantGrid, spots: HotSpots, apart: tuple[NDArray[np.bool_], NDArray[np.bool_]] | None
+) -> list[list[int]]:
+    """Return how many finds of each hot spot are only of records, and how many count no more."""
+    counted_: list[list[int]] = []
+    for which in apart or (np.zeros(len(grid), bool),) * 2:
+        of = spots.of_plant[np.unique(grid.vine[which])]  # the two faces of a vine are one
+        counted_.append(np.bincount(of[of >= 0], minlength=len(spots)).tolist())
+    return counted_
 
 
 def _place(grid: PlantGrid, plants: NDArray[np.intp]) -> Worded:

@@ -100,6 +100,7 @@ HOT_MEANS = (
     "{expected} would be if finds were spread evenly. So many by chance alone: {p}."
 )
 HOT_BROUGHT = "{n:,} of them {n:is|are} known from the records brought only."
+HOT_TREATED = "{n:,} more {n:was|were} found here and treated since."
 HOT_ROWS = "Rows {first} to {last}, plants {low} to {high}"
 HOT_ROW = "Row {first}, plants {low} to {high}"
 HOT_PLANTS = "Plants {low} to {high}"

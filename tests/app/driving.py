@@ -104,7 +104,7 @@ def plants(app, name="plants-chance"):
 
 
 def metric(app, label):
-    found = next(m.value for m in app.metric if m.label.removesuffix(" *") == label)
+    found = next(m.value for m in app.metric if apart(m.label).removesuffix(" *") == label)
     return apart(found)
 
 

@@ -950,6 +950,30 @@ def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_
     assert row.input_value() == "123"
 
 
+def test_a_day_that_is_typed_counts_by_enter_and_by_tab(page, address, served_seasons):
+    season(served_seasons / "Days.gpkg", sample()[0])
+    page.goto(f"{address}/?season=Days&part=record&day=2026-11-18")
+    rest(page)
+    for key, day in (("Enter", "20"), ("Tab", "22")):
+        page.get_by_test_id("stDateInput").first.get_by_role("spinbutton").last.click()
+        page.keyboard.type(day)
+        page.keyboard.press(key)
+        page.wait_for_url(f"**day=2026-11-{day}*")
+        rest(page)
+
+
+def test_one_press_of_back_leads_to_the_room_before(page, address, served_seasons):
+    season(served_seasons / "Back.gpkg", sample()[0])
+    page.goto(f"{address}/?season=Back&day=2026-11-18")
+    rest(page)
+    open_room(page, texts.ROOMS["season"])
+    page.wait_for_url("**/season?*day=2026-11-18*")
+    rest(page)
+    page.go_back()
+    page.get_by_text(texts.STEPS["record"]).first.wait_for()
+    page.wait_for_url("**/?season=Back&day=2026-11-18")
+
+
 def test_a_double_press_begins_one_season_and_keeps_one_plan(page, address, served_seasons):
     before = {*served_seasons.glob("*.gpkg")}
     shown(page, address)
@@ -1081,7 +1105,7 @@ def test_on_a_phone_plot_and_day_are_one_line_that_unfolds(on_a_phone):
     assert not boxes.is_visible()
     line.get_by_role("button").click()
     boxes.get_by_role("combobox", name=texts.WHICH_PLOT).wait_for(timeout=60_000)
-    assert boxes.get_by_text(texts.SAMPLE_NOTE).is_visible()
+    assert boxes.get_by_text("there it is always").is_visible()
     assert boxes.get_by_role("slider", name=texts.HOURS).is_visible()
     page.keyboard.press("Escape")
     boxes.wait_for(state="hidden", timeout=60_000)

@@ -246,3 +246,11 @@ def test_sums_of_a_hundred_and_more_are_said_without_hundredths(season, saving, 
     zones = SimpleNamespace(whole_cost=saving + 5000.0, cost=5000.0)
     advice = Advice(season.plot.grid, AdviceSettings(), None, zones, None)
     assert advice.saved == said
+
+
+def test_what_the_plants_outside_the_zones_lose_is_said_beside_what_is_saved(season):
+    advice = season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP, rate_l_ha=50_000.0))
+    lost = advice.zones.outside * CHEAP.per_infested_plant
+    assert lost > 0.0
+    assert float(advice.lost.replace(",", "")) == pytest.approx(lost, abs=0.5)
+    assert f"elsewhere lose {advice.lost}." in " ".join(advice.said_of_zones())

@@ -12,6 +12,7 @@ from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import History, Treatment
 from fieldmon.monitoring.plant_states import (
     TREATED_SINCE,
+    finds_apart,
     hot_spots_on,
     latest_states,
     shown_states,
@@ -100,6 +101,17 @@ def test_finds_that_were_treated_make_no_hot_spot(tmp_path):
     assert not len(season.status(on(1)).hot_spots)
     with season.store.reading() as db:
         assert db.execute("SELECT count(*) FROM hot_spots").fetchone()[0] == 0
+
+
+def test_a_find_known_from_records_alone_and_one_that_was_treated_are_told_apart(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    here, there = np.flatnonzero(season.history.recorded == 1)
+    seen(season, 0, found=[100, 101, 102, 103], clean=[105])
+    treated(season, 1, [there, 100, 101, 102])
+    seen(season, 2, clean=[100], found=[101])
+    brought, treated_since = finds_apart(season.history, 2)
+    assert np.flatnonzero(brought).tolist() == [here]
+    assert set(np.flatnonzero(treated_since)) == {there, 100, 102}
 
 
 def test_the_file_says_what_is_known_since_the_treatment(season):

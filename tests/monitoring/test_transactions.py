@@ -191,6 +191,26 @@ def test_a_copy_is_whole_and_one_file_whoever_works_on_the_season(path, tmp_path
         season.store.back_up(tmp_path / "nowhere" / "copy.gpkg")
 
 
+def test_a_season_is_moved_only_while_nobody_else_has_it_open(path, tmp_path, monkeypatch):
+    monkeypatch.setattr(transactions, "_PATIENCE_S", 0.0)
+    store, to = Season(path).store, tmp_path / "moved" / "season.gpkg"
+    to.parent.mkdir()
+    with closing(as_qgis(path)) as qgis:
+        qgis.execute("UPDATE inspections SET notes = 'not yet in the file' WHERE fid = 5")
+        with pytest.raises(FileProblem):
+            store.move(to)
+    with closing(transactions.connect(path)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        with pytest.raises(FileProblem):
+            store.move(to)
+    assert beside(to) == []
+    store.move(to)
+    assert (path.exists(), beside(to)) == (False, ["season.gpkg"])
+    assert "not yet in the file" in Season(to).history.inspections.notes.tolist()
+    with pytest.raises(FileProblem):
+        store.move(tmp_path / "again.gpkg")
+
+
 def test_a_damaged_season_is_not_copied_as_if_it_were_whole(path, tmp_path):
     store = Season(path).store
     data = bytearray(path.read_bytes())

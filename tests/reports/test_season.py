@@ -16,6 +16,7 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import Application, Season
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.plant_states import finds_apart
 from fieldmon.plot.grid import row_label
 from fieldmon.reports import season as season_module
 from fieldmon.reports import sentences
@@ -85,7 +86,7 @@ def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(worke
     of_season, status = season_report(worked, untreated, Units()), worked.status(untreated)
     said = one(of_season, Listing, "Hot spots").sentences
     assert list(said) == hot_spot_meanings(
-        worked.plot.grid, status.hot_spots, worked.history.states(status.day)
+        worked.plot.grid, status.hot_spots, finds_apart(worked.history, status.day)
     )
     assert any("known from the records brought only" in one for one in said)
     found = np.flatnonzero(worked.history.states(status.day) == PRESENT)

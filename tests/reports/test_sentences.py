@@ -49,6 +49,19 @@ def test_a_hot_spot_in_one_row_names_that_row():
     assert said.startswith("Row 5, plants 2 to 4:")
 
 
+def test_finds_of_records_and_finds_treated_since_are_said_beside_those_that_count():
+    of = spots(at((5, 2), (5, 4), (5, 6)), at((1, 1), (1, 2)))
+    brought, treated = (np.isin(np.arange(len(GRID)), at(*some)) for some in (
+        [(5, 2), (5, 4), (7, 7)], [(5, 6)],
+    ))  # fmt: skip
+    first, second = meanings(GRID, of, (brought, treated))
+    assert first.endswith(
+        "2 of them are known from the records brought only. "
+        "1 more was found here and treated since."
+    )
+    assert second.endswith("about 1 in 100.")
+
+
 def test_rows_without_a_number_of_their_own_are_said_by_name_behind_the_others():
     grid = with_names(rectangle(6, 9))
     for rows, said in (

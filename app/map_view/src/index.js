@@ -6,14 +6,17 @@
 
 import { Deck, FlyToInterpolator, MapView } from "@deck.gl/core";
 
+import { keepOneStep } from "./address.js";
 import { button, element, legendOf, Scale, signPicture } from "./chrome.js";
+import { takeDays } from "./days.js";
 import { takeCommas } from "./decimals.js";
 import { Drawing } from "./draw.js";
 import { Drive, PITCH } from "./drive.js";
 import { Frames } from "./frames.js";
 import { asked, moved } from "./keys.js";
-import { Labels, rowBoxes, withHot } from "./labels.js";
+import { Labels, nameBoxes, rowBoxes, withHot } from "./labels.js";
 import { layersOf } from "./layers.js";
+import { letNoticesGo } from "./notice.js";
 import { nearestPlant, plantsWithin, rowUnder, tipOf } from "./pick.js";
 import { composed, freePart } from "./picture.js";
 import { Playback } from "./playback.js";
@@ -38,6 +41,9 @@ const CORNER_M_A_PX = 5, CORNER_M = 30, WAIT_MS = 20000, NEAR_ZOOM = 18;
 class MapPage {
   constructor(parent) {
     takeCommas();
+    takeDays();
+    keepOneStep();
+    letNoticesGo();
     waitForBoxes();
     keepUnfinished();
     const sheet = new CSSStyleSheet();
@@ -143,8 +149,8 @@ class MapPage {
 
   fit() {
     const rows = this.off().includes("rows") ? NONE : this.data.labels ?? NONE;
-    const view = besideBox(this.data.bounds, this.size(), this.padding(), this.legendBox(), this.somePlaces(),
-      (port) => rowBoxes(rows, port));
+    const words = (port) => [...rowBoxes(rows, port), ...nameBoxes(this.data.labels ?? NONE, port)];
+    const view = besideBox(this.data.bounds, this.size(), this.padding(), this.legendBox(), this.somePlaces(), words);
     this.whence = JSON.stringify(view);
     return this.data.drive ? { ...view, pitch: PITCH } : view;
   }
@@ -195,14 +201,16 @@ class MapPage {
     return { left: box.left - x, right: box.right - map.left + MARGIN_PX, top: box.top - y, bottom: map.height };
   }
 
-  // Return places of plants, not too many: whether something hides them is asked of each. Where all plots
-  // are shown, there are none: then the places of their names.
+  // Return places of plants, not too many, and of the plot's corners: whether something hides them is asked
+  // of each. Where all plots are shown, there are none: then the places of their names.
   somePlaces() {
     const places = this.places(), some = [];
     if (!places) return (this.data.labels ?? []).filter(({ k }) => k === "name").map(({ p }) => p);
     const step = Math.ceil(places.lon.length / MOST_ASKED);
     for (let k = 0; k < places.lon.length; k += step) some.push([places.lon[k], places.lat[k]]);
-    return some;
+    const rings = (this.jsons.find(({ id }) => id === "boundary")?.data ?? NONE).map(({ path }) => path);
+    const corners = rings.reduce((n, path) => n + path.length, 0), each = Math.ceil(corners / MOST_ASKED) || 1;
+    return [...some, ...rings.flatMap((path) => path.filter((_, k) => k % each === 0))];
   }
 
   open() {

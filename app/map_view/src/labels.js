@@ -80,6 +80,14 @@ export function rowBoxes(labels, viewport) {
   return numberedRows(labels, viewport).map(({ box }) => box);
 }
 
+// Return the boxes of the names of plots, and of the gate's, in a view.
+export function nameBoxes(labels, viewport) {
+  return labels.filter(({ k }) => k === "name" || k === "gate").map((one) => {
+    const [half, tall] = sizeOf(one.t), [x, y] = pushed(viewport, one.p, one, [half, tall]);
+    return [x - half, y - tall, x + half, y + tall];
+  });
+}
+
 // Return a middle from which a word reaches over neither edge, if it is not out of view.
 function inside(x, half, [left, right]) {
   return x < left || x > right || right - left < 2 * half ? x : Math.min(Math.max(x, left + half), right - half);

@@ -58,7 +58,13 @@ export function besideBox(bounds, size, padding, box, places, words = () => []) 
   const side = box.left > size.width - box.right ? { right: Math.max(padding.right, size.width - box.left) }
     : { left: Math.max(padding.left, box.right) };
   const others = [side, { bottom: Math.max(padding.bottom, size.height - box.top) }];
-  const views = others.map((change) => withWords(bounds, size, { ...padding, ...change }, words));
+  const views = others.map((change) => {
+    const beside = withWords(bounds, size, { ...padding, ...change }, words);
+    if (!covers(beside, size, box, places, words)) return beside;
+    // words reach into what is left free, which is none before a box
+    const farther = Object.entries(change).map(([at, px]) => [at, px + INTO[at]]);
+    return withWords(bounds, size, { ...padding, ...Object.fromEntries(farther) }, words);
+  });
   return views[0].zoom > views[1].zoom ? views[0] : views[1];
 }
 

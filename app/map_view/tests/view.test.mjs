@@ -5,7 +5,7 @@ import { test } from "node:test";
 
 import { WebMercatorViewport } from "@deck.gl/core";
 
-import { rowBoxes } from "../src/labels.js";
+import { nameBoxes, rowBoxes } from "../src/labels.js";
 import { besideBox, fitted, metresPerPixel } from "../src/view.js";
 
 const ROOMS = [
@@ -94,3 +94,15 @@ for (const side of ["west", "east"]) {
     }
   });
 }
+
+test("names of plots that stand below their marks are clear of the legend, too", () => {
+  const bounds = [34, 29, 37, 32], size = { width: 1024, height: 700 }, padding = { left: 30, right: 60, top: 24, bottom: 76 };
+  const legend = { left: 700, right: 1012, top: 640, bottom: 700 };
+  const labels = [[34, 32], [36.2, 29]].map((p) => ({ p, away: [p[0], p[1] - 1e-4], gap: 12, t: "South-east 2026", k: "name" }));
+  const view = besideBox(bounds, size, padding, legend, labels.map(({ p }) => p), (port) => nameBoxes(labels, port));
+  const port = new WebMercatorViewport({ ...size, ...view });
+  for (const [left, top, right, bottom] of nameBoxes(labels, port)) {
+    assert.ok(left > 0 && right < size.width && top > 0 && bottom < size.height);
+    assert.ok(!(right > legend.left && left < legend.right && bottom > legend.top), `${left}, ${bottom} is behind the legend`);
+  }
+});

@@ -160,11 +160,13 @@ export class PlotMap {
   }
 
   #way(ink, paint) {
+    const apart = this.plot.plantSpacing * this.scale; // from afar stops and aisles would be one blot
     ink.strokeStyle = paint.route;
-    ink.lineWidth = 2;
+    ink.lineWidth = Math.max(0.75, Math.min(2, apart));
     this.#line(ink, this.shown.way);
     ink.fillStyle = paint.route;
-    for (const plant of this.shown.ahead) this.#dot(ink, plant, 3);
+    const r = Math.min(3, 0.35 * apart);
+    if (r >= 1) for (const plant of this.shown.ahead) this.#dot(ink, plant, r);
   }
 
   /** A square where a photo is asked for. */

@@ -92,4 +92,5 @@ def outline(field: Field, name: str, colour: colours.Colour) -> Layer:
         get_color=list(colour),
         get_width=0.5,
         width_min_pixels=1.5,
+        width_max_pixels=3,  # a line, however small the plot is that fills the map
     )

@@ -175,7 +175,7 @@ def _are_numbers_of_plants(layer: Layer, names: tuple[str, ...]) -> bool:
 def _by_coordinates(
     layer: Layer, options: ReadOptions, how: str, names: tuple[str, ...]
 ) -> LocatedFeatures:
-    shown = " and ".join(repr(name) for name in names)
+    shown = ", ".join(repr(name) for name in names)  # in a sentence of any language
     xy, crs, messages = _coordinates(layer, options, how, names)
     stated, more = _stated_crs(layer, options)
     if stated is None and how == "metres" and options.crs is None:

@@ -127,3 +127,9 @@ def test_answers_have_buttons_unless_they_were_seen_to_lead_nowhere():
     # those that nobody tried may lead somewhere
     assert made == [(2, "EPSG:2"), (12, "EPSG:12"), (13, "EPSG:13"), (14, "EPSG:14")]
     assert bringing_files.with_buttons(offered, {}) == [*enumerate(offered[:12], start=1)]
+
+
+def test_the_first_screen_doubts_nothing_of_the_sample_and_its_import_says_it(app):
+    assert "lie on no plant" not in texts_of(app)
+    assert "there it is always Mon 16 Nov 2026." in texts_of(app)
+    assert "lie on no plant" in texts_of(go(app, "plot"))

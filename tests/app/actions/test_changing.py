@@ -1,7 +1,7 @@
 """Who works in a season is changed from now on, and back."""
 
 from dataclasses import replace
-from datetime import timedelta
+from datetime import date, timedelta
 
 import numpy as np
 import pytest
@@ -11,7 +11,9 @@ from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot, scout
-from tests.app.driving import PAGES, go, metric, opened, press, texts_of, until
+from tests.app.driving import PAGES, go, metric, opened, press, tap, texts_of, until
+
+BEGINS = date(2026, 11, 16)
 
 
 def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(season_app, season):
@@ -39,6 +41,38 @@ def test_other_hours_are_used_from_now_on_when_asked_for(season_app, season):
     press(season_app, "Use from now on")
     assert season().settings.robot.hours == 4.0
     assert int(metric(season_app, "Plants to inspect").split(" / ")[0]) < 300
+
+
+def test_a_plan_of_other_hours_than_the_slider_says_is_not_handed_on(season_app, season):
+    hours_box(season_app).set_value(4.0).run()
+    assert "first use what you changed" in texts_of(season_app)
+    for step in ("plan", "send"):
+        button = season_app.button(key=f"do_{step}")
+        assert (button.disabled, button.proto.type) == (True, "secondary")
+    press(season_app, "Use from now on")
+    tap(season_app, "do_plan")
+    assert season().planned_and_done(BEGINS).hours <= 4.0
+
+
+def test_a_day_that_was_missed_is_given_its_hours_and_one_that_was_worked_keeps_them(
+    season_app, season
+):
+    days = [BEGINS + timedelta(days=k) for k in range(3)]
+    for day in (days[0], days[2]):
+        one = Inspections.of(np.array([3]), np.array([0]), np.datetime64(day))
+        season().record(one, "file")
+    season_app.run()
+    hours_box(season_app).set_value(6.0).run()
+    press(season_app, "Use from now on")
+    assert "Mon 16 Nov stays as it was planned" in season_app.success[0].value
+    season_app.date_input[0].set_value(days[1]).run()
+    assert season().planned_by(days[1]).robot.hours == 12.0
+    tap(season_app, "plan_as_now")
+    assert season().planned_by(days[1]).robot.hours == 6.0
+    hours_box(season_app).set_value(4.0).run()
+    press(season_app, "Use from now on")
+    assert season_app.success[0].value.startswith("Tue 17 Nov goes by this too")
+    assert [season().planned_by(day).robot.hours for day in days[:2]] == [12.0, 4.0]
 
 
 def test_another_sampler_goes_without_the_n_of_the_one_before(season_app, season):

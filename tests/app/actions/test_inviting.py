@@ -50,6 +50,13 @@ def test_a_code_opens_the_season_for_one_person_until_it_is_taken_back(scout, se
     assert len(scout.code) == 0
 
 
+def test_a_code_stands_above_the_boxes_that_it_was_made_by(scout):
+    made(scout)
+    shown = list(scout.main)
+    code, name = scout.code[0], scout.text_input(key="invite_name")
+    assert shown.index(code) < shown.index(name)
+
+
 def test_the_fold_stays_open_at_a_code_until_that_is_taken_back(scout):
     fold = lambda: next(one for one in scout.expander if one.label == texts.INVITE)  # noqa: E731
     assert not fold().proto.expanded

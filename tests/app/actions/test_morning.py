@@ -81,7 +81,10 @@ def test_the_route_goes_along_as_a_file_where_no_phone_reaches_this_machine(begu
     here = request.getfixturevalue("season_app" if begun else "app")
     tap(here, "do_send")
     assert (texts.INVITE_LOCAL if begun else texts.SEND_ALONE) in texts_of(here)
-    assert here.selectbox(key="format").value == "gpx"
+    formats = here.selectbox(key="format")
+    assert formats.value == "gpx"
+    assert formats.options[0].endswith(": gpx"), "what most use stands first"
+    assert formats.options[-1].endswith(": nav2-pauses")
 
 
 def test_recording_is_one_button_away(season_app):

@@ -13,8 +13,9 @@ import streamlit as st
 from app.actions import recording
 from app.state.fresh_boxes import FreshBoxes
 from app.words import texts
-from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.plot.grid import plant_at
 from tests.app.chosen import in_season
 from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
 from tests.monitoring.seasons import a_season
@@ -395,6 +396,55 @@ def test_what_contradicts_the_same_day_is_shown_and_confirmed(season_app, season
     assert not season_app.exception
     assert not season_app.warning
     assert season().history.inspections.result.tolist() == results
+
+
+def test_a_file_of_another_day_says_of_which_day_it_was_recorded(season_app, season):
+    go(season_app, "record")
+    season_app.date_input[0].set_value(date(2026, 11, 17)).run()
+    rows = b"row,number,found,date\n1,1,1,2026-11-16\n4,1,0,2026-11-16\n"
+    boxed(season_app.file_uploader, "findings_file").upload("day16.csv", rows).run()
+    season_app.button(key="record_file").click().run()
+    assert season().history.inspections.date.astype(str).tolist() == ["2026-11-16"] * 2
+    shown = [*season_app.success, *season_app.warning]
+    assert any("Recorded for Mon 16 Nov, not for Tue 17 Nov." in one.value for one in shown)
+
+
+def test_what_is_recorded_of_a_day_that_has_not_come_is_said_on_the_pages_of_today(
+    season_app, season
+):
+    go(season_app, "record")
+    season_app.date_input[0].set_value(date(2026, 12, 20)).run()
+    for name, value in {"one_row": 3, "one_plant": 4, "one_result": FOUND}.items():
+        season_app.session_state[key_of(season_app, name)] = value
+    season_app.run()
+    send(season_app, "one")
+    said = "of **Sun 20 Dec**, which has not come: it is Mon 16 Nov."
+    assert any("1 recorded" in one.value and said in one.value for one in season_app.warning)
+    season_app.date_input[0].set_value(date(2026, 11, 16)).run()
+    for page in ("today", "season"):
+        go(season_app, page)
+        assert any(said in one.value for one in season_app.warning)
+    season().undo()
+    assert not any(said in one.value for one in go(season_app, "today").warning)
+
+
+@pytest.mark.parametrize("key", ["leave_out", "confirm", "holds"])
+def test_what_was_left_out_of_a_file_is_said_once_what_contradicts_is_settled(
+    season_app, season, key
+):
+    plant, day = np.array([plant_at(season().plot.grid, 1, 1)]), np.datetime64("2026-11-16")
+    season().record(Inspections.of(plant, np.array([CLEAN]), day), "file")
+    go(season_app, "record")
+    rows = b"row,number,found\n1,1,1\n4,1,0\n4,2,maybe\n9999,1,1\n"
+    boxed(season_app.file_uploader, "findings_file").upload("contra.csv", rows).run()
+    season_app.button(key="record_file").click().run()
+    assert "1 result from contra.csv contradicts" in season_app.warning[0].value
+    season_app.button(key=key).click().run()
+    assert len(season().history.inspections) == (3 if key == "confirm" else 2)
+    (said,) = (one.value for one in season_app.warning)
+    assert "recorded" in said
+    assert "maybe" in said
+    assert "9999" in said
 
 
 def test_the_new_results_hold_as_corrections_until_these_are_undone(season_app, season):

@@ -46,7 +46,7 @@ def test_what_a_record_asks_is_kept_and_what_to_beware_of_is_said(season_app, se
         weather="18 °C, 2 m/s",
     )
     assert not season_app.error
-    said = season_app.success[0].value
+    said = next(one.value for one in season_app.warning if "Treatment noted" in one.value)
     assert "Treatment noted." in said
     assert "the label's counts" in said
     assert "is too soon after Acarol" in said
@@ -108,7 +108,8 @@ def test_a_treatment_of_rows_is_of_their_plants_as_in_a_command(season_app, seas
     assert not season_app.error
     (one,) = season().treatments()
     assert set(season().label.line[one.place.plants].tolist()) == set(range(20, 41))
-    assert season_app.success[0].value.startswith(f"Treatment noted, of {one.place.plants.sum():,}")
+    noted = f"Treatment noted, of {one.place.plants.sum():,}"
+    assert any(one.value.startswith(noted) for one in season_app.warning)
     part_noted(season_app, rows="20-400")
     assert "row 400 is named" in season_app.error[0].value
     assert len(season().treatments()) == 1

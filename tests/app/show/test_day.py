@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import replace
-from datetime import datetime, timedelta
+from datetime import date, datetime, timedelta
 
 import numpy as np
 import pandas as pd
@@ -51,6 +51,12 @@ def worked(tmp_path_factory):
 
 def on(season, number):
     return in_season(season, BEGINS + timedelta(days=number))
+
+
+def test_the_headline_says_the_year_of_a_day_that_is_far_off():
+    for said, ends in (("2026-11-18", "Wed 18 Nov"), ("2027-11-16", "Tue 16 Nov 2027")):
+        choices = chosen(a_plot(), day=said, today=date(2026, 11, 16))
+        assert f" on {ends}, " in apart(day.headline(choices, choices.plan()))
 
 
 def test_stops_are_the_route_s_in_order_with_the_times_of_their_arrival():

@@ -3,7 +3,7 @@
 import pytest
 
 from app.state import seasons_folder as folder
-from fieldmon.errors import SettingError
+from fieldmon.errors import FileProblem, SettingError
 from tests.monitoring.seasons import a_season
 
 
@@ -38,3 +38,28 @@ def test_a_link_out_of_the_folder_is_neither_named_nor_followed(seasons_folder, 
     assert folder.names() == []
     with pytest.raises(SettingError, match="leak"):
         folder.path_of("leak")
+
+
+@pytest.mark.usefixtures("seasons_folder")
+def test_a_renamed_season_is_whole_under_its_new_name_and_takes_nobody_elses():
+    for name in ("old", "other"):
+        a_season(folder.new_path(name))
+    before = folder.path_of("old").read_bytes()
+    folder.rename("old", " new ")
+    assert folder.names() == ["new", "other"]
+    assert folder.path_of("new").read_bytes() == before
+    with pytest.raises(FileProblem, match="exists already"):
+        folder.rename("new", "other")
+    with pytest.raises(SettingError):
+        folder.rename("new", "../new")
+    assert folder.names() == ["new", "other"]
+
+
+def test_a_season_off_the_list_lies_aside_whole_and_never_over_another(seasons_folder):
+    for n in (1, 2):
+        made = a_season(folder.new_path("gone"))
+        data = made.path.read_bytes()
+        aside = folder.set_aside("gone")
+        assert folder.names() == []
+        assert aside.read_bytes() == data
+        assert len(list((seasons_folder / folder.REMOVED).iterdir())) == n

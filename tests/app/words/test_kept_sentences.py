@@ -71,3 +71,20 @@ def test_a_sentence_that_begins_with_a_blank_does_not_take_the_one_before_for_it
     speaking("es")
     both = " ".join(language.in_words(one) for one in (treat, believed))
     assert language.in_words(worded("{what}: {said}", what="x", said=kept)) == f"x: {both}"
+
+
+@pytest.mark.parametrize(
+    ("blank", "said"),
+    [("26 m to 100 m", "26\u00a0m a 100\u00a0m"), ("0.8 m to 1.25 km", "0,8\u00a0m a 1,25\u00a0km"),
+     ("26 m", "26\u00a0m"), ("Gate to Pond", "Gate to Pond")],
+)  # fmt: skip
+def test_distances_that_stood_in_a_blank_are_said_again(monkeypatch, blank, said):
+    monkeypatch.setattr(language, "current", lambda: "es")
+    kept = f"669 of 998 records lie outside Gate and were kept apart: {blank} away."
+    assert f"a una distancia de {said}." in language.in_words(KeptText(kept))
+
+
+def test_columns_that_an_earlier_version_named_with_and_are_listed(monkeypatch):
+    monkeypatch.setattr(language, "current", lambda: "he")
+    kept = KeptText("Positions were read from 'longitude' and 'latitude'.")
+    assert "'longitude', 'latitude'" in language.in_words(kept)

@@ -39,7 +39,8 @@ _PLUS = re.compile(r"^\+\s*(\d*)$")
 class SeenResults(NamedTuple):
     """What was seen, ``(n,)`` each; `said` where anything at all was written down.
 
-    `gone` are the rows whose result says that the plant does not stand there any more.
+    `gone` are the rows whose result says that the plant does not stand there any more, `unread`
+    those in which something is written that says nothing.
     """
 
     result: NDArray[np.int8]
@@ -48,6 +49,7 @@ class SeenResults(NamedTuple):
     said: NDArray[np.bool_]
     messages: list[ImportMessage]
     gone: NDArray[np.bool_]
+    unread: NDArray[np.bool_]
 
 
 class _CellResult(NamedTuple):
@@ -152,7 +154,9 @@ def _put_together(
         )
         messages = [*messages, guessed(said)]
     said_any, gone = spoken | counted_too, np.zeros(len(result), np.bool_)
-    return SeenResults(result, how_many, doubt.astype(np.str_), said_any, messages, gone)
+    read = [of.is_read and n.is_read for of, n in zip(by_result, by_count, strict=True)]
+    unread = ~np.array(read, np.bool_)
+    return SeenResults(result, how_many, doubt.astype(np.str_), said_any, messages, gone, unread)
 
 
 def _unread(cells: list[str], known: dict[str, _CellResult]) -> list[ImportMessage]:

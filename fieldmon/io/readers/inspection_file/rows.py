@@ -104,13 +104,14 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
                 )
             )
         )
-    if not said.all():
+    silent = ~(said | results.unread)  # what is written and cannot be read is said apart
+    if silent.any():
         what = worded("no finding in the name") if columns.marks else worded("not filled in")
         messages.append(
             seen(
                 worded(
                     "{n} of {total} {total:record|records} left unknown: {what}.",
-                    n=int((~said).sum()),
+                    n=int(silent.sum()),
                     total=len(layer),
                     what=what,
                 )

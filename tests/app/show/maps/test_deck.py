@@ -63,3 +63,8 @@ def test_outline_holes_and_no_go_areas_are_drawn():
     assert drawn[1] == pytest.approx(np.array(around.geoms[0].interiors[0].coords))
     light, dark = (deck.boundary(field, dark=dark).get_color for dark in (False, True))
     assert sum(dark) > sum(light)
+
+
+def test_an_outline_stays_a_line_where_a_small_plot_fills_the_map():
+    sent = json.loads(deck.outline(a_plot().field, "boundary", (0, 0, 0)).to_json())
+    assert sent["widthMaxPixels"] <= 3

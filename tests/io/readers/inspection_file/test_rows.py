@@ -29,6 +29,14 @@ def test_only_rows_that_say_anything_are_kept_with_their_numbers_in_the_file():
     assert "1 of 3 records left unknown: not filled in" in sentences(read)
 
 
+def test_a_result_that_cannot_be_read_is_not_said_to_be_empty():
+    said = sentences(rows_in(table(plant=[7, 8, 9], found=["maybe", None, "no"]), NOTHING))
+    assert "1 record says neither clean nor found" in said
+    assert "1 of 3 records left unknown: not filled in." in said
+    said = sentences(rows_in(table(plant=[7, 9], found=["maybe", "no"]), NOTHING))
+    assert "not filled in" not in said
+
+
 @pytest.mark.parametrize("word", ["gone", "Pulled out", "arrancada", "נעקר"])
 def test_a_plant_that_is_gone_could_not_be_inspected_and_its_note_says_why(word):
     cells = {"found": [word, "skipped", "no", word], "notes": [None, "locked", None, "rotten"]}

@@ -471,17 +471,17 @@ def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
 
 @pytest.fixture(scope="module")
 def asked_screen(new_tab, address):
-    """Load the first screen once for all who ask it about plants."""
+    """Load the first screen once for all who ask it about plants, which alone are pointed at."""
     page = new_tab()
     shown(page, address)
+    for name in (ROUTE, HOT):
+        switch(page, name, on=False)
     yield page
     page.close()
 
 
 def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(asked_screen):
     page = asked_screen
-    for name in (ROUTE, HOT):
-        switch(page, name, on=False)
     still(page)
     zoomed(page)
     plot, _ = sample()

@@ -90,7 +90,9 @@ def _planned(choices: Choices, plan: DayPlan) -> str:
         return texts.STEP_OTHER.format(plan=rest or texts.STEP_NO_STOPS, kept=said)
     if kept is None:
         return rest and texts.STEP_REST.format(plan=rest)
-    return texts.STEP_KEPT.format(plan=said, left=kept.left)
+    # who is alone has what is left of the day, as it stands above
+    is_alone = kept.people == 1 and len(plan.route)
+    return texts.STEP_KEPT.format(plan=said, left=len(plan.route) if is_alone else kept.left)
 
 
 def _today(choices: Choices, _: DayPlan) -> str:

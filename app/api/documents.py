@@ -207,7 +207,7 @@ def _closed(season: Season, ahead: DayAhead, on: date, part: Part) -> list[dict[
     With which of their plants, as runs of numbers, and how many of these are somebody's own.
     """
     closed, line, mine = [], season.label.line, ahead.own(part)
-    for one in season.closed(on, part.name):
+    for one in season.closed(on, ahead.works_as(part)):
         rows = np.unique(line[one.plants])
         for run in run_ends(rows).tolist():
             plants = np.flatnonzero(one.plants & (line >= run[0]) & (line <= run[1]))
@@ -230,7 +230,7 @@ def _left_out(
     mine = ahead.own(part)
     return [
         {"why": why, "plants": run_ends(plants).tolist(), "own": int(mine[plants].sum())}
-        for why, plants in left_out(season.scene(on, who=part.name), route).items()
+        for why, plants in left_out(season.scene(on, who=ahead.works_as(part)), route).items()
         if len(plants)
     ]
 

@@ -2,7 +2,7 @@
 
 import { Clock } from "./clock.js";
 import { laidOut, metres, neighbours, offered, rings, rowOf } from "./geo.js";
-import { afterFind, results, secondsAhead, secondsLeft, withAsked } from "./plan.js";
+import { afterFind, results, secondsAhead, secondsLeft, secondsThrough, withAsked } from "./plan.js";
 import { fetchDay, fetchRest, isOf } from "./sync.js";
 import { wayAhead } from "./way.js";
 
@@ -197,7 +197,7 @@ export class Field {
   #hours(day) {
     if (day.begun) return { seconds_left: day.seconds_left, begun: this.time.best() };
     // the season has not heard yet that work began
-    const isGoing = this.begun && this.day?.day === day.day && this.lastRecord();
+    const isGoing = this.begun && day.live && this.day?.day === day.day && this.lastRecord();
     return isGoing ? { seconds_left: this.day.seconds_left, begun: this.begun } : { seconds_left: day.seconds_left, begun: null };
   }
 
@@ -247,7 +247,9 @@ export class Field {
   }
 
   #take(day) {
-    this.day = { ...day, chance: Uint16Array.from(day.chance),
+    // what of this phone the season counts in what it says
+    const heard = Math.max(0, ...this.records.filter((one) => one.state === "kept").map((one) => one.order));
+    this.day = { ...day, heard, chance: Uint16Array.from(day.chance),
       spots: day.hot_spots.flatMap(rings).map((ring) => ring.map((at) => metres(this.plot, at))) };
     delete this.day.hot_spots;
     this.#work();
@@ -378,15 +380,14 @@ export class Field {
     const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute, photos: photos ?? 0,
       // of the route that one goes by; a server of before said none
       ...(this.day.route.detects == null ? {} : { detects: this.day.route.detects }) };
-    // the hours of a day ahead begin on it
-    const isAhead = this.meant() !== null && this.day.past === false;
-    const begun = this.begun ?? (isAhead ? null : this.#begins(plant));
+    // the hours of another day run by no clock
+    const begun = this.meant() === null ? this.begun ?? this.#begins(plant) : null;
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
       const done = new Set([...this.done, plant]);
       // a neighbour that nobody may come to yet, or that plans leave out, is none to go to
       const out = neighbours(this.plot, plant).filter((one) => this.closedUntil(one) || this.isLeftOut(one));
-      ahead = afterFind(this.plot, this.day, ahead, plant, new Set([...done, ...out]), secondsLeft(this.day, begun, this.time.best()));
+      ahead = afterFind(this.plot, this.day, ahead, plant, new Set([...done, ...out]), this.#secondsLeft(begun, [plant]));
     }
     const follows = { ahead, begun, draft: this.#comesNext(ahead), last: { id, plant, ahead: this.ahead } };
     return this.#step(follows, () => this.store.record(record, { ...follows, ...this.time.known() }), record);
@@ -437,7 +438,16 @@ export class Field {
   /** How many plants are done and on the disk. */
   kept() { return [...this.own.values()].filter((one) => one.state !== WRITING).length; }
 
-  secondsLeft() { return secondsLeft(this.day, this.begun, this.time.best()); }
+  /** What is left of the hours: by the clock where they run, else by what the plants told since cost, as the season counts them. */
+  secondsLeft() { return this.#secondsLeft(this.begun); }
+
+  #secondsLeft(begun, more = []) {
+    if (this.meant() === null) return secondsLeft(this.day, begun, this.time.best());
+    const { heard = 0 } = this.day, told = [...this.own.values()].sort((a, b) => a.order - b.order);
+    const known = told.findLast((one) => one.order <= heard)?.plant ?? -1;
+    const since = told.filter((one) => one.order > heard).map((one) => one.plant);
+    return Math.max(0, this.day.seconds_left - secondsThrough(this.plot, this.day, known, [...since, ...more]));
+  }
 
   /** The line ahead as it is gone, metres. */
   way() {

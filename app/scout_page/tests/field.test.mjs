@@ -459,6 +459,26 @@ test("hours begin at the start, or with the way to a first plant that is more th
   }
 });
 
+test("the hours of a day that is over are what its plants cost, whatever the clock says", async () => {
+  const season = new ASeason(aDay([0, 1, 2], { day: "2026-11-01", live: false, past: true }));
+  const { field, sync, again } = await aField(season, { ...ACCESS, on: "2026-11-01" });
+  await field.tell("clean");
+  await field.tell("clean");
+  for (const one of [field, await again()]) {
+    one.clock = () => new Date("2026-11-22T11:00:00Z");
+    assert.equal(one.secondsLeft(), 14400 - 2 * 37);
+  }
+  await field.undo();
+  assert.equal(field.secondsLeft(), 14400 - 37);
+  await sync.send();
+  await field.reread();
+  season.day = { ...season.day, seconds_left: 14000 };
+  await field.refresh();
+  assert.equal(field.secondsLeft(), 14000, "as the season counts them");
+  await field.tell("clean");
+  assert.equal(field.secondsLeft(), 14000 - 37);
+});
+
 test("a day that was over when it was loaded stays the day meant", async () => {
   const season = new ASeason(aDay([0, 1, 2], { day: "2026-11-01", live: false, past: true }));
   const { field } = await aField(season, { ...ACCESS, on: "2026-11-01" });

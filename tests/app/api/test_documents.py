@@ -211,14 +211,14 @@ def test_who_is_of_the_team_has_its_route_though_an_older_file_has_rows_for_the_
 
 
 def test_the_hours_of_today_run_by_the_clock_from_when_work_began(served, scout, monkeypatch):
-    season = served.season
-    starts = local_clock(season.plot.field).moment(BEGINS, season.settings.starts)
+    season, on = served.season, BEGINS + timedelta(days=1)  # a day of which nothing is recorded
+    starts = local_clock(season.plot.field).moment(on, season.settings.starts)
 
     def loaded_after(hours):
         now = starts + timedelta(hours=hours)
         for module in ("fieldmon.plot.local_clock", "app.api.documents"):
             monkeypatch.setattr(f"{module}.utc_now", lambda: now)
-        day = json.loads(day_document(season, scout, BEGINS))
+        day = json.loads(day_document(season, scout, on))
         jsonschema.validate(day, description.DAY)
         assert datetime.fromisoformat(day["begins"]) == starts
         return day
@@ -227,15 +227,15 @@ def test_the_hours_of_today_run_by_the_clock_from_when_work_began(served, scout,
     first = loaded_after(0.5)
     assert (first["live"], first["begun"], first["seconds_left"]) == (True, False, 3600 * hours)
     plants = np.array(first["route"]["plants"][:1], np.int32)
-    second = np.array([season.begun_s(BEGINS) + 120])
-    season.record(Inspections.of(plants, np.zeros(1, np.int8), BEGINS, second=second), "f", "Ann")
+    second = np.array([season.begun_s(on) + 120])
+    season.record(Inspections.of(plants, np.zeros(1, np.int8), on, second=second), "f", "Ann")
     late = loaded_after(hours - 0.3)
     assert (late["begun"], late["seconds_left"]) == (True, pytest.approx(0.3 * 3600))
     route, kept = late["route"], first["route"]["plants"][1:]
     assert 0 < len(route["plants"]) < len(kept)
     assert route["plants"] == kept[: len(route["plants"])], "the plan is the one that was given"
     assert late["plan"] == first["plan"]
-    rest = json.loads(rest_document(season, scout, BEGINS, None))
+    rest = json.loads(rest_document(season, scout, on, None))
     assert max(rest["route"]["end_s"], route["end_s"]) <= late["seconds_left"] + 0.1
     assert loaded_after(hours + 1.0)["route"]["plants"] == []
     after = loaded_after(24.0)

@@ -616,6 +616,15 @@ def holds_still(db: sqlite3.Connection, on: date, plan: str) -> bool:
     return False
 
 
+def left_out_of(db: sqlite3.Connection, batch: int) -> list[str]:
+    """Return the digests of what was taken back of a batch before it was undone last."""
+    for entry in reversed(entries(db)):
+        number = entry.what.get("batch") if entry.kind == "undone" else None
+        if number is not None and entry.numbers.get(number, number) == batch:
+            return list(entry.what.get("but", ()))
+    return []
+
+
 def labels_kept(db: sqlite3.Connection) -> dict[str, str]:
     """Return when (UTC) each table of labels was kept, here or in a copy, by its entry's digest."""
     kept = {}

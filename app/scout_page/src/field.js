@@ -41,6 +41,7 @@ export class Field {
     Object.assign(this, { store, ask: time.listening(ask), clock, id, time });
     this.coords = null;
     this.records = [];
+    this.back = new Set();
     this.people = {};
     this.seasons = [];
   }
@@ -258,13 +259,42 @@ export class Field {
   /** What is done, by this phone and by others. */
   #work() {
     const today = this.records.filter((one) => one.day === this.day?.day);
-    this.own = results(today);
-    this.done = new Set([...this.own.keys(), ...(this.day?.today ?? []).map((one) => one.plant)]);
-    // taken back here, though the server may still say it
-    for (const one of today) {
-      const gone = one.undoes && today.find((other) => other.id === one.undoes);
-      if (gone && !this.own.has(gone.plant)) this.done.delete(gone.plant);
-    }
+    const gone = this.#gone(), { heard = 0 } = this.day ?? {};
+    this.own = results(today.filter((one) => !gone.has(one.id)));
+    // taken back here, though what the season said last still says it
+    const undone = new Map(today.filter((one) => one.undoes && one.order > heard).map((one) => [one.undoes, one]));
+    this.back = new Set(today.filter((one) => undone.has(one.id) && !this.own.has(one.plant)).map((one) => one.plant));
+    const said = (this.day?.today ?? []).map((one) => one.plant).filter((plant) => this.said(plant).length > 0);
+    this.done = new Set([...this.own.keys(), ...said]);
+  }
+
+  /** What is said of a plant today, as far as this phone did not take it back since. */
+  said(plant) {
+    const name = this.day.scout?.toLowerCase(), isBack = this.back.has(plant);
+    return (this.day.today ?? []).filter((one) => one.plant === plant && !(isBack && one.who.toLowerCase() === name));
+  }
+
+  // -- what somebody took back in the season
+
+  #gone() { return new Set(this.day?.taken_back ?? []); }
+
+  /** Records of this phone that count no more, as the season says, and of which nobody said yet what is to come of them. */
+  takenBack() {
+    const gone = this.#gone(), undone = new Set(this.records.map((one) => one.undoes).filter(Boolean));
+    return this.records.filter((one) => gone.has(one.id) && !undone.has(one.id) && !one.answered);
+  }
+
+  /** Tell again what was taken back, or let it go. */
+  async answer(again) {
+    await this.settled();
+    const some = this.takenBack(), order = this.#order();
+    const told = some.map(({ answered, problem, ...one }, k) => ({ ...one, id: this.id(), order: order + k }));
+    await this.store.answer(some.map((one) => one.id), again ? told : []);
+    await this.reread();
+    if (!this.ahead.some((one) => this.done.has(one))) return;
+    this.ahead = this.ahead.filter((one) => !this.done.has(one));
+    this.draft = this.#keepDraft();
+    await this.#keep("ahead", "draft");
   }
 
   #keep(...names) {
@@ -395,7 +425,7 @@ export class Field {
 
   /** The last record that can be taken back, or undefined. */
   lastRecord() {
-    const gone = new Set(this.records.map((one) => one.undoes).filter(Boolean));
+    const gone = new Set([...this.records.map((one) => one.undoes).filter(Boolean), ...this.#gone()]);
     return this.records.filter((one) => one.day === this.day?.day && !one.undoes && !gone.has(one.id)).at(-1);
   }
 
@@ -463,6 +493,9 @@ export class Field {
   /** What is known of plants, for the map. */
   known() {
     const shown = { found: new Set(this.day.found), clean: new Set(this.day.clean), skipped: new Set() };
+    for (const plant of this.back) {
+      if (this.said(plant).length === 0) for (const kind of ["found", "clean"]) shown[kind].delete(plant);
+    }
     for (const [plant, one] of this.own) {
       for (const kind of ["found", "clean", "skipped"]) shown[kind].delete(plant);
       shown[one.result].add(plant);

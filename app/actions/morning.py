@@ -23,7 +23,7 @@ from ..state import (
 from ..state.morning import BEGIN, LOOK_BACK, NEXT_DAY, PLAN, RECORD, REPORT, SEND
 from ..words import texts
 from ..words.language import listed
-from . import acting, beginning, handing_out
+from . import acting, beginning, handing_out, news
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -164,7 +164,8 @@ def _note_sent(choices: Choices) -> None:
 
 def _send(choices: Choices, plan: DayPlan, step: Step) -> None:
     if st.button(texts.STEP_BUTTONS[SEND], on_click=_note_sent, args=(choices,), **_shown(step)):
-        st.dialog(texts.SEND_TITLE)(handing_out.show)(choices, plan)
+        news.hold()
+        st.dialog(texts.SEND_TITLE, on_dismiss="rerun")(handing_out.show)(choices, plan)
 
 
 def _record(_: Choices, __: DayPlan, step: Step) -> None:

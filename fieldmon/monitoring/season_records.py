@@ -292,7 +292,7 @@ class SeasonRecords(OpenSeason):
                         batch=batch,
                     )
                 )
-            self._note_undone(db, who, changed, said, back=batch)
+            self._note_undone(db, who, changed, said, batch=batch)
         return said
 
     def _note_undone(

@@ -399,7 +399,7 @@ class OpenSeason:
         return contents.history.begun_s(shift, contents.settings.day(on), name)
 
     def left_s(self, on: date, now: time | None = None, who: str | Besides = "") -> float:
-        """Return the seconds left of a working day, as its `scene` says."""
+        """Return the seconds left of the working day `on`; `now` and `who` as in `scene`."""
         with self._lock:
             contents = self._now()
             shift, name = self._shift(self._planned_by(contents, on), who)

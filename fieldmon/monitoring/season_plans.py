@@ -169,9 +169,9 @@ class SeasonPlans(OpenSeason):
             return routes.plants(db, last.get(person_key(who if named is None else named.name)))
 
     def holds_still(self, on: date, plan: str) -> bool:
-        """Return whether nothing was found or changed since a plan of the day was kept last.
+        """Return whether nothing was found or changed since a `plan` of the day `on` was kept.
 
-        `plan` is its digest.
+        It is named by its digest.
         """
         with self.store.reading() as db:
             return season_log.holds_still(db, on, plan)

@@ -24,6 +24,7 @@ from fieldmon.monitoring.scouts_out import scouts_out
 from fieldmon.planning.members import team_of
 from fieldmon.planning.skips import left_out_in_words
 from fieldmon.plot.local_clock import local_clock
+from tests.app.chosen import in_season
 from tests.monitoring.phone import NOW, a_finding
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -75,6 +76,19 @@ def test_the_day_is_what_the_season_says(served, scout):
     assert day["past"]
     line = np.array(day["route"]["line"])
     assert np.abs(line - route.line_lonlat()).max() < 1e-7
+
+
+def test_the_app_shows_the_route_and_hours_that_the_phone_gets(served, scout):
+    season, on = served.season, BEGINS + timedelta(days=1)
+    for who, result in (("Ann", 0), ("", 1)):
+        day = json.loads(day_document(season, scout, on))
+        shown = in_season(season, on).plan()
+        assert shown.route.plant.tolist() == day["route"]["plants"]
+        assert shown.scene.seconds_left == day["seconds_left"]
+        done = np.array(day["route"]["plants"][:3], np.int32)
+        season.record(Inspections.of(done, np.array([0, 0, result]), on), "f", who)
+    day = json.loads(day_document(season, scout, on))
+    assert in_season(season, on).plan().route.plant.tolist() == day["route"]["plants"]
 
 
 def test_the_route_says_what_it_was_planned_to_find_until_it_is_planned_anew(served, scout):

@@ -230,9 +230,9 @@ export class Page {
   }
 
   /** That records count no more, as somebody took them back in the season: which, and what is to come of them. */
-  #takenBack() {
+  #takenBack(id = "taken_back") {
     const n = this.field.takenBack().length;
-    return n ? [h("button", { type: "button", class: "wide bad", id: "taken_back", onclick: () => this.#askTakenBack() }, say("taken_back", { n }))] : [];
+    return n ? [h("button", { type: "button", class: "wide bad", id, onclick: () => this.#askTakenBack() }, say("taken_back", { n }))] : [];
   }
 
   #askTakenBack() {
@@ -429,7 +429,7 @@ export class Page {
       ...this.#closed(),
       ...this.#leftOut(),
       // it has not everything where it did not take something, or not any more
-      ...this.#takenBack(),
+      ...this.#takenBack("taken_back_too"),
       !((refused.length || this.stranded.size || field.takenBack().length) && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
       ...[...this.stranded].map(([who, n]) => h("p", { class: "bad" }, say("stranded", { n, who }))),
       refused.length ? h("ul", { class: "bad" }, ...refused) : null,

@@ -1356,7 +1356,7 @@ def a_prj_that_nobody_understands_and_the_system_named(folder):
     return a_prj_that_nobody_understands(folder)
 
 
-@case("records", near=HOME, asks=("crs", "EPSG:28193"), refuses="0.1 km from the place nearby")
+@case("records", near=HOME, asks=("crs", "EPSG:28193"), refuses="0.1 km from the plot or")
 def eastings_without_a_system_beside_a_plot_that_tells():
     point = moved(Point(HERE[0]), 28193)
     return placed(f"{point.x},{point.y}", "easting,northing")

@@ -691,7 +691,7 @@ def paths_in_metres_of_another_continent(folder):
     return shapefile(folder / "s", frame(path, crs=2039), "paths")
 
 
-@case("lines", options=ReadOptions(near=FAR, crs="EPSG:4326"), says="doubtful: km from the place")
+@case("lines", options=ReadOptions(near=FAR, crs="EPSG:4326"), says="doubtful: km from the plot")
 def paths_of_another_continent_that_are_meant():
     return paths_of_another_continent()
 
@@ -705,7 +705,7 @@ def paths_whose_axes_are_exchanged():
     "records",
     near=HOME,
     asks=("crs", "OGC:CRS84"),
-    refuses="km from the place nearby",
+    refuses="km from the plot or place nearby",
 )
 def records_of_another_continent():
     return table(f"lon,lat,date,count\n{FAR[0]},{FAR[1]},{DAY},7\n")

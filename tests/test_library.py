@@ -233,7 +233,7 @@ MISTAKES = {
     "a rate as text": (lambda _: fm.Spread("0.5"), "rate_per_day must be a number"),
     "a robot's hours alone": (lambda plot: fm.plan_day(plot, robot=4), "must be a Robot, but it"),
     "no sampler": (lambda plot: fm.plan_day(plot, sampler=None), "own with a method walk, but it"),
-    "a sampler's class": (lambda plot: fm.Monitor(plot, sampler=Bouncy), "walk, but it is a"),
+    "a sampler's class": (lambda plot: fm.Monitor(plot, sampler=Bouncy), "Give Bouncy()"),
     "no time": (lambda plot: fm.plan_day(plot, on=pd.NaT), "as 2026-11-18, but it is 'NaT'"),
     "records as a table": (lambda plot: fm.plan_day(plot, pd.DataFrame()), "must be Observations"),
     "records as a path": (lambda plot: fm.plan_day(plot, "mites.csv"), "near=plot"),

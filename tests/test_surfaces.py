@@ -89,7 +89,7 @@ def played(records):
 
 def studied(records):
     """Return the plot's seasons of `fieldmon study run`."""
-    to = Path("study", records)
+    to = Path("study", Path(records).stem)
     one = ["--feature", PLOT] if records == "rows.csv" else []
     size = ["--sampler", "naive", "--hours", 0.5, "--days", 2, "--seeds", 2, "--workers", 1]
     words = ["--observations", records, "--date", DAY, *size, "-o", to]

@@ -109,7 +109,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
         **dict.fromkeys(("count", "accuracy_m", "leaves_sampled"), _RECORDED),
     },
     "Observations.of": {
-        "present": {"array of -1", "mask"}, "day": {"array of dates"},
+        "present": {"array of -1", "mask"}, "day": {"array of dates", "moment"},
         **dict.fromkeys(("count", "accuracy_m", "leaves_sampled"), _RECORDED),
     },
     "Observations.take": {"which": _PICKED},

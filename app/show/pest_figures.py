@@ -64,9 +64,10 @@ def _figures(pest: Pest) -> list[str]:
         ]
         made.append(f"{texts.PEST_INCREASE}: {', '.join(rates)}")
     form = texts.PEST_MOVES[moves.kernel]
-    made.append(
-        form.format(per_day=number(moves.per_day, "g"), reach=number(moves.reach_m or 0.0, "g"))
-    )
+    rate, reach = number(moves.rate_per_day, "g"), number(moves.reach_m or 0.0, "g")
+    made.append(form.format(per_day=rate, reach=reach))
+    if pest.assumed:
+        made.append(texts.PEST_RATE_ASSUMED)
     if moves.wind == "with":
         made.append(texts.PEST_WITH_WIND)
     if moves.least_rain_mm > 0:

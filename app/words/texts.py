@@ -272,6 +272,7 @@ PEST_MOVES = {
     "exponential": "A plant sends out {per_day} a day, on average {reach} m far.",
     "cauchy": "A plant sends out {per_day} a day, half of them farther than {reach} m.",
 }
+PEST_RATE_ASSUMED = "Its file does not say that chance: it is assumed."
 PEST_WITH_WIND, PEST_IN_RAIN = "It goes with the wind.", "It moves only in rain of {rain} mm on."
 PEST_ENTERS = (
     "It comes in with a chance of {edge} a day at the edge, {paths} beside a path, {anywhere} "

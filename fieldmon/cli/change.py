@@ -20,7 +20,7 @@ from fieldmon.cli.options import (
     WorkerOptions,
     sampler_settings,
 )
-from fieldmon.cli.pest_options import PestOptions, tell_pest
+from fieldmon.cli.pest_options import SAYS_ITSELF, PestOptions, tell_pest
 from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
@@ -159,7 +159,7 @@ class ChangeOptions:
         """Refuse a rate of spread where a pest says how it spreads."""
         if settings.pest is not None or self.pest_options.pest is not None:
             raise SettingError(
-                "--spread goes without a pest, which says how it spreads. Take the pest out with: "
+                f"--spread goes without a pest: {SAYS_ITSELF}. Take the pest out with: "
                 "fieldmon change --pest none"
             )
 

@@ -28,7 +28,7 @@ from fieldmon.cli.options import (
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER, SamplerName
-from fieldmon.cli.study_output import can_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, PAIRED
@@ -65,7 +65,10 @@ class CompareOptions:
     ] = None
     sampler: Annotated[
         list[SamplerName] | None,
-        typer.Option(help="What chooses the plants; repeat to compare. Default: adaptive."),
+        typer.Option(
+            help="What chooses the plants; repeat to compare numbers of robots with each. Default: "
+            "adaptive."
+        ),
     ] = None
     sections: Annotated[
         bool,
@@ -104,10 +107,11 @@ class CompareOptions:
 
 @with_options
 def compare(options: CompareOptions) -> None:
-    """Simulate seasons of one, two and more robots, and show what each further one saves.
+    """Compare numbers of robots: what each further one saves, in simulated seasons.
 
     All of them meet the same insects, on a plot of your own or on square plots of several sizes.
-    A comparison that was stopped continues where its table ends.
+    A comparison that was stopped continues where its table ends. Samplers are compared by
+    fieldmon study run.
 
     With --pest and --weather the insects are that pest in that weather, and the chance map knows.
     With --visit-every 7 all of them work on days 1, 8, 15 and 22, and insects spread on all.
@@ -121,11 +125,20 @@ def compare(options: CompareOptions) -> None:
 
     can_be_folder(options.output)
     sizes = robot_numbers(options.robots)
+    _tell_compared(sizes, options.sampler or [])
     settings = [each for one in _scenarios(options) for each in _settings(one, sizes, options)]
     made = rows(_outcomes(settings, options), options.days, options.visit_every)
     for sentence in sentences(made):
         typer.echo(sentence)
     write_all(options.output, {"robots.md": table(made), "robots.html": report_html(made)})
+
+
+def _tell_compared(sizes: list[int], samplers: list[SamplerName]) -> None:
+    """Print what is compared with what: people expect samplers, too, where there are several."""
+    typer.echo(f"Numbers of robots compared: {', '.join(map(str, sizes))}", err=True)
+    if len(samplers) > 1:
+        each = f"They are compared with each sampler by itself: {', '.join(samplers)}."
+        typer.echo(f"{each} Samplers are compared by fieldmon study run.", err=True)
 
 
 def robot_numbers(text: str) -> list[int]:
@@ -232,7 +245,7 @@ def _outcomes(settings: list[TeamSetting], options: CompareOptions) -> list[Team
     study = study_of(settings, range(1, options.seeds + 1))
     file = options.output / "robots.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], TeamOutcome)
-    with counting("Seasons") as count, table, executor.threads() as workers:
+    with going_on(file), counting("Seasons") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
     typer.echo(f"Seasons written to {file}")
     return table.asked()

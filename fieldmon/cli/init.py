@@ -28,7 +28,7 @@ from fieldmon.cli.options import (
     WorkerOptions,
     sampler_settings,
 )
-from fieldmon.cli.pest_options import PestOptions, prior_of
+from fieldmon.cli.pest_options import SAYS_ITSELF, PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
@@ -114,7 +114,7 @@ class InitOptions:
         from fieldmon.planning.members import Teamwork
 
         if self.spread is not None and pest_in_weather is not None:
-            raise SettingError("--spread goes without --pest, which says how it spreads.")
+            raise SettingError(f"--spread goes without --pest: {SAYS_ITSELF}.")
         earlier = None if self.earlier is None else Season(self.earlier).as_earlier()
         belief = BeliefSettings(treated=not self.flag_only, earlier=earlier)
         return MonitoringSettings(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import FLAGS, Terminal
+from fieldmon.cli.messages import FLAGS, Terminal, tell_assumed
 from fieldmon.cli.named_values import chosen
 from fieldmon.errors import ChoiceNeeded, SettingError
 
@@ -47,6 +47,9 @@ WeatherChoices = Annotated[
     ),
 ]
 
+#: why options of spread do not go with a pest, and what to do instead
+SAYS_ITSELF = "how it spreads stands in its file, under [movement]"
+
 
 @dataclass(frozen=True)
 class PestOptions:
@@ -67,9 +70,7 @@ class PestOptions:
         said = [f"--{name}" for name, value in given.items() if value is not None]
         if self.pest is not None and said:
             verb = "goes" if len(said) == 1 else "go"
-            raise SettingError(
-                f"{' and '.join(said)} {verb} without --pest, which says how it spreads."
-            )
+            raise SettingError(f"{' and '.join(said)} {verb} without --pest: {SAYS_ITSELF}.")
 
     def met(self, field: Field) -> Weather | None:
         """Return the weather that was given, and print what there is to say of it."""
@@ -158,8 +159,9 @@ def prior_of(
 
 
 def tell_pest(pest: Pest) -> None:
-    """Print the pest, and which of its figures to doubt."""
+    """Print the pest, which of its figures to doubt, and what is assumed for want of one."""
     typer.echo(f"pest: {pest.title or pest.name}", err=True)
+    tell_assumed(pest.assumed)
     for citation in pest.citations:
         if citation.doubt:
             typer.echo(f"doubtful: {citation.part}: {citation.doubt}", err=True)

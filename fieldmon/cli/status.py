@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import how_to_say_wait, tell_drafts
+from fieldmon.cli.messages import assumed_in_words, how_to_say_wait, tell_drafts
 from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.season_files import day_meant, learnt_of_each
 from fieldmon.cli.times import day
@@ -179,19 +179,26 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     yield from _told_otherwise(season, now.on)
     if (taught := season.taught()) is not None:
         yield f"  an earlier season      {taught}"
+    yield from _of_pest(season, now)
+    spots = now.hot_spots
+    yield f"  hot spots              {len(spots):6d}" + "".join(
+        f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"
+        for h in range(min(len(spots), 3))
+    )
+
+
+def _of_pest(season: Season, now: Status) -> Iterator[str]:
+    """Yield the pest, what is assumed of it, and how far it is, if one is named."""
     if (pest := season.settings.pest) is not None:
         yield f"  pest                   {pest.title or pest.name}"
+        if pest.assumed:
+            yield f"  {'':22} assumed: {assumed_in_words(pest.assumed)}"
     if now.development is not None:
         stage = f" ({now.development.stage})" if now.development.stage else ""
         yield f"  its development        {now.development.sentence()}{stage}"
         if guessed := int(now.development.guessed[: now.development.elapsed].sum()):
             are = "is" if guessed == 1 else "are"
             yield f"  {'':22} {guessed} of its days {are} filled in: no weather known"
-    spots = now.hot_spots
-    yield f"  hot spots              {len(spots):6d}" + "".join(
-        f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"
-        for h in range(min(len(spots), 3))
-    )
 
 
 def _gone(season: Season, now: Status) -> Iterator[str]:

@@ -15,8 +15,17 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+# what studies write into their folder
+_WRITTEN = (".csv", ".html", ".md")
+
+
 def can_be_folder(output: Path) -> None:
     """Refuse a folder that cannot be made or written to, before anything is simulated for it."""
+    if output.suffix.lower() in _WRITTEN and not output.exists():
+        raise FileProblem(
+            f"-o must be the folder into which files are written, but {output} is the "
+            "name of a file. Name a folder."
+        )
     there = next(place for place in (output, *output.absolute().parents) if place.exists())
     if not there.is_dir():
         raise FileProblem(f"{output} must be a folder, but {there} is a file. Choose another one.")
@@ -25,13 +34,13 @@ def can_be_folder(output: Path) -> None:
 
 
 @contextmanager
-def going_on(table: Path) -> Iterator[None]:
-    """Say, where a person stops a study, that its table keeps what is done."""
+def going_on(kept: Path) -> Iterator[None]:
+    """Say, where a person stops a study, that its table or folder keeps what is done."""
     try:
         yield
     except KeyboardInterrupt:
         typer.echo(
-            f"What is done is kept in {table}; the same command goes on from there.", err=True
+            f"What is done is kept in {kept}; the same command goes on from there.", err=True
         )
         raise
 

@@ -22,6 +22,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.preparing import estate
+from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, DAYS, SEASONS, SEED, SHARE
@@ -86,7 +87,11 @@ class StudyOptions:
         ),
     ] = 1
     on: Annotated[
-        str | None, typer.Option("--date", help="First day, YYYY-MM-DD; default: today.")
+        str | None,
+        typer.Option(
+            "--date",
+            help="First day, YYYY-MM-DD; default: that of the folder's study, or today.",
+        ),
     ] = None
     workers: Annotated[
         int | None,
@@ -135,9 +140,11 @@ class StudyOptions:
         from fieldmon.io.options import PlotOptions
         from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
         from fieldmon.plot.plot import planting_of
+        from fieldmon.simulation.results import first_day
         from fieldmon.simulation.study_plot import StudyPlot
 
-        told = day(self.on)
+        # the same command goes on tomorrow with the study of today
+        told = day(self.on) or first_day(self.output)
         records = None if self.observations is None else RecordSource(self.observations)
         sources = PlotSources(self.plot, PlotOptions(feature=self.feature))
         choices, terminal = self.planting(), Terminal(flags={})
@@ -173,14 +180,15 @@ def study_run(options: StudyOptions) -> None:
     from fieldmon.simulation.experiment import run
     from fieldmon.simulation.worker import simulate_chunk
 
+    can_be_folder(options.output)
     design, plots, output = options.design(), options.plots(), options.output
     for levels in design.combinations:
         if is_own(levels.sampler):  # what it answers wrongly is said before many work on it
             simulate_chunk((plots[0], levels), range(design.first_seed, design.first_seed + 1), 1)
     _tell_charged(design.robot_times)
-    with executor.cluster(options.scheduler, options.workers) as workers:
+    folder = results.StudyFolder(output, plots, design)
+    with going_on(output), executor.cluster(options.scheduler, options.workers) as workers:
         typer.echo(f"Dashboard: {workers.dashboard}", err=True)
-        folder = results.StudyFolder(output, plots, design)
         with counting("Simulating") as count:
             run(study_of(plots, design), workers, folder, count)
     for name, sentence in folder.refused.items():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,11 +19,16 @@ from fieldmon.compute.ranges import PAIRED
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.studies.samplers.contenders import Added
     from fieldmon.studies.samplers.scenarios import Scenario
     from fieldmon.studies.samplers.seasons import SeasonOutcome
+
+
+# names of scenarios that a sentence has room for
+_NAMED = 5
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,13 @@ class SamplersOptions:
         typer.Option(
             help="Folder with maps of plants, public ones or NAME.map.csv (docs: strategies): "
             "compare finds on these."
+        ),
+    ] = None
+    sampler: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Sampler to add to those compared, or one of your own: my_sampler.py:Mine (docs: "
+            "own_sampler); repeat for more."
         ),
     ] = None
     tune: Annotated[
@@ -82,8 +95,12 @@ def samplers(options: SamplersOptions) -> None:
 
     With --visit-every 7 somebody inspects on days 1, 8, 15 and 22, and insects spread on all.
 
+    A sampler that is added by --sampler, as NAME or my_sampler.py:Mine, meets the same insects and
+    is given the map of chances of adaptive. A table of before is only completed.
+
     Example: fieldmon study samplers --scenario "B, spread 30% to one" --seeds 20 -o study
     """
+    from fieldmon.studies.samplers.contenders import added
     from fieldmon.studies.samplers.report import report_html
     from fieldmon.studies.samplers.summary import ratio_lines, sentences
 
@@ -95,8 +112,10 @@ def samplers(options: SamplersOptions) -> None:
         )
     if options.visit_every > 1 and (options.tune or options.maps is not None):
         raise SettingError("--visit-every goes without --maps and --tune: both know daily visits.")
+    if options.sampler and options.tune:
+        raise SettingError("--sampler goes without --tune, which tries Dynamic alone.")
     if options.maps is not None:
-        _on_maps(options.maps, options.output)
+        _on_maps(options.maps, options.output, options.sampler or ())
         return
     if options.tune:
         _tune()
@@ -104,11 +123,13 @@ def samplers(options: SamplersOptions) -> None:
     table = options.output / "samplers.csv"
     meant = _scenarios(options.scenario, pest_in_weather_of(options.pest), full=options.full)
     meant = [replace(each, visit_every=options.visit_every) for each in meant]
-    shown = _outcomes(meant, options.seeds, table)
+    more = added(options.sampler or ())
+    shown = _outcomes(meant, options.seeds, more, table)
     for sentence in (*ratio_lines(shown), *sentences(shown)):
         typer.echo(sentence)
     typer.echo(f"Written: {table}")
-    write_all(options.output, {"samplers.html": report_html(shown)})
+    about = {one.label: one.about for one in more}
+    write_all(options.output, {"samplers.html": report_html(shown, about)})
 
 
 def _scenarios(
@@ -131,29 +152,54 @@ def _scenarios(
         scenarios = [*scenarios, *in_worlds()]
     meant = [each for each in scenarios if each.name.startswith(tuple(beginnings))]
     if not meant:
-        raise SettingError(f"A scenario must begin with {' or '.join(beginnings)}, but none does.")
+        raise SettingError(_none_begins_so(beginnings, scenarios, full=full))
     return meant
 
 
-def _outcomes(scenarios: list[Scenario], seeds: int, file: Path) -> list[SeasonOutcome]:
+def _none_begins_so(beginnings: list[str], known: list[Scenario], *, full: bool) -> str:
+    """Return what is said where no scenario is meant: the names that begin most alike."""
+
+    def alike(name: str) -> int:
+        pairs = [zip(name, beginning, strict=False) for beginning in beginnings]
+        return max(sum(1 for _ in takewhile(lambda two: two[0] == two[1], each)) for each in pairs)
+
+    # sorted keeps the order of those that are equally alike
+    names = sorted((each.name for each in known), key=alike, reverse=True)
+    near = ", ".join(f'"{name}"' for name in names[:_NAMED])
+    said = " or ".join(f'"{beginning}"' for beginning in beginnings)
+    more = "" if full else ", and more with --full"
+    return (
+        f"--scenario must be how a scenario's name begins, but none begins with {said}. There are "
+        f"{len(names)}, for instance {near}{more}."
+    )
+
+
+def _outcomes(
+    scenarios: list[Scenario], seeds: int, more: Sequence[Added], file: Path
+) -> list[SeasonOutcome]:
     """Simulate what the table lacks, and keep it there; return the outcomes asked for."""
     from fieldmon.simulation import executor
     from fieldmon.simulation.experiment import run
     from fieldmon.studies.outcome_table import OutcomeTable
-    from fieldmon.studies.samplers.contenders import CONTENDERS, OF_PESTS
+    from fieldmon.studies.samplers.contenders import CONTENDERS, NAMES, OF_PESTS
     from fieldmon.studies.samplers.seasons import SeasonOutcome, study_of
 
     pest = scenarios[0].pest_in_weather is not None
     always = {one.name for one in (OF_PESTS if pest else CONTENDERS) if one.every == 1}
 
     def whole(rows: list[SeasonOutcome]) -> bool:
-        return always <= {row.contender for row in rows}
+        who = {row.contender for row in rows}
+        return always <= who or who.isdisjoint(NAMES)
 
-    study = study_of(scenarios, range(seeds))
+    study = study_of(scenarios, range(seeds), more)
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], SeasonOutcome, whole)
     with going_on(file), counting("Seasons") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
-    return table.asked()
+    labels = {one.called: one.label for one in more}
+    return [
+        replace(each, contender=labels.get(each.contender, each.contender))
+        for each in table.asked()
+    ]
 
 
 def _tune() -> None:
@@ -170,22 +216,24 @@ def _tune() -> None:
         typer.echo(f"{loss:8.1f} infested plant-days: {suspicious = }, {at_once = }")
 
 
-def _on_maps(folder: Path, output: Path) -> None:
+def _on_maps(folder: Path, output: Path, samplers: Sequence[str]) -> None:
     """Print and write how many infested plants an inspection finds on mapped plots."""
+    from fieldmon.studies.samplers.contenders import added
     from fieldmon.studies.samplers.mapped_plots import (
         SHARES,
+        WHO,
         plots_in,
         sentences,
         table,
         table_csv,
     )
 
-    plots, rows = plots_in(folder), []
+    plots, rows, more = plots_in(folder), [], added(samplers, to=WHO)
     after = _columns(SHARES, "{:6.0%}")
     typer.echo(f"{'Infested plants found after':44} {'':9} {after}  {after}")
     typer.echo(f"{'':44} {'':9} {'per inspection':27}  per hour")
     for plot in plots:
-        of_plot = table([plot])
+        of_plot = table([plot], more)
         for row in of_plot:
             named = f"{row.name} (neighbours {row.correlation:.2f})"
             found = _columns(row.per_inspection, "{:6.2f}")

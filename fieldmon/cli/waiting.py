@@ -73,7 +73,7 @@ class Waiting:
         if seconds < LEAST_S:
             return
         if sys.stderr.isatty():
-            said = f"{COMPILING} {compiled} parts so far" if FIRST_USE.is_busy else ""
+            said = f"{COMPILING} {compiled} so far" if FIRST_USE.is_busy else ""
             _show(f"{_WIPE}{said}")
         elif not self._compiling_said:
             self._compiling_said = True

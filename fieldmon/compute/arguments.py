@@ -77,6 +77,8 @@ def shown(given: object) -> str:
         return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
     if type(given).__name__ == "datetime64":
         return str(given)
+    if isinstance(given, type):
+        return f"the class {given.__name__}"
     if hasattr(given, "setflags") and hasattr(given, "dtype"):
         return f"an array of {given.dtype}"
     if isinstance(given, tuple) and len(text := repr(given)) <= _LONGEST:
@@ -305,10 +307,8 @@ def days_of(given: object) -> NDArray[np.datetime64] | None:
     """
     import numpy as np  # noqa: PLC0415 - as above
 
-    if isinstance(given, datetime):
-        given = given.date()  # as the clock there says
     try:
-        array = np.asarray(given)
+        array = _as_clocks_say(given)
         if array.size and array.dtype.kind not in "MUO":
             return None
         days = array.astype("datetime64[D]", copy=False)
@@ -316,6 +316,42 @@ def days_of(given: object) -> NDArray[np.datetime64] | None:
         return None
     said = days.ndim or not np.isnat(days) or isinstance(given, np.datetime64 | np.ndarray)
     return days if said else None
+
+
+def seconds_of(given: object) -> NDArray[np.float64]:
+    """Return the seconds since midnight of what `days_of` takes, of its shape; NaN at midnight.
+
+    A day alone is its midnight, so that no time is known there.
+
+    Examples
+    --------
+    >>> seconds_of(["2026-11-18T14:00", "2026-11-18"])
+    array([50400.,    nan])
+    """
+    import numpy as np  # noqa: PLC0415 - as above
+
+    array = _as_clocks_say(given)
+    if array.dtype.kind == "M" and np.datetime_data(array.dtype)[0] in "DWMY":
+        return np.full(array.shape, np.nan)
+    times = array.astype("datetime64[us]")
+    second = np.asarray((times - times.astype("datetime64[D]")) / np.timedelta64(1, "s"))
+    return np.where(second == 0.0, np.nan, second)
+
+
+def _as_clocks_say(given: object) -> NDArray[Any]:
+    """Return times as an array, those of a zone as the clock there says."""
+    import numpy as np  # noqa: PLC0415 - as above
+
+    array = np.asarray(given)
+    if array.dtype.kind != "O":
+        return array
+    local = [
+        one.replace(tzinfo=None) if isinstance(one, datetime) and one.tzinfo else one
+        for one in array.ravel().tolist()
+    ]
+    made = np.empty(len(local), object)
+    made[:] = local
+    return made.reshape(array.shape)
 
 
 def lonlat_of(

@@ -1,4 +1,4 @@
-"""Who is told that inner loops are being compiled: once an installation, for a minute or two."""
+"""Who is told that inner loops are being compiled: each once an installation, when it is needed."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    #: told when a loop's compiling begins or ends: loops compiled so far, seconds since the first
+    #: told when a loop's compiling begins or ends: loops compiled so far, seconds that took
     Listener = Callable[[int, float], None]
 
-COMPILING = "Compiling fieldmon for this machine, once; this may take two minutes ..."
-#: what takes less is not said
-LEAST_S = 1.0
+COMPILING = "Compiling parts of fieldmon used here for the first time (up to 2 min) ..."
+#: what takes less is not said: most commands need some parts that none before them did
+LEAST_S = 3.0
 
 
 class FirstUse:
@@ -28,7 +28,7 @@ class FirstUse:
     def __init__(self) -> None:
         self.compiled = 0
         self._depth = 0
-        self._since = self._began = self._took_s = 0.0
+        self._began = self._took_s = 0.0
         self._listener: Listener | None = None
         self._said = False
 
@@ -48,7 +48,11 @@ class FirstUse:
         must not cost the first plan what all others get.
         """
         now = monotonic()
-        return now - self._took_s - (now - self._began if self._depth else 0.0)
+        return now - self._compiling_s(now)
+
+    def _compiling_s(self, now: float) -> float:
+        """Return for how many seconds loops were compiled, or waited for."""
+        return self._took_s + (now - self._began if self._depth else 0.0)
 
     def waited(self, seconds: float) -> None:
         """Note how long another process was waited for that compiles the same loops."""
@@ -58,8 +62,6 @@ class FirstUse:
         """Note that a loop's compiling has begun; loops it calls are compiled within."""
         if not self._depth:
             self._began = monotonic()
-        if not self.compiled and not self._depth:
-            self._since = monotonic()
         self._depth += 1
         self._say()
 
@@ -73,7 +75,7 @@ class FirstUse:
         self._say()
 
     def _say(self) -> None:
-        seconds = monotonic() - self._since
+        seconds = self._compiling_s(monotonic())
         if self._listener is not None:
             self._listener(self.compiled, seconds)
         elif seconds >= LEAST_S and not self._said and _somebody_sees():

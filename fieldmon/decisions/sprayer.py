@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.kinds import must_hold_kinds
+from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import MONEY, AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.plot.planting import PLANTED
 
 if TYPE_CHECKING:
     import numpy as np
@@ -30,6 +32,7 @@ COSTS = {
 }
 
 
+@checked
 @dataclass(frozen=True)
 class Sprayer:
     """What can be switched.
@@ -85,7 +88,7 @@ class Sprayer:
         Raises
         ------
         SettingError
-            If the boom has no width or no section.
+            If the boom has no width or no section, or rows do not stand apart.
 
         Examples
         --------
@@ -93,13 +96,21 @@ class Sprayer:
         >>> fm.Sprayer.of_boom(12.0, 4, row_spacing_m=1.5).rows
         2
         """
-        if not (boom_m > 0.0 and sections >= 1):
+        if not (0.0 < boom_m < math.inf and sections >= 1):
             raise SettingError(
                 worded(
                     "A boom must have a width above 0 and a section or more, but it has {boom_m:g} "
                     "m and {sections}.",
                     boom_m=boom_m,
                     sections=sections,
+                )
+            )
+        if rule := PLANTED["row_spacing_m"].broken(row_spacing_m):
+            raise SettingError(
+                worded(
+                    "The rows under a boom must be {rule} apart, but it is {spacing_m:g}.",
+                    rule=rule,
+                    spacing_m=row_spacing_m,
                 )
             )
         rows = max(1, int(boom_m / sections / row_spacing_m + 1e-9))

@@ -4,6 +4,7 @@ A map that was told of few puts finds beside finds down to clusters, however man
 the first inspection on, maps that were told of more are kept beside it (contaminated prior: Berger
 & Berliner 1986), and the one is believed by which all inspections so far were likeliest, each as it
 was expected just before (prequential: Dawid 1984). What is hardly possible any more is dropped.
+Once none is left and a day speaks against the map, they are thought of again.
 """
 
 from __future__ import annotations
@@ -34,6 +35,9 @@ IN_DOUBT = 0.7
 _FEW_FINDS = 5
 # what is less likely than the likeliest by that, as a logarithm, is dropped (our choice)
 _DROPPED = 7.0
+# a day speaks against a map that is less likely by that, as a logarithm, than if all plants
+# inspected had the chance that was found (our choice: two or three would be worth one number)
+_REFUTED = 5.0
 
 
 class Heavier(NamedTuple):
@@ -65,6 +69,23 @@ def heavier_than(told: float, found: NDArray[np.bool_], detects: Floats) -> tupl
     counts = finds * np.log(shares / told) + (len(found) - finds) * clean
     possible = likely + counts > TOLD - 2.0 * _DROPPED
     return tuple(map(Heavier, shares[possible].tolist(), likely[possible].tolist()))
+
+
+def refuted(likely: float, found: NDArray[np.bool_]) -> bool:
+    """Tell whether a day's results ``(k,)`` speak against a map by which they were so likely.
+
+    `likely` is a logarithm. A map should do better than one chance for all plants inspected.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> found = np.arange(10) < 5
+    >>> [refuted(10 * np.log(p), found) for p in (0.5, 0.2)]
+    [False, True]
+    """
+    n, finds = len(found), int(np.count_nonzero(found))
+    each = [k * np.log(k / n) for k in (finds, n - finds) if k]
+    return bool(likely < sum(each) - _REFUTED)
 
 
 def odds_times(chance: NDArray[np.floating[Any]], factor: float) -> Floats:

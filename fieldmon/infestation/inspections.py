@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import days_of, entries_of, must_be_known, shown
+from fieldmon.compute.arguments import days_of, entries_of, must_be_known, seconds_of, shown
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
@@ -55,7 +55,12 @@ def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to it
         given = days_of(given)
     try:
         values = np.atleast_1d(given)
-        if values.ndim != 1 or (values.size and values.dtype.kind not in letters):
+        if values.ndim != 1:
+            raise ObservationError(
+                f"The {name} of inspections must be {words} in a row, one an inspection, but they "
+                f"have the shape {values.shape}."
+            )
+        if values.size and values.dtype.kind not in letters:
             raise wrong
         with np.errstate(invalid="ignore"):
             column: NDArray[Any] = values.astype(_TYPES[name], copy=False).view()
@@ -154,24 +159,32 @@ class Inspections:
         result
             ``(k,)`` 1 found, 0 clean, 2 skipped.
         on
-            The local date, or ``(k,)`` dates.
+            The local date, or ``(k,)`` dates. With a time of day, as `datetime` has it, it is their
+            `second`, too; midnight is a date alone.
         columns
             Others of these columns by name, ``(k,)`` each.
 
         Raises
         ------
         ObservationError
-            If plants are no whole numbers, results none of these, or dates no dates.
+            If plants are no whole numbers, results none of these, or dates no dates; if the time is
+            said in both `on` and `second`.
         """
         k, dates = len(_column("plant", plant)), days_of(on)
         if dates is None:
             raise _no_date(on)
         must_be_known("Columns of inspections", columns, list(_TYPES))
+        seconds = seconds_of(on)
+        if "second" in columns and not np.isnan(seconds).all():
+            raise ObservationError(
+                f"The time of inspections must be said once, but {shown(on)} has one and second "
+                "is given too. Leave one out."
+            )
         known: dict[str, Any] = {
             "plant": plant,
             "result": result,
             "date": np.full(k, dates) if dates.ndim == 0 else dates,
-            "second": np.full(k, np.nan),
+            "second": np.full(k, seconds) if seconds.ndim == 0 else seconds,
             "count": np.full(k, np.nan),
             "who": np.full(k, "", object),
             "notes": np.full(k, "", object),
@@ -211,3 +224,26 @@ class Inspections:
     def inspected(self) -> Inspections:
         """Return those at which the plant was really inspected."""
         return self.take(self.result != SKIPPED)
+
+
+def after_their_find(
+    plants: NDArray[np.integer[Any]], found: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Return which inspections are of a plant that was found infested before, ``(k,)``.
+
+    Parameters
+    ----------
+    plants, found
+        ``(k,)`` plants in the order in which they were inspected, and whether each was found
+        infested.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> after_their_find(np.array([7, 7, 3, 7]), np.array([False, True, True, True])).tolist()
+    [False, False, False, True]
+    """
+    which, nth = np.unique(plants, return_inverse=True)
+    first = np.full(len(which), len(plants))
+    np.minimum.at(first, nth[found], np.flatnonzero(found))
+    return np.arange(len(plants)) > first[nth]

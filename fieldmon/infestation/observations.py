@@ -128,7 +128,7 @@ class Observations:
         present
             ``(m,)`` 1 infested, 0 clean, -1 not said.
         day
-            ``(m,)`` datetime64[D]; None: of no date.
+            ``(m,)`` datetime64[D], or the one of all; None: of no date.
         columns
             Others of these columns by name, ``(m,)`` each.
 
@@ -155,10 +155,11 @@ class Observations:
             "leaves_sampled": np.full(m, np.nan),
         }
         days = days_of(np.full(m, np.datetime64("NaT")) if day is None else day)
-        if days is None or not days.ndim:
+        if days is None:
             raise ObservationError(
                 f"Days of records must be as 2026-11-18, but they are {shown(day)}."
             )
+        days = days if days.ndim else np.full(m, days)
         must_be_known("Columns of records", columns, list(unknown))
         given = {name: _column(name, values) for name, values in columns.items()}
         _must_make_sense(given)

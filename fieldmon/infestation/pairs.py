@@ -84,10 +84,27 @@ class PairApproximation:
 
     def treated(self, left: NDArray[np.float64]) -> PairApproximation:
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
-        start, neighbour = self.grid.adjacent
-        own = np.repeat(left, np.diff(start))
-        chance = np.maximum(self.chance * left, LEAST_CHANCE)
-        return PairApproximation(self.grid, chance, self.pair_chance * own * left[neighbour])
+        believed = self.chance, self.pair_chance
+        apart = self.pair_chance == 0.0
+        return PairApproximation(self.grid, *pairs_left(believed, self.grid, left, apart))
+
+
+def pairs_left(
+    believed: tuple[NDArray[np.float64], NDArray[np.float64]],
+    grid: PlantGrid,
+    left: NDArray[np.float64],
+    apart: NDArray[np.bool_],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return chances of plants and pairs after a treatment that leaves these shares ``(n,)``.
+
+    `apart` ``(e,)`` are the pairs of plants found and treated before: what is found there from now
+    on came since, and has nothing in common with what is beside it.
+    """
+    chance, pair_chance = believed
+    (start, other), after = grid.adjacent, np.maximum(chance * left, LEAST_CHANCE)
+    n = np.diff(start)
+    both = pair_chance * np.repeat(left, n) * left[other]
+    return after, np.where(apart, np.repeat(after, n) * after[other], both)
 
 
 def pair_chances(

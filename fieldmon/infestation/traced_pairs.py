@@ -35,6 +35,7 @@ from fieldmon.infestation.heavier import (
     heavier_than,
     likeliest,
     odds_times,
+    refuted,
 )
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import (
@@ -51,7 +52,7 @@ from fieldmon.infestation.origins import (
 )
 from fieldmon.infestation.pair_changes import pairs_after_arrivals, pairs_scaled
 from fieldmon.infestation.pair_nights import night_of_pairs
-from fieldmon.infestation.pairs import Neighbourhood, pair_chances
+from fieldmon.infestation.pairs import Neighbourhood, pair_chances, pairs_left
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.plot_estimate import drawn_numbers
 from fieldmon.infestation.prior import odds_ratio
@@ -332,27 +333,30 @@ class TracedPairs:
         """
         if not len(plants):
             return self
-        maps = (self, *(self._heavier(found, learning) if self.others is None else self.others))
-        days = [TracedPairs._inspected(one, plants, found, learning) for one in maps]
-        best, others = likeliest(days, finds_noted(days[0].after.slope_sums))
-        settled = tuple(replace(one.settled(), others=()) for one in others)
+        days = [TracedPairs._inspected(self, plants, found, learning)]
+        others = self.others
+        if others is None or (not others and refuted(float(days[0].day.likely[0]), found)):
+            others = self._heavier(found, learning)
+        days += [TracedPairs._inspected(one, plants, found, learning) for one in others]
+        best, left = likeliest(days, finds_noted(days[0].after.slope_sums))
+        settled = tuple(replace(one.settled(), others=()) for one in left)
         return replace(best.settled(), others=settled)
 
-    def _heavier(self, found: NDArray[np.bool_], learning: Learning) -> list[TracedPairs]:
-        """Return maps like this one that were told of more, of the plants not known yet.
+    def _heavier(self, found: NDArray[np.bool_], learning: Learning) -> tuple[TracedPairs, ...]:
+        """Return maps like this one that were told of more, of the plants not inspected yet.
 
-        Those that the first inspections, with results `found` ``(k,)``, leave possible.
+        Those that inspections, with results `found` ``(k,)``, leave possible.
         """
         known = self.chance > KNOWN
-        told = self.chance[~known]
+        told = self.chance[~known & (self.unseen > _SENT / 2.0)]
         if not len(told):
-            return []
-        return [
-            self._told_of(odds_ratio(told, share), known, likely)
+            return ()
+        return tuple(
+            self._told_of(odds_ratio(told, share), known, self.likely - TOLD + likely)
             for share, likely in heavier_than(
                 float(told.mean()), found, learning.detects(len(found))
             )
-        ]
+        )
 
     def _told_of(self, factor: float, known: NDArray[np.bool_], likely: float) -> TracedPairs:
         """Return this map with so much higher odds of the plants that are not `known` ``(n,)``."""
@@ -656,8 +660,11 @@ class TracedPairs:
     def treated(self, left: Floats) -> TracedPairs:
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
         start, other = self.grid.adjacent
-        chance = np.maximum(self.chance * left, LEAST_CHANCE)
-        together = self.pair_chance * np.repeat(left, np.diff(start)) * left[other]
+        # found since the night, and treated then
+        found = (self.unseen == 0.0) & (self.chance < _PROBABLE)
+        apart = np.repeat(found, np.diff(start)) | found[other]
+        believed = self.chance, self.pair_chance
+        chance, together = pairs_left(believed, self.grid, left, apart)
         latency = self.latency and self.latency.treated(left)
         ancestry = self.ancestry and self.ancestry.anew(chance)
         others = self.others and tuple(one.treated(left) for one in self.others)

@@ -6,6 +6,7 @@ The command line and the app read in the same way, by `fieldmon.io.prepare`, and
 from __future__ import annotations
 
 import warnings
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.compute.arguments import must_be, must_be_name_of_file
 from fieldmon.compute.kinds import must_be_of
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ImportDoubt, SettingError
+from fieldmon.errors import ChoiceNeeded, ImportDoubt, SettingError
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import (
     PlotOptions,
@@ -36,7 +37,7 @@ from fieldmon.plot.local_clock import utc_now
 from fieldmon.plot.plot import must_be_plot
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.observations import Observations
@@ -49,6 +50,14 @@ if TYPE_CHECKING:
 
 #: files of rows, blocks and paths that a plot may have besides
 _DRAWN = ("rows", "blocks", "contours", "paths")
+#: questions that another file answers
+_OTHER_FILES = {
+    "kind": "Give points as plants=FILE, and lines as rows=FILE or paths=FILE.",
+    "plots": "Give the file of the plots first.",
+    "plants": "Give the plants as plants=FILE.",
+}
+#: options of the first file that count for plants measured on its plot, too
+_OF_PLANTS = {("plants", "doubles"), ("plants", "far")}
 _DOUBTS = (Severity.GUESSED, Severity.DROPPED, Severity.DOUBTFUL)
 
 
@@ -129,7 +138,8 @@ def read_plot(
     drawn["guess_blocks"] = yes_or_no("guess_blocks", options.pop("guess_blocks", False))
     sources = PlotSources(source, plants=plants, gate=gate, **drawn)
     sources = replace(sources, **_how_read(sources, feature, options))
-    ready = prepare(PlotRequest(sources, planting or PlantingChoices()))
+    with _answered(sources.first):
+        ready = prepare(PlotRequest(sources, planting or PlantingChoices()))
     _warn(said.message for said in ready.messages)
     for assumed in ready.assumed:
         warnings.warn(f"{assumed} (planting=PlantingChoices(...))", ImportDoubt, stacklevel=2)
@@ -146,7 +156,9 @@ def read_plots(source: Source, **options: object) -> tuple[Field, ...]:
     ['Gate', 'Pond', 'Wadi', 'Big field']
     """
     _must_be_file(source)
-    read = read_fields(source, _chosen(PlotOptions(), options))
+    chosen = _chosen(PlotOptions(), options)
+    with _answered():
+        read = read_fields(source, chosen)
     _warn(read.messages)
     return read.value
 
@@ -192,7 +204,9 @@ def read_records(source: Source, near: Plot, **options: object) -> Observations:
     """
     _must_be_file(source)
     must_be_plot(near)
-    read = records_on(near, RecordSource(source, _chosen(RecordOptions(), options)))
+    asked = RecordSource(source, _chosen(RecordOptions(), options))
+    with _answered():
+        read = records_on(near, asked)
     _warn(read.messages)
     return read.value
 
@@ -242,7 +256,8 @@ def read_inspections(source: Source, plot: Plot, **options: object) -> Inspectio
     _must_be_file(source)
     must_be_plot(plot)
     wanted = _chosen(InspectionOptions(), options).on(plot.field)
-    read = read_on_grid(source, plot.grid, wanted)
+    with _answered():
+        read = read_on_grid(source, plot.grid, wanted)
     _warn(read.messages)
     return read.value
 
@@ -314,7 +329,8 @@ def read_weather(source: Source, plot: Plot, **options: object) -> Weather:
     _must_be_file(source)
     must_be_plot(plot)
     wanted = _chosen(WeatherOptions(now=utc_now()), options).on(plot.field)
-    read = read_weather_file(source, wanted)
+    with _answered():
+        read = read_weather_file(source, wanted)
     _warn(read.messages)
     return read.value
 
@@ -351,6 +367,32 @@ def _must_be_file(source: Any, what: str = "A file") -> None:  # noqa: ANN401 - 
         )  # fmt: skip
     if not uploads:
         must_be_name_of_file(what, source)
+
+
+@contextmanager
+def _answered(role: str = "") -> Iterator[None]:
+    """Say with a question how to answer it, where the file of this role asks.
+
+    Options are those of that file, but for a few that files of plants have too.
+    """
+    try:
+        yield
+    except ChoiceNeeded as question:
+        said = f"{question} {_answer(question, role)}".rstrip()
+        raise ChoiceNeeded(said, question.option, question.choices, question.role) from None
+
+
+def _answer(question: ChoiceNeeded, role: str) -> str:
+    """Return what to write, with the first of the choices; empty where no option answers."""
+    option = question.option
+    if option in _OTHER_FILES:
+        return _OTHER_FILES[option]
+    if question.role not in {"", role} and (question.role, option) not in _OF_PLANTS:
+        return ""
+    first = question.choices[0] if question.choices else "..."
+    column, _, named = first.partition("=")
+    told = {column: named} if option == "columns" else first
+    return f"Answer with {option}={told!r}, for instance."
 
 
 def _chosen(options: Any, more: dict[str, object]) -> Any:  # noqa: ANN401 - options of any kind

@@ -9,6 +9,7 @@ from typing import Literal, Self, TypeAlias
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.plot.plants_outside import FAR
 
 DateOrder: TypeAlias = Literal["dmy", "mdy", "ymd"]
 
@@ -171,7 +172,7 @@ class ReadOptions:
             ("Whether a line names the columns", self.header, ("yes", "no")),
             ("What 35.26.33 means", self.degrees, ("dms", "dm")),
             ("What is done with doubles", self.doubles, ("one",)),
-            ("What is done with plants far away", self.far, ("keep", "drop")),
+            ("What is done with plants far away", self.far, FAR),
         ):
             if told is not None and told not in words:
                 may_be = " or ".join(words)

@@ -31,11 +31,12 @@ from fieldmon.io.read import (
     read_plots,
     read_rows,
 )
-from fieldmon.io.readers.nearby import distance_m, plants_on
+from fieldmon.io.readers.nearby import plants_on
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.plot import Plot, planting_of
+from fieldmon.plot.plants_outside import distance_m
+from fieldmon.plot.plot import Plot, planting_of, plot_around
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -78,7 +79,7 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
         )
     laid, measured = _laid(request, hearing)
     if (file := sources.plot or sources.plants or sources.rows) is not None:
-        role: Role = "plot" if sources.plot else "plants" if sources.plants else "rows"
+        role = sources.first
         exchanged = getattr(sources, f"{role}_options").swap_axes
         hearing.say(role, file, said_of_place(laid.plot.field, exchanged=exchanged))
     if sources.plants is not None:
@@ -239,7 +240,7 @@ def lay_around(
     if not choices.in_rows:
         return Laid(Plot.among(name, measured.lonlat.copy(), sources.gate))
     plants = measured.lonlat.copy()
-    return Laid(Plot.around(name, plants, planting, sources.gate, measured.names))
+    return Laid(plot_around(name, plants, planting, sources.gate, measured.names))
 
 
 def with_plants(field: Field, measured: Plants) -> Field:

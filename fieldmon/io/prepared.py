@@ -63,10 +63,7 @@ class Laid:
     def messages(self) -> tuple[ImportMessage, ...]:
         """Return how measured plants stand in rows, and what is doubtful about it."""
         from fieldmon.io.import_report import seen  # noqa: PLC0415
-        from fieldmon.plot.plant_names import (  # noqa: PLC0415
-            doubts_of_numbers,
-            said_of_numbers,
-        )
+        from fieldmon.plot.plant_names import said_of_numbers  # noqa: PLC0415
 
         if not self.plot.grid.in_rows:
             said = worded("Plants are taken to stand in no rows, and are visited by nearness.")
@@ -78,8 +75,7 @@ class Laid:
             return ()
         found = (seen(worded("Rows were found: {how}.", how=rows.how)),) if rows.in_rows else ()
         numbers = (seen(sentence) for sentence in said_of_numbers(self.plot.grid))
-        doubts = (*rows.doubts, *doubts_of_numbers(self.plot.grid))
-        return (*found, *numbers, *(doubtful(sentence) for sentence in doubts))
+        return (*found, *numbers, *(doubtful(sentence) for sentence in self.plot.doubts))
 
 
 def _along_drawn(grid: PlantGrid, drawn: MultiLineString) -> str:

@@ -62,6 +62,12 @@ class PlotSources:
     blocks_options: PlotOptions = field(default_factory=PlotOptions)
     guess_blocks: bool = False
 
+    @property
+    def first(self) -> Role:
+        """Return which of the files says where the plot is."""
+        roles: tuple[Role, ...] = ("plot", "plants")
+        return next((role for role in roles if getattr(self, role) is not None), "rows")
+
 
 @dataclass(frozen=True)
 class PlantingChoices:

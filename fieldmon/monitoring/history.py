@@ -20,7 +20,7 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.chance_bounds import KNOWN
 from fieldmon.infestation.earlier_season import Believed, EarlierSeason
 from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
-from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
+from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections, after_their_find
 from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.observations import PRESENT
@@ -29,6 +29,7 @@ from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.parse.result_words import says_gone
+from fieldmon.pests.pest import USUAL_PER_DAY
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import Skips, without_flagged, without_skipped
@@ -123,7 +124,7 @@ class BeliefSettings:
     """
 
     spread: Spread = field(
-        default_factory=lambda: Spread(rate_per_day=0.02, arrivals_per_day=0.0002)
+        default_factory=lambda: Spread(rate_per_day=USUAL_PER_DAY, arrivals_per_day=0.0002)
     )
     treated: bool = True
     traces: bool = True
@@ -171,6 +172,8 @@ class BeliefSettings:
     ) -> Belief:
         """Return what is believed after a day's inspections.
 
+        Where finds are treated at once, what is inspected again after its find that day is no news.
+
         Parameters
         ----------
         morning
@@ -181,6 +184,9 @@ class BeliefSettings:
         detection
             Chance that an inspection finds what is there: one for all, or ``(k,)``.
         """
+        if self.treated and (again := after_their_find(plants, found)).any():
+            plants, found = plants[~again], found[~again]
+            detection = detection if np.ndim(detection) == 0 else np.asarray(detection)[~again]
         if not len(plants):
             return morning
         return morning.learn(plants, found, Learning(detection, treated=self.treated))

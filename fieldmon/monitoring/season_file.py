@@ -157,6 +157,14 @@ class Season(SeasonPlans, SeasonFrames):
         if settings is None:
             today = local_clock(plot.field).today()
             settings = settings_from({"begins": today} | chosen)
+        elif chosen:
+            raise SettingError(
+                worded(
+                    "A season's settings must be given as one or one by one, but beside settings "
+                    "there is {names}. Put it into them: dataclasses.replace(settings, ...).",
+                    names=", ".join(chosen),
+                )
+            )
         if observations is None:
             observations = Observations.none()
         _must_work(settings, plot.field)
@@ -198,7 +206,9 @@ class Season(SeasonPlans, SeasonFrames):
         else:
             made = assumed_by(laid, prior, settings.robot, self.plot.grid)
         rate, usual = settings.belief.spread.rate_per_day, BeliefSettings()
-        if settings.pest is None and rate == usual.spread.rate_per_day:
+        if settings.pest is not None:
+            made = (*made, *settings.pest.assumed)
+        elif rate == usual.spread.rate_per_day:
             made = (*made, Assumed("rate_per_day", rate))
         if settings.belief.treated == usual.treated:
             made = (*made, Assumed("treated", 1.0))

@@ -257,8 +257,18 @@ class SeasonRecords(OpenSeason):
         """Take a `batch` back (None: the last one), or one `inspection`; nothing is deleted.
 
         Both are numbers; `who` takes it back, for the log. `redo` lets a batch count again.
-        Return a sentence that says what was undone. Raise `SettingError` if there is nothing.
+        Return a sentence that says what was undone. Raise `SettingError` if there is nothing, or
+        both are given.
         """
+        if batch is not None and inspection is not None:
+            raise SettingError(
+                worded(
+                    "A batch or one inspection must be taken back, but both are given: batch "
+                    "{batch} and inspection {inspection}. Give one of them.",
+                    batch=batch,
+                    inspection=inspection,
+                )
+            )
         signs = self.plot.grid.row_signs
         with self._lock, self.store.writing() as db:
             if inspection is None:

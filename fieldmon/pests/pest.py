@@ -13,6 +13,7 @@ from fieldmon.compute.arguments import is_one_of, shown
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.plot.assumed import Assumed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
+#: chance a night to infest each neighbour where nobody said it: our choice, four times of which
+#: double the infested plants in nine days
+USUAL_PER_DAY = 0.02
 #: how far a jump goes is drawn from these
 KernelName = Literal["adjacent", "exponential", "cauchy"]
 #: what happens to development above the upper threshold
@@ -156,7 +160,8 @@ class Movement:
         Local hours of the day between which it moves; past midnight where the second is smaller.
     per_day
         ``"adjacent"``: chance in 0..1 a day that an infested plant infests each plant next to it.
-        Otherwise: new infestations a day that an infested plant sends out.
+        Otherwise: new infestations a day that an infested plant sends out. None, of ``"adjacent"``
+        only: nobody said it, and a season's usual 0.02 holds.
     at_c
         Temperature at which `per_day` holds; at others it goes with the pest's rate of increase.
         None: at any.
@@ -167,7 +172,7 @@ class Movement:
     """
 
     kernel: KernelName = "adjacent"
-    per_day: float = 0.5
+    per_day: float | None = None
     reach_m: float | None = None
     share_of_long_jumps: float = 0.0
     along_over_across: float = 1.0
@@ -192,14 +197,20 @@ class Movement:
             )
         must_hold_kinds(self, "A movement's")
         adjacent = self.kernel == "adjacent"
-        if not adjacent and self.reach_m is None:
-            raise SettingError(
-                worded("A kernel that is {kernel} must have a reach_m. Add it.", kernel=self.kernel)
-            )
+        for name in ("reach_m", "per_day"):
+            if not adjacent and getattr(self, name) is None:
+                raise SettingError(
+                    worded(
+                        "A kernel that is {kernel} must have a {name}. Add it.",
+                        kernel=self.kernel,
+                        name=name,
+                    )
+                )
         rule = "a chance in 0..1 where the kernel is adjacent" if adjacent else "0 or more"
         most = 1.0 if adjacent else math.inf
-        _must("movement", "per_day", self.per_day, rule, 0 <= self.per_day <= most)
-        _at_most("movement", "per_day", self.per_day, _MOST_PER_DAY)
+        if self.per_day is not None:
+            _must("movement", "per_day", self.per_day, rule, 0 <= self.per_day <= most)
+            _at_most("movement", "per_day", self.per_day, _MOST_PER_DAY)
         if self.reach_m is not None:
             _must("movement", "reach_m", self.reach_m, "above 0", self.reach_m > 0)
             _at_most("movement", "reach_m", self.reach_m, _MOST_M)
@@ -217,6 +228,11 @@ class Movement:
             )
         for hour in self.hours:
             _must("movement", "hours", hour, "0 to 24", 0 <= hour <= 24)
+
+    @property
+    def rate_per_day(self) -> float:
+        """`per_day`, or where nobody said it the usual."""
+        return USUAL_PER_DAY if self.per_day is None else self.per_day
 
 
 @dataclass(frozen=True)
@@ -333,13 +349,20 @@ class Pest:
             if value is not None:
                 _must("pest", name, value, "a chance in 0..1", 0 <= value <= 1)
 
+    @property
+    def assumed(self) -> tuple[Assumed, ...]:
+        """What its nights rest on though nobody said it: the usual rate, if it has none."""
+        if self.movement.per_day is not None:
+            return ()
+        return (Assumed("rate_per_day", USUAL_PER_DAY),)
+
     def infests_per_day(self, temperature_c: float | Floats | None = None) -> Floats:
-        """Return `movement.per_day` at `temperature_c`, °C, of its shape; None: as it is.
+        """Return `movement.rate_per_day` at `temperature_c`, °C, of its shape; None: as it is.
 
         It goes with the rate of increase, where both are known with the temperature. A chance
         stays one: it follows 1 - (1 - per_day)^ratio.
         """
-        usual = self.movement.per_day
+        usual = self.movement.rate_per_day
         if temperature_c is None or self.increase is None or self.movement.at_c is None:
             return np.full(np.shape(temperature_c) if temperature_c is not None else (), usual)
         at_usual = float(self.increase.at(self.movement.at_c))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
@@ -99,7 +100,7 @@ class DayPlan:
         It is of infestations that an inspection can see. In a season that takes some to hide yet,
         `Season.morning` and the column ``morning`` of `Season.to_geopandas` are of all, so more.
         """
-        return self.scene.chance
+        return as_seen(self.scene.chance)
 
     @property
     def plants(self) -> GeoDataFrame:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.arguments import must_hold_shapes
+from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.planning.bound_wording import bound_sentence
@@ -87,6 +88,9 @@ class Route:
         stops = ("plant", "arrive_s", "leave_s", "chance", "detects", "line_stop")
         shapes = dict.fromkeys(stops, (k,)) | {"line_m": (m, 2), "line_s": (m,)}
         must_hold_shapes(self, "A route's", shapes)
+        for name in shapes:
+            if (values := getattr(self, name)).flags.writeable:
+                object.__setattr__(self, name, as_seen(values))
 
     def __repr__(self) -> str:
         length_km, hours = self.drive_m / 1000, self.end_s / 3600

@@ -9,6 +9,7 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.compute.arguments import must_be
+from fieldmon.compute.wording import first_few
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_label, row_label
 from fieldmon.plot.plant_names import PlantNames
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _DEGREES = "EPSG:4326"
+_NAMED = 5
 
 
 def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> GeoDataFrame:
@@ -50,8 +52,10 @@ def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> G
 
 def boundary_and_plants(
     frame: GeoDataFrame,
-) -> tuple[MultiPolygon | None, NDArray[np.float64], PlantNames]:
+) -> tuple[MultiPolygon | None, NDArray[np.float64], PlantNames, list[str]]:
     """Return the area of a frame, if it has one, its points ``(n, 2)``, and what these are called.
+
+    And what there is to say of its lines that have no place.
 
     Places are in degrees WGS84. Names are those of its columns ``row`` (or ``row_name``, where that
     says something), ``number`` or else ``plant``, and ``block``, as `plant_frame` has them.
@@ -80,7 +84,7 @@ def boundary_and_plants(
             "A GeoDataFrame must say its coordinate system, but its crs is None. "
             "Set it first: gdf.set_crs(4326), for instance."
         )
-    there = np.flatnonzero(~(frame.geometry.isna() | frame.geometry.is_empty))
+    there = np.flatnonzero(_placed(frame.geometry.to_numpy()))
     shapes = frame.geometry.iloc[there].to_crs(_DEGREES)
     kinds = shapes.geom_type.str.removeprefix("Multi")
     areas, points = shapes[kinds == "Polygon"], shapes[kinds == "Point"]
@@ -98,7 +102,25 @@ def boundary_and_plants(
     boundary = MultiPolygon(list(shapely.get_parts(areas.iloc[0]))) if len(areas) else None
     places = points.to_numpy()
     which = np.repeat(there[kinds == "Point"], shapely.get_num_coordinates(places))
-    return boundary, shapely.get_coordinates(places), _names_in(frame, which)
+    said = _of_no_place(frame, there)
+    return boundary, shapely.get_coordinates(places), _names_in(frame, which), said
+
+
+def _placed(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:
+    """Return which shapes are anywhere: there, not empty, no point at NaN."""
+    # NaN of what is not there or empty, too
+    placed: NDArray[np.bool_] = np.isfinite(shapely.bounds(shapes).sum(axis=1))
+    return placed
+
+
+def _of_no_place(frame: GeoDataFrame | GeoSeries, there: NDArray[np.intp]) -> list[str]:
+    """Return what to say of lines that have no place: plants get no number of theirs."""
+    gone = np.setdiff1d(np.arange(len(frame)), there)
+    if not len(gone):
+        return []
+    named = first_few([str(one) for one in frame.index[gone]], _NAMED)
+    n = f"{len(gone)} of {len(frame)}"
+    return [f"Lines of the GeoDataFrame without a place were left out: {n} ({named})."]
 
 
 def _names_in(frame: GeoDataFrame | GeoSeries, which: NDArray[np.intp]) -> PlantNames:

@@ -50,6 +50,10 @@ class PlantNames(NamedTuple):
         """Return a field whose measured plants are called so."""
         return replace(field, plant_rows=self.row, plant_blocks=self.block, plant_names=self.plant)
 
+    def take(self, which: NDArray[np.bool_]) -> Self:
+        """Return the names of those plants."""
+        return type(self)(*(None if one is None else one[which] for one in self))
+
 
 def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) -> PlantGrid:
     """Return a grid of plants measured at ``(n, 2)`` with their names, and the numbers in these.

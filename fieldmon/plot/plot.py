@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from math import isclose
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import shapely
 from shapely import MultiPolygon
@@ -12,14 +13,15 @@ from shapely import MultiPolygon
 from fieldmon.compute.arguments import lonlat_of, must_be, must_be_shaped
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import worded
-from fieldmon.errors import PlotError
+from fieldmon.errors import ImportDoubt, PlotError
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import check_apart, grid_from_plants, lay, planting_in
 from fieldmon.plot.line_layout import lay_along
 from fieldmon.plot.measured_rows import said_rows
 from fieldmon.plot.missing_plants import without
-from fieldmon.plot.plant_names import PlantNames, numbered
+from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, numbered
 from fieldmon.plot.planting import Planting
+from fieldmon.plot.plants_outside import PlantsOutside
 from fieldmon.plot.row_detection import frame_around, rows_from_plants
 from fieldmon.plot.row_lines import Ground
 from fieldmon.plot.row_report import RowReport, row_report
@@ -27,6 +29,8 @@ from fieldmon.plot.travel import Aisles
 from fieldmon.plot.trees import trees_grid
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import numpy as np
     from geopandas import GeoDataFrame, GeoSeries
     from numpy.typing import NDArray
@@ -71,7 +75,7 @@ def _in_rows(
     bearing = planting.row_bearing_deg is not None
     said = said_rows(plants, names, field, bearing=bearing).checked(plants)
     grid = grid_from_plants(plants, planting_in(rows, planting), field, said)
-    return numbered(grid, plants, names), row_report(grid, rows, said)
+    return numbered(grid, plants, names), row_report(grid, rows, said, planting)
 
 
 @checked
@@ -111,6 +115,13 @@ class Plot:
     def grid(self) -> PlantGrid:
         """Return the plants."""
         return self.aisles.grid
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Return what to look at before rows of measured plants are used; empty: nothing."""
+        if self.rows is None or not self.grid.in_rows:
+            return ()
+        return (*self.rows.doubts, *doubts_of_numbers(self.grid))
 
     @property
     def chosen(self) -> tuple[str, ...]:
@@ -173,22 +184,25 @@ class Plot:
         plants
             ``(n, 2)`` degrees, longitude first.
         planting
-            Bearing and spacings; None: found from the plants.
+            Bearing and headland; None: found from the plants, as their spacings always are.
         gate
             ``(lon, lat)`` where days start and end; None: the nearest row end.
         names
             Of each plant, its row and its block, where these are known.
+
+        Warns
+        -----
+        ImportDoubt
+            For each of `doubts`.
 
         Raises
         ------
         PlotError
             If two plants are in one place, or no rows can be found.
         """
-        names, plants = names or PlantNames(), lonlat_of("Plants", plants)
-        grid, rows = _in_rows(plants, names, None, planting)
-        boundary = grid.frame.geometry_lonlat(grid.drivable_m)
-        field = names.on(Field(name, boundary, gate=gate, plants=plants))
-        return replace(cls._with(field, grid), rows=rows)
+        plot = plot_around(name, plants, planting, gate, names)
+        _warn_of(plot.doubts)
+        return plot
 
     @classmethod
     def of_trees(cls, field: Field) -> Plot:
@@ -271,6 +285,7 @@ class Plot:
         planting: Planting | None = None,
         name: str = "plot",
         gate: tuple[float, float] | None = None,
+        far: Literal["keep", "drop"] | None = None,
     ) -> Plot:
         """Return the plot whose area, measured plants, or both are in a GeoDataFrame.
 
@@ -281,12 +296,20 @@ class Plot:
             points, or laid in the polygon. Columns ``row``, ``plant`` (or ``number``) and
             ``block`` say what points are called, as in a file of plants.
         planting
-            Bearing and spacings; None: found from the points, or the defaults (rows 4 m and
-            plants 3 m apart, along the longest side).
+            Bearing, spacings and headland; None: the defaults (rows 4 m and plants 3 m apart, along
+            the longest side). Points keep their own spacings, and their bearing unless it is said.
         name
             What the plot is called.
         gate
             ``(lon, lat)`` where days start and end; None: the nearest row end.
+        far
+            Points more than 5 m outside the polygon are left out; ``"keep"``: they stay;
+            ``"drop"``: all outside are left out.
+
+        Warns
+        -----
+        ImportDoubt
+            Of lines without a place, of points that are left out, and for each of `doubts`.
 
         Raises
         ------
@@ -305,11 +328,22 @@ class Plot:
         """
         from fieldmon.plot.frames import boundary_and_plants  # noqa: PLC0415 - loads GeoPandas
 
-        boundary, plants, names = boundary_and_plants(frame)
+        boundary, plants, names, said = boundary_and_plants(frame)
         if boundary is None:
-            return cls.around(name, plants, planting, gate, names)
-        field = Field(name, boundary, gate=gate, plants=plants if len(plants) else None)
-        return cls.of(names.on(field) if len(plants) else field, planting)
+            plot = plot_around(name, plants, planting, gate, names)
+        elif not len(plants):
+            plot = cls.of(Field(name, boundary, gate=gate), planting)
+        else:
+            field = Field(name, boundary, gate=gate)
+            outside = PlantsOutside.of(plants, field, far)
+            if left_out := outside.of_left_out():
+                keeps = "" if far else ' (far="keep" keeps them.)'
+                said += [left_out + keeps, outside.of_beside()]
+            here = ~outside.left_out
+            field = names.take(here).on(replace(field, plants=plants[here]))
+            plot = cls.of(field, planting)
+        _warn_of(one for one in (*said, *plot.doubts) if one)
+        return plot
 
     def to_geopandas(self) -> GeoDataFrame:
         """Return the plants as points, EPSG:4326, with ``plant``, ``row`` and ``number``.
@@ -353,6 +387,27 @@ class Plot:
         gate = None if field.gate is None else grid.frame.xy_m(field.gate)[0]
         gate_xy_m = None if gate is None else (float(gate[0]), float(gate[1]))
         return cls(field, Aisles.of(grid, gate_xy_m, grid.frame.geometry_m(field.no_go)))
+
+
+def plot_around(
+    name: str,
+    plants: NDArray[np.float64],
+    planting: Planting | None = None,
+    gate: tuple[float, float] | None = None,
+    names: PlantNames | None = None,
+) -> Plot:
+    """Return `Plot.around` these plants, without a warning: imports say its doubts themselves."""
+    names, plants = names or PlantNames(), lonlat_of("Plants", plants)
+    grid, rows = _in_rows(plants, names, None, planting)
+    boundary = grid.frame.geometry_lonlat(grid.drivable_m)
+    field = names.on(Field(name, boundary, gate=gate, plants=plants))
+    return replace(Plot._with(field, grid), rows=rows)  # noqa: SLF001 - its own module
+
+
+def _warn_of(doubts: Iterable[str]) -> None:
+    """Warn whoever called a checked method that calls this."""
+    for doubt in doubts:
+        warnings.warn(doubt, ImportDoubt, stacklevel=4)
 
 
 def must_be_plot(given: object) -> None:

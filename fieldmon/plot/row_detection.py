@@ -128,7 +128,8 @@ def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Ro
         raise PlotError(
             worded(
                 "Rows can be found from 2 plants or more, but there are {n}. "
-                "Add plants, or have them visited without rows (--no-rows).",
+                "Add plants, or say that they stand in no rows: --no-rows, in Python Plot.among "
+                "or in_rows=False.",
                 n=len(lonlat),
             )
         )

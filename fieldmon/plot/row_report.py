@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import counted, worded
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.strands import row_deviations
 
 if TYPE_CHECKING:
@@ -32,6 +33,8 @@ _CLOSE, _PAIRED, _FEW = 0.6, 0.4, 6
 # mostly by turns: the greatest spread of how far, the least share of changes of side, the least
 # distance and the least number
 _EVEN, _BY_TURNS, _LEAST_M, _MANY = 0.55, 0.65, 0.05, 20
+# a spacing that was said is the measured one if it is off by so much at most
+_AS_SAID = 0.1
 # rows are double rows where gaps between them are of two kinds, one so much narrower
 _NARROW, _RARE = 0.5, 0.25
 # rows that bend may be traced along another direction where plants stand nearly as far apart in
@@ -76,6 +79,9 @@ class RowReport:
     nearly_square_m
         How far apart rows are, and plants in them, where that is nearly as far, and rows that bend
         could run another way; else None.
+    rows_said_m, plants_said_m
+        How far apart rows, and plants in them, were said to be, and are; None: nobody said
+        another distance.
     """
 
     how: str
@@ -91,13 +97,15 @@ class RowReport:
     zigzag_share: float = 0.0
     gaps_m: tuple[float, float] | None = None
     nearly_square_m: tuple[float, float] | None = None
+    rows_said_m: tuple[float, float] | None = None
+    plants_said_m: tuple[float, float] | None = None
 
     @property
     def doubts(self) -> tuple[str, ...]:
         """Return a sentence for each thing to be looked at before the rows are used."""
         return (
             *self._off_rows(), *self._names(), *self._double_plants(), *self._double_rows(),
-            *self._other_ways(),
+            *self._other_ways(), *self._other_spacings(),
         )  # fmt: skip
 
     def _off_rows(self) -> list[str]:
@@ -183,6 +191,31 @@ class RowReport:
             )
         return said
 
+    def _other_spacings(self) -> list[str]:
+        """Return what to say of spacings that were told, and are none of measured plants."""
+        said: list[str] = []
+        if self.rows_said_m is not None:
+            told, measured = self.rows_said_m
+            said.append(
+                worded(
+                    "Rows of the measured plants are {measured:.2f} m apart, not {said:g} m as was "
+                    "said: spacings are for plants that are laid.",
+                    measured=measured,
+                    said=told,
+                )
+            )
+        if self.plants_said_m is not None:
+            told, measured = self.plants_said_m
+            said.append(
+                worded(
+                    "Measured plants are {measured:.2f} m apart in their rows, not {said:g} m as "
+                    "was said: spacings are for plants that are laid.",
+                    measured=measured,
+                    said=told,
+                )
+            )
+        return said
+
     def _double_rows(self) -> list[str]:
         """Return what to say of double rows, taken as one row or as two."""
         said: list[str] = []
@@ -209,8 +242,14 @@ class RowReport:
         return said
 
 
-def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
-    """Return how well measured plants stand in the rows of their grid."""
+def row_report(
+    grid: PlantGrid, found: Rows, said: SaidRows, planting: Planting | None = None
+) -> RowReport:
+    """Return how well measured plants stand in the rows of their grid.
+
+    `planting` is what was said of them; None: nothing.
+    """
+    told = planting or Planting()
     first = grid.side == grid.side[0]
     faces = np.flatnonzero(first[grid.row])
     xy_m, row = grid.xy_m[faces], grid.row_line[grid.row[faces]]
@@ -251,7 +290,19 @@ def row_report(grid: PlantGrid, found: Rows, said: SaidRows) -> RowReport:
         *_zigzag(left_m, row),
         _two_gaps(grid),
         _nearly_square(grid, found, said),
+        _said_otherwise(grid, told, "row_spacing_m"),
+        _said_otherwise(grid, told, "plant_spacing_m"),
     )
+
+
+def _said_otherwise(
+    grid: PlantGrid, planting: Planting, spacing: str
+) -> tuple[float, float] | None:
+    """Return a spacing as it was said and as it is, by its name; None: nobody said another."""
+    said, measured = getattr(planting, spacing), getattr(grid, spacing)
+    # the usual one may come of nobody's saying anything
+    usual = said == getattr(Planting(), spacing)
+    return None if usual or abs(said - measured) <= _AS_SAID * measured else (said, measured)
 
 
 def _paired_share(xy_m: NDArray[np.float64]) -> float:

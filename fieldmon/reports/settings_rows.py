@@ -206,6 +206,8 @@ def _of_pest(pest_in_weather: PestInWeather, units: Units) -> Iterator[Row]:
     pest, weather = pest_in_weather.pest, pest_in_weather.weather
     title = worded(words.isolated("{pest}"), pest=Worded(pest.title or pest.name))
     yield words.PEST, title, words.FROM_CHOSEN
+    for one in pest.assumed:
+        yield words.SPREAD, figure(100 * one.value, "g", " %"), words.FROM_NOBODY
     if weather is None or not len(weather):
         yield words.WEATHER, words.WEATHER_NONE, words.FROM_USUAL
         return

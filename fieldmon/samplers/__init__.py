@@ -12,6 +12,7 @@ from fieldmon.samplers.registry import (
     kind_of,
     of_equal_times,
     sampler,
+    sampler_maker,
     sampler_or_name,
 )
 
@@ -24,5 +25,6 @@ __all__ = [
     "kind_of",
     "of_equal_times",
     "sampler",
+    "sampler_maker",
     "sampler_or_name",
 ]

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.errors import FieldmonError, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from fieldmon.samplers.base import Sampler
 
@@ -60,6 +60,19 @@ def label_of(name: str) -> str:
     ('Mine', 'naive')
     """
     return name.rpartition(":")[2] if is_own(name) else name
+
+
+def labels_of(names: Iterable[str]) -> list[str]:
+    """Return what samplers of a study are called in its tables.
+
+    Raise `SettingError` unless each is called otherwise.
+    """
+    labels = [label_of(name) for name in names]
+    if len(set(labels)) < len(labels):
+        raise SettingError(
+            f"Samplers of a study must have different names, but they are {', '.join(labels)}."
+        )
+    return labels
 
 
 def asked(who: str, own: Callable[..., Any], *given: object) -> Any:  # noqa: ANN401 - its answer

@@ -8,6 +8,7 @@ command's help must not wait for compiled loops.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from importlib import import_module
 from inspect import signature
 from numbers import Integral
@@ -152,12 +153,13 @@ def sampler_or_name(given: str | Sampler) -> Sampler:
     Raise `SettingError` if there is none of that name, or it is no sampler.
     """
     if isinstance(given, str):
-        if not is_own(given):
-            return sampler(given)
-        own_kind = own_class(given)
-        given = cast("Sampler", asked(own_kind.__name__, own_kind))
+        return sampler_maker(given)()
     own = all(callable(getattr(given, name, None)) for name in ("walk", "inspection_times"))
-    if isinstance(given, type) or not own:
+    if isinstance(given, type) and own:
+        raise SettingError(
+            f"A sampler must be made, but it is {shown(given)} itself. Give {given.__name__}()."
+        )
+    if not own:
         raise SettingError(
             f"A sampler must be one of {', '.join(SAMPLERS)}, or one of your own with a method "
             f"walk, but it is {shown(given)}. Give its name, or derive your own from "
@@ -168,6 +170,20 @@ def sampler_or_name(given: str | Sampler) -> Sampler:
     from fieldmon.samplers.answers import Checked  # noqa: PLC0415 - it has a loop to compile
 
     return Checked(given)
+
+
+def sampler_maker(name: str) -> Callable[[], Sampler]:
+    """Return what makes the sampler of a name, a new one each time.
+
+    A file of a caller's own is read now: what is made later is of the same code.
+
+    Raise `SettingError` if there is none of that name.
+    """
+    if not is_own(name):
+        kind_of(name)
+        return partial(sampler, name)
+    kind = own_class(name)
+    return lambda: sampler_or_name(cast("Sampler", asked(kind.__name__, kind)))
 
 
 def of_equal_times() -> dict[str, SamplerKind]:

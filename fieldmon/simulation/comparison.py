@@ -11,6 +11,7 @@ import numpy as np
 from fieldmon.compute.arguments import chances_of, must_be_in, must_hold_shapes, shown
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import PAIRED, SHARE
+from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
 from fieldmon.plot.robot import Robot
@@ -22,6 +23,7 @@ from fieldmon.simulation.experiment import Memory, run
 from fieldmon.simulation.paired import SameInsects, met_by_all, paired
 from fieldmon.simulation.season import SeasonSettings
 from fieldmon.simulation.statistics import paired_ratio, too_few_sentence
+from fieldmon.simulation.treating import WHOLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -206,7 +208,7 @@ class Comparison:
         return pd.DataFrame({"sampler": names, "seed": self.seeds[seed], "day": day + 1, **columns})
 
     def sentence(self, against: str) -> str:
-        """Return the ratios for people, what insects did, and whether the seasons are too few.
+        """Return the ratios for people, what the seasons were, and whether they are too few.
 
         Parameters
         ----------
@@ -225,9 +227,22 @@ class Comparison:
         if not ratios:
             return f"Only {against} was compared, in {seasons}: there is no other to hold it to."
         said = "; ".join(f"{name} {ratio}" for name, ratio in ratios.items())
-        of = "" if self.season is None else f" ({_insects(self.season)})"
+        of = "" if self.season is None else f" ({_in_words(self.season)})"
         first = f"Infested plant-days over those of {against}, in {seasons}{of}: {said}."
         return f"{first} {too_few_sentence(n, 'seeds')}".rstrip()
+
+
+def _in_words(season: SeasonSettings) -> str:
+    """Return for people what happens in a season: its insects, who comes when, treatments."""
+    said = [_insects(season)]
+    if season.pest is None and season.hidden_nights:
+        said.append(f"new infestations hide for {counted(season.hidden_nights, 'night')}")
+    if season.visit_every > 1:
+        said.append(f"a visit every {season.visit_every} days")
+    if season.treating is not None:
+        what = "the plot" if season.treating.treats == WHOLE else "zones"
+        said.append(f"{what} treated from {100 * season.treating.level:.3g} % infested on")
+    return "; ".join(said)
 
 
 def _insects(season: SeasonSettings) -> str:
@@ -237,7 +252,10 @@ def _insects(season: SeasonSettings) -> str:
     if season.pests is not None:
         return "insects of your own"
     whom, rate = _WHOM[season.spread.to], 100 * season.spread.rate_per_day
-    return f"infested plants infest {whom} with a chance of {rate:.3g} % a night"
+    said = f"infested plants infest {whom} with a chance of {rate:.3g} % a night"
+    if arrivals := season.spread.arrivals_per_day:
+        said += f", and {100 * arrivals:.3g} % of the others are infested from outside"
+    return said
 
 
 @checked

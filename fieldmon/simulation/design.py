@@ -14,9 +14,10 @@ from fieldmon.compute.ranges import DAYS
 from fieldmon.errors import SettingError
 from fieldmon.plot.robot import USUAL_TIMES, Robot
 from fieldmon.samplers import COMPARED, kind_of, sampler_or_name
-from fieldmon.samplers.own import is_own, label_of, own_text
+from fieldmon.samplers.own import is_own, label_of, labels_of, own_text
 from fieldmon.simulation.experiment import Experiment
 from fieldmon.simulation.season import visits_in
+from fieldmon.simulation.start import must_be_start_share
 from fieldmon.simulation.study_plot import DIGITS, Combination, StudyPlot, as_written
 from fieldmon.simulation.worker import simulate_chunk
 
@@ -67,11 +68,7 @@ class Design:
         for name in self.samplers:
             sampler_or_name(name)
         Robot().with_times(self.robot_times)
-        labels = [label_of(name) for name in self.samplers]
-        if len(set(labels)) < len(labels):
-            raise SettingError(
-                f"Samplers of a study must have different names, but they are {', '.join(labels)}."
-            )
+        labels_of(self.samplers)
         for named in fields(self)[:5]:
             values = getattr(self, named.name)
             if not values or len(set(values)) < len(values):
@@ -86,10 +83,7 @@ class Design:
             )
         must_be_in("A study's visit_every", DAYS, self.visit_every)
         for share in self.infested:
-            if not 0.0 < share < 1.0:
-                raise SettingError(
-                    f"The share infested at the start must be between 0 and 1, but it is {share}."
-                )
+            must_be_start_share(share)
 
     @property
     def content(self) -> dict[str, Any]:
@@ -98,7 +92,9 @@ class Design:
         What later versions added counts only where it is said: studies of before can go on.
         """
         said = asdict(self)
-        usual = {"robot_times": USUAL_TIMES, "visit_every": 1}
+        usual = {"robot_times": USUAL_TIMES, "visit_every": 1, "own_code": {}}
+        own = [name for name in self.samplers if is_own(name)]
+        said["own_code"] = {label_of(name): digest(own_text(name), length=DIGITS) for name in own}
         return {name: value for name, value in said.items() if value != usual.get(name)}
 
     @property

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 # chunks handed out ahead of each worker, so that none waits for the next
 _AHEAD = 3
 _CONNECT_S = 20
+# workers of this machine write to the terminal of whoever started them
+_QUIET = {"distributed.nanny.pre-spawn-environ.DASK_LOGGING__DISTRIBUTED": "critical"}
 
 
 class Workers(NamedTuple):
@@ -98,6 +100,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
 
 @contextmanager
 def _client(scheduler: str | None, workers: int | None) -> Iterator[Client]:
+    import dask  # noqa: PLC0415 - heavy
     from distributed import Client, LocalCluster  # noqa: PLC0415 - heavy
 
     if scheduler is not None:
@@ -111,7 +114,7 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator[Client]:
         with client:
             yield client
         return
-    with _ctrl_c_waits():
+    with _ctrl_c_waits(), dask.config.set(_QUIET):
         local = LocalCluster(
             n_workers=workers or cores(),
             threads_per_worker=1,

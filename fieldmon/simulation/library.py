@@ -39,14 +39,14 @@ def draw_start(
     chance
         ``(n,)`` chance of infestation as believed, in 0..1, for instance `DayPlan.chance`.
     share
-        Share of all plants infested on average, in 0..1.
+        Share of all plants infested on average, above 0 and below 1.
     seed
         The same seed infests the same plants.
 
     Raises
     ------
     SettingError
-        If `share` is not between 0 and 1.
+        If `share` is not above 0 and below 1.
 
     Examples
     --------

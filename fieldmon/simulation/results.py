@@ -7,8 +7,9 @@ stopped, in whatever way, knows what it has.
 from __future__ import annotations
 
 import json
+from datetime import date
 from io import BytesIO
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import pyarrow as pa
@@ -41,6 +42,13 @@ SCHEMA = pa.schema(
     ]
 )
 _ORDER = ("plot", "sampler", "hours", "look_s", "infested", "spread", "seed")
+# what later versions added to a manifest: studies of before do not say it, and can go on
+_LATER = ("first_day", "own_code")
+# what people call the parts of a manifest
+_CALLED = {
+    "look_s": "inspection time", "infested": "share infested", "n_days": "days", "n_seeds": "seeds",
+    "first_seed": "first seed", "robot_times": "robot times", "visit_every": "days between visits",
+}  # fmt: skip
 
 
 class StudyFolder:
@@ -62,7 +70,10 @@ class StudyFolder:
     def __init__(self, folder: Path, plots: Sequence[StudyPlot], design: Design) -> None:
         self.folder = folder
         self.refused: dict[str, str] = {}
-        said = design.content | {"plots": [f"{plot.field.name} {plot.digest}" for plot in plots]}
+        said = design.content
+        if plots:
+            said["first_day"] = str(plots[0].day)
+        said["plots"] = [f"{plot.field.name} {plot.digest}" for plot in plots]
         self._begin(json.dumps(said, ensure_ascii=False, indent=1))
 
     def holds(self, key: Hashable) -> bool:
@@ -91,20 +102,73 @@ class StudyFolder:
         manifest = self.folder / MANIFEST
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            there = manifest.read_text(encoding="utf-8") if manifest.exists() else None
+            there = _said_in(self.folder)
         except OSError as error:
             raise FileProblem(
                 f"{self.folder} must be a folder to write to, but it is not "
                 f"({error.strerror or error}). Choose another one with -o."
             ) from error
-        if there is None:
-            write_whole(manifest, text.encode())
-        elif there != text:
+        said = json.loads(text)
+        if there is not None and (why := _why_another(there, said)):
             raise SettingError(
-                f"{self.folder} holds another study (see {manifest}): its plots, settings or seeds "
-                "are not those asked for now. Choose another folder with -o, or ask for the same "
-                "again."
+                f"{self.folder} holds another study (see {manifest}): {why}. Choose another folder "
+                "with -o, or ask for the same again."
             )
+        if there != said:
+            write_whole(manifest, text.encode())
+
+
+def first_day(folder: Path) -> date | None:
+    """Return the first day of the study in a folder; None: there is none, or it does not say."""
+    try:
+        said = (_said_in(folder) or {}).get("first_day")
+    except OSError:  # what is wrong with it is said when it is to be written to
+        return None
+    return None if said is None else date.fromisoformat(said)
+
+
+def _said_in(folder: Path) -> dict[str, Any] | None:
+    """Return what the study in a folder says of itself; None: there is none."""
+    manifest = folder / MANIFEST
+    if not manifest.exists():
+        return None
+    try:
+        said = dict(json.loads(manifest.read_text(encoding="utf-8")))
+        if "first_day" in said:
+            date.fromisoformat(said["first_day"])
+    except (ValueError, TypeError) as error:
+        raise FileProblem(
+            f"{manifest} must say what the study in its folder is, but it was changed or cut. "
+            "Choose another folder with -o."
+        ) from error
+    return said
+
+
+def _why_another(there: dict[str, Any], said: dict[str, Any]) -> str:
+    """Return how the study that is there differs from the one asked for; "": it does not."""
+    told = {name: said[name] for name in _LATER if name in said} | there
+    others = [name for name in told | said if told.get(name) != said.get(name)]
+    called, why = _CALLED | {"plots": "plots or records"}, []
+    if "first_day" not in there:
+        called["plots"] = "plots, records or first day (--date)"
+    if "first_day" in others:
+        why.append(f"its first day (--date) is {told['first_day']}, not {said['first_day']}")
+        others.remove("first_day")
+        # a plot's digest knows the day
+        if _names(told) == _names(said) and "plots" in others:
+            others.remove("plots")
+    if "own_code" in others:
+        others.remove("own_code")
+        own, asked = told.get("own_code", {}), said.get("own_code", {})
+        if changed := [name for name in own if asked.get(name, own[name]) != own[name]]:
+            why.append(f"its seasons of {' and '.join(changed)} are of other code than the file's")
+    if others:
+        why.append(f"its {' and '.join(called.get(name, name) for name in others)} are others")
+    return ", and ".join(why)
+
+
+def _names(said: dict[str, Any]) -> list[str]:
+    return [str(plot).rpartition(" ")[0] for plot in said.get("plots", [])]
 
 
 def seasons(folder: Path) -> pa.Table:

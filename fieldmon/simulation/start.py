@@ -55,12 +55,17 @@ def season_start(
 ) -> Start:
     """Draw a season's start from a chance map ``(n,)``: each plant by its own chance.
 
-    `share` of all plants are infested on average, 0 to 1. Both faces of a plant are infested
-    together. Streams of the same seed infest the same plants, whoever is to inspect them.
+    `share` of all plants are infested on average, above 0 and below 1. Both faces of a plant are
+    infested together. Streams of the same seed infest the same plants, whoever is to inspect them.
     """
-    if not 0.0 < share < 1.0:
-        raise SettingError(
-            f"The share infested at the start must be between 0 and 1, but it is {share}."
-        )
+    must_be_start_share(share)
     infested = start_infested(chance, share, streams.of("start"))
     return Start(infested[grid.vine], chance)
+
+
+def must_be_start_share(share: float) -> None:
+    """Raise `SettingError` unless some plants are infested at a season's start, and others not."""
+    if not 0.0 < share < 1.0:
+        raise SettingError(
+            f"The share infested at the start must be above 0 and below 1, but it is {share}."
+        )

@@ -28,7 +28,7 @@ from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.plot import local_clock
 from fieldmon.plot.plant_names import PlantNames
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import plot_around
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 from tests.app.driving import begun, opened
@@ -135,7 +135,7 @@ def season_named(seasons_folder):
     lonlat = Frame(35.0, 30.0, 90.0).lonlat(np.stack([2.0 * plant, 3.0 * row], axis=1))
     called = np.where((row == 0) & (plant == 2), 4, plant + 1)
     names = PlantNames(np.array(["5a", "C", "2", "D"])[row], None, called.astype(np.str_))
-    plot = Plot.around("own", lonlat, names=names)
+    plot = plot_around("own", lonlat, names=names)
     settings = MonitoringSettings(date(2026, 11, 16), robot=Robot(hours=1.0))
     return Season.create(seasons_folder / "Own 2026.gpkg", plot, Observations.none(), settings)
 

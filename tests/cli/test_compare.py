@@ -60,6 +60,8 @@ def test_square_plots_of_several_sizes_and_spreads(run):
     assert code == 0, err
     assert out.count("(naive, sections): A second robot would save") == 4
     assert "0.2 ha spread 80% to one" in out
+    assert err.startswith("Numbers of robots compared: 1, 2\n")
+    assert "study run" not in err
 
 
 def test_a_plot_and_hectares_are_too_much_and_a_folder_must_be_one(run):
@@ -69,6 +71,14 @@ def test_a_plot_and_hectares_are_too_much_and_a_folder_must_be_one(run):
     assert (code, "must be a folder" in err) == (2, True)
     code, _, err, _ = run("compare", "--hectares", "0.1", "--to", "nobody", *SHORT)
     assert (code, "Spread goes to" in err) == (2, True)
+
+
+def test_who_expects_samplers_to_be_compared_is_told_which_command_does(run):
+    asked = ("compare", "--hectares", "0.1", "--robots", "1", *SHORT)
+    code, _, err, _ = run(*asked, "--sampler", "naive", "--sampler", "bouncy")
+    assert code == 0
+    told = "with each sampler by itself: naive, bouncy. Samplers are compared by fieldmon study run"
+    assert told in err
 
 
 def test_teams_may_come_every_so_many_days(run, tmp_path):

@@ -60,6 +60,23 @@ def test_a_season_believes_its_pests_nights_and_says_its_next_generation(run, tm
     assert Season(tmp_path / "s.gpkg").settings.pest == settings.pest
 
 
+def test_a_pest_whose_file_says_no_rate_spreads_as_usual_and_it_is_said(run, tmp_path):
+    pest = tmp_path / "seen.toml"
+    pest.write_text('name = "seen"\ncount_means = "mites"\n', encoding="utf-8")
+    usual = "assumed: chance a night to infest a neighbour 2 %"
+    words = [*PLOT, "--begins", BEGINS, "--hours", "1"]
+    code, _, err, _ = run("init", "s.gpkg", *words, "--pest", pest)
+    assert (code, usual in err) == (0, True)
+    season = Season(tmp_path / "s.gpkg")
+    assert [one.value for one in season.assumed() if one.setting == "rate_per_day"] == [0.02]
+    code, _, err, _ = run("change", "s.gpkg", "--spread", "0.1")
+    assert (code, "stands in its file, under [movement]" in err) == (2, True)
+    assert usual in "\n".join(lines(season, season.status(season.settings.begins)))
+    code, _, err, _ = run("change", "s.gpkg", "--pest", "spider-mite")
+    assert (code, usual in err) == (0, False)
+    assert "rate_per_day" not in {one.setting for one in season.assumed()}
+
+
 def test_insects_are_simulated_and_days_planned_by_the_pest(run, tmp_path, station):
     words = [*PLOT, "--pest", "whitefly", "--weather", station, "--date", BEGINS, "--hours", "1"]
     code, out, err, _ = run("simulate", *words, "--days", 2, "--sampler", "naive")

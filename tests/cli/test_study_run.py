@@ -1,5 +1,8 @@
 """`fieldmon study run`: a study of one's own plots."""
 
+from dataclasses import replace
+from datetime import date
+
 import numpy as np
 import pandas as pd
 import pyarrow as pa
@@ -10,7 +13,7 @@ from fieldmon.cli.study_run import StudyOptions, _tell, _tell_charged
 from fieldmon.errors import FileProblem
 from fieldmon.simulation import results
 from fieldmon.simulation.design import study_of
-from tests.cli.estate import ZIP, square
+from tests.cli.estate import MITES, ZIP, square
 from tests.paths import ROOT
 
 FEW = ["--seeds", 3, "--days", 2, "--workers", 1, "--date", "2026-11-02"]
@@ -33,6 +36,7 @@ def test_samplers_are_compared_on_a_plot_and_the_seasons_kept(run, tmp_path):
     ("words", "says"),
     [
         (["--sampler", "best"], "best"),
+        (["-o", "seasons.csv", "--feature", "Nursery", *FEW], "seasons.csv is the name of a file"),
         (["--infested", "2"], "between 0 and 1"),
         (["--date", "today"], "YYYY-MM-DD"),
         (["--pest", "mote"], "one of thesis, spider-mite"),
@@ -87,6 +91,22 @@ def test_times_are_charged_as_they_were_chosen_and_other_studies_go_on(tmp_path)
     assert keys[0] != keys[1]
     assert "robot_times" not in usual.design().content
     assert thesis.design().content["robot_times"] == "thesis"
+
+
+@pytest.mark.parametrize("records", [None, MITES])
+def test_the_same_command_goes_on_the_day_after(tmp_path, monkeypatch, records):
+    asked = StudyOptions(
+        ZIP, tmp_path / "study", "Nursery", records, sampler=["naive"], seeds=1, days=1
+    )
+    monkeypatch.setattr("fieldmon.cli.study_run.day_on", lambda _, told: told or date(2026, 11, 2))
+    first = asked.plots()
+    results.StudyFolder(asked.output, first, asked.design())
+    monkeypatch.setattr("fieldmon.cli.study_run.day_on", lambda _, told: told or date(2026, 11, 3))
+    assert [plot.digest for plot in asked.plots()] == [plot.digest for plot in first]
+    (told,) = replace(asked, on="2026-11-03").plots()
+    assert told.day == np.datetime64("2026-11-03")
+    (elsewhere,) = replace(asked, output=tmp_path / "other").plots()
+    assert elsewhere.day == told.day
 
 
 def test_visits_are_as_far_apart_as_asked_and_other_studies_go_on(tmp_path):

@@ -10,17 +10,64 @@ from tests.cli.estate import table
     ("words", "says"),
     [
         (["-o", __file__], "must be a folder"),
-        (["--scenario", "Z", "--scenario", "Y"], "A scenario must begin with Z or Y"),
+        (["--scenario", "Z", "--scenario", "Y"], 'but none begins with "Z" or "Y". There are '),
+        (
+            ["--scenario", "C, start"],
+            ', for instance "C, spread 30% to one, clus',
+        ),
+        (["--scenario", "C, start"], '", and more with --full.'),
         (["--maps", "."], "must hold a map of plants"),
         (["--pest", "whitefly", "--tune"], "--pest goes without --maps"),
+        (["--sampler", "snake", "--tune"], "--sampler goes without --tune"),
+        (["--sampler", "best"], "A sampler must be one of naive, bouncy"),
         (["--visit-every", "7", "--tune"], "--visit-every goes without --maps and --tune"),
-        (["--pest", "whitefly", "--scenario", "world"], "must begin with world"),
+        (
+            ["--pest", "whitefly", "--scenario", "A, spread"],
+            ', for instance "A, whitefly',
+        ),
     ],
 )
 def test_bad_words_are_a_sentence(run, words, says):
     code, _, err, made = run("study", "samplers", *words)
     assert (code, made) == (2, set())
     assert says in err
+
+
+OWN = """from fieldmon.samplers.sweeps import Naive
+
+
+class Mine(Naive):
+    pass
+"""
+
+
+def test_a_sampler_that_is_added_completes_the_table_of_before(run, tmp_path):
+    words = ["study", "samplers", "--scenario", "A", "--seeds", 2]
+    file, csv, html = (tmp_path / name for name in ("my.py", "samplers.csv", "samplers.html"))
+    assert run(*words)[0] == 0
+    usual, report = csv.read_bytes(), html.read_bytes()
+    file.write_text(OWN)
+    more = ["--sampler", "my.py:Mine", "--sampler", "naive", "--sampler", "snake"]
+    code, out, err, _ = run(*words, *more)
+    assert code == 0, err
+    assert out.splitlines()[0].endswith("  Mine                 snake")
+    assert "adaptive against Mine: surely fewer in " in out
+    assert "Infested plant-days against snake: at most half in " in out
+    assert "Mine: of your own, added; on the map of adaptive." in html.read_text()
+    rows = table(csv)
+    assert {line.decode() for line in usual.splitlines()} < {*csv.read_text().splitlines()}
+    lost = {who: [] for who in ("Mine", "naive", "snake")}
+    for row in rows:
+        if (name := row["who"].split(",")[0]) in lost:
+            lost[name].append((row["seed"], row["infested_plant_days"]))
+    assert lost["Mine"] == lost["naive"]
+    assert len(lost["snake"]) == 2
+    # a file that has changed is another sampler, and what nobody asks for is not said
+    file.write_text(OWN.replace("pass", "more = 1"))
+    assert run(*words, *more[:2])[0] == 0
+    assert len(table(csv)) == len(rows) + 2
+    code, out, _, _ = run(*words)
+    assert (code, "Mine" in out, html.read_bytes() == report) == (0, False, True)
 
 
 def test_with_a_pest_every_sampler_believes_the_one_map_that_follows_it(run, tmp_path):

@@ -8,6 +8,7 @@ import time
 import pytest
 
 from fieldmon.cli import waiting
+from fieldmon.compute import jit_progress
 from fieldmon.compute.jit_progress import FirstUse
 
 
@@ -19,7 +20,7 @@ def test_a_command_says_that_it_compiles_and_wipes_it_away_where_it_can(monkeypa
     shown = waiting.Waiting()
     with shown:
         use.began()
-        use._since -= 2
+        use.waited(jit_progress.LEAST_S)
         use.began()
         use.ended()
         use.ended()

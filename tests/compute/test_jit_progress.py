@@ -63,6 +63,11 @@ def test_a_program_of_ones_own_says_once_that_it_compiles_where_somebody_sees_it
     monkeypatch.setattr(sys.stderr, "isatty", lambda: sees)
     monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
     use = FirstUse()
+    for _ in range(2):
+        use.began()
+        now[0] += 1.0
+        use.ended()
+        now[0] += 100.0  # work between two loops is not compiling
     use.began()
     assert not capsys.readouterr().err
     for _ in range(2):
@@ -73,7 +78,7 @@ def test_a_program_of_ones_own_says_once_that_it_compiles_where_somebody_sees_it
     told = FirstUse()
     told.tell(lambda *_: None)
     told.began()
-    now[0] += 2.0
+    now[0] += 4.0
     told.ended()
     assert not capsys.readouterr().err
 

@@ -9,8 +9,15 @@ from fieldmon.errors import SettingError
 def test_a_booms_section_covers_whole_rows():
     assert Sprayer.of_boom(12.0, 4, 1.5).rows == 2
     assert Sprayer.of_boom(3.0, 4, 4.0).rows == 1
-    with pytest.raises(SettingError, match="A boom must have"):
-        Sprayer.of_boom(0.0, 4, 4.0)
+    for width_m in (0.0, -1.0, float("inf")):
+        with pytest.raises(SettingError, match="A boom must have"):
+            Sprayer.of_boom(width_m, 4, 4.0)
+
+
+@pytest.mark.parametrize("row_spacing_m", [0.0, -1.0, float("inf")])
+def test_rows_under_a_boom_stand_apart(row_spacing_m):
+    with pytest.raises(SettingError, match="under a boom must be 0"):
+        Sprayer.of_boom(12.0, 4, row_spacing_m)
 
 
 @pytest.mark.parametrize(

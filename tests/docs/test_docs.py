@@ -1,6 +1,7 @@
 """What the pages name is there."""
 
 import ast
+import builtins
 import re
 import shlex
 import tomllib
@@ -207,7 +208,34 @@ def test_version_and_licence_are_the_same_everywhere():
     assert latest == project["version"]
 
 
-@pytest.mark.parametrize("page", sorted((DOCS / "notebooks").glob("*.md")), ids=lambda p: p.stem)
-def test_the_cells_of_a_notebook_are_python(page):
+def cells(page):
+    """Yield the lines of each cell of a notebook, and whether they are shown."""
     for cell in fences(page.read_text(encoding="utf-8"), "{code-cell}"):
-        ast.parse(re.sub(r"\A(?::\w+:.*\n)+", "", cell))
+        lines = re.sub(r"\A(?::\w+:.*\n)+", "", cell)
+        yield lines, "remove-cell" not in cell.removesuffix(lines)
+
+
+NOTEBOOKS = pytest.mark.parametrize(
+    "page", sorted({*DOCS.glob("notebooks/*.md")} - {*DOCS.rglob("index.md")}), ids=lambda p: p.stem
+)
+
+
+@NOTEBOOKS
+def test_the_cells_of_a_notebook_are_python(page):
+    assert [ast.parse(lines) for lines, _ in cells(page)][1:]
+
+
+@NOTEBOOKS
+def test_the_cells_shown_of_a_notebook_need_nothing_of_those_that_are_not(page):
+    known = {*vars(builtins)}
+    for lines, shown in cells(page):
+        if not shown:
+            assert "sys.path" not in lines
+            continue
+        parts = [*ast.walk(ast.parse(lines))]
+        known |= {one.asname or one.name for one in parts if isinstance(one, ast.alias)}
+        known |= {one.arg for one in parts if isinstance(one, ast.arg)}
+        names = [one for one in parts if isinstance(one, ast.Name)]
+        known |= {one.id for one in names if isinstance(one.ctx, ast.Store)}
+        assert {one.id for one in names} <= known
+        assert "../../" not in lines

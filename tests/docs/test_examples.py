@@ -69,24 +69,16 @@ def test_the_python_lines_of_the_readme_run(folder):
     assert len(known["day"].route) > 100
 
 
-#: pages whose lines stand by themselves, and those to which their own text gives a plot
+#: pages whose lines stand by themselves
 OTHERS = [name for name in PAGES if name != "README.md" and fences(PAGES[name], "python")]
-GIVEN = """
-import numpy as np
-import fieldmon as fm
-plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
-reward = np.linspace(0.0, 1.0, len(plot.grid))
-"""
 
 
 @pytest.mark.usefixtures("folder")
 def test_the_python_lines_of_all_other_pages_run():
-    """One interpreter and one small plot for all; notebooks are executed with the pages."""
+    """One interpreter for all; notebooks are executed with the pages."""
     assert len(OTHERS) >= 3
-    given = {}
-    exec(compile(GIVEN, "given", "exec"), given)  # noqa: S102 - our own lines
     for name in OTHERS:
-        known = dict(given)
+        known = {}
         for block in fences(PAGES[name], "python"):
             exec(compile(block, name, "exec"), known)  # noqa: S102 - our own lines
 

@@ -12,6 +12,7 @@ from fieldmon.infestation.heavier import (
     heavier_than,
     likeliest,
     odds_times,
+    refuted,
 )
 from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.plot_estimate import estimate_of
@@ -29,6 +30,12 @@ QUIET = Spread(0.0)
 def inspected(belief, infested, plants, learning=None):
     plants = np.asarray(plants, np.int32)
     return belief.learn(plants, infested[plants], learning or Learning(0.84))
+
+
+def by_itself(belief, infested, plants, learning=None):
+    """Return what a map believes that thinks of no others."""
+    plants = np.asarray(plants, np.int32)
+    return belief._inspected(plants, infested[plants], learning or Learning(0.84)).settled()
 
 
 def scattered(share, seed=3):
@@ -82,7 +89,7 @@ def test_a_heavy_infestation_that_nobody_announced_is_believed(share):
     plants = np.flatnonzero(GRID.row % 6 == 0)
     evening = inspected(TracedPairs.of(GRID, FLAT), infested, plants)
     left = int(infested.sum() - infested[plants].sum())
-    told_only = inspected(replace(TracedPairs.of(GRID, FLAT), others=()), infested, plants)
+    told_only = by_itself(TracedPairs.of(GRID, FLAT), infested, plants)
     assert evening.is_heavier
     assert estimate_of(GRID, evening).low <= left <= estimate_of(GRID, evening).high
     # it was a fraction of it, and nobody was told
@@ -99,7 +106,7 @@ def test_clusters_where_few_are_infested_are_no_heavy_infestation():
     evening = inspected(TracedPairs.of(GRID, FLAT), infested, np.arange(0, N, 2))
     assert not evening.is_heavier
     assert "more than told" not in {one.name for one in learnt_from(evening, 0.84)}
-    alone = inspected(replace(TracedPairs.of(GRID, FLAT), others=()), infested, np.arange(0, N, 2))
+    alone = by_itself(TracedPairs.of(GRID, FLAT), infested, np.arange(0, N, 2))
     assert (evening.chance == alone.chance).all()
     assert evening.doubt == alone.doubt
 
@@ -117,10 +124,38 @@ def test_what_leads_may_change_and_each_map_goes_on_by_itself():
     morning = belief.overnight(QUIET)
     assert len(morning.others) == len(belief.others)
     told = [one for one in morning.others if not one.is_heavier]
-    by_itself = next(one for one in belief.others if not one.is_heavier).overnight(QUIET)
-    assert (told[0].chance == by_itself.chance).all()
+    alone = next(one for one in belief.others if not one.is_heavier).overnight(QUIET)
+    assert (told[0].chance == alone.chance).all()
     later = inspected(morning, np.zeros(N, bool), np.arange(60, 500))
     assert not later.is_heavier
+
+
+def test_where_a_day_speaks_against_the_map_that_was_left_heavier_ones_are_thought_of_again():
+    """A corner that was clean on the first day, of a plot that is full of insects elsewhere."""
+    infested = scattered(0.4)
+    infested[:300] = False
+    first = inspected(TracedPairs.of(GRID, FLAT), infested, np.arange(300)).overnight(QUIET)
+    assert first.others == ()
+    assert not first.is_heavier
+    plants = np.arange(330, 480)
+    later = inspected(first, infested, plants)
+    left = int(infested.sum() - infested[plants].sum())
+    assert later.is_heavier
+    assert later.chance.sum() > 0.6 * left > 2.0 * by_itself(first, infested, plants).chance.sum()
+    # as likely as it was thought before, and what was found in it counts
+    assert first.likely - 3.0 > later.likely > by_itself(first, infested, plants).likely
+    # a day that the map expected speaks for it
+    assert inspected(first, np.zeros(N, bool), plants).others == ()
+
+
+def test_a_day_speaks_against_a_map_that_does_worse_than_one_chance_for_all():
+    found = np.arange(20) < 8
+    best = 8 * np.log(0.4) + 12 * np.log(0.6)
+    assert not refuted(best - 4.9, found)
+    assert refuted(best - 5.1, found)
+    for same in (np.zeros(5, bool), np.ones(5, bool)):
+        assert not refuted(-4.9, same)
+        assert refuted(-5.1, same)
 
 
 def test_a_treatment_and_a_pest_count_for_every_map():
@@ -154,4 +189,4 @@ def test_what_is_known_for_certain_stays_and_the_rest_is_told_of_more():
         assert (one.chance[:5] == first.chance[:5]).all()
         assert one.chance[5:].mean() == pytest.approx(told)
         assert one.at_start.sum() == pytest.approx(one.chance.sum())
-    assert TracedPairs.of(GRID, np.ones(N))._heavier(*few) == []
+    assert TracedPairs.of(GRID, np.ones(N))._heavier(*few) == ()

@@ -1,8 +1,9 @@
 """Inspections: columns of one length, unknown where not said, and nobody can change them."""
 
-from datetime import date
+from datetime import date, datetime, timedelta, timezone
 
 import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -37,6 +38,40 @@ def test_what_is_not_given_is_unknown():
 def test_one_date_is_that_of_all(on):
     two = Inspections.of(np.array([3, 4]), np.array([FOUND, CLEAN]), on)
     assert two.date.tolist() == [date(2026, 4, 6)] * 2
+
+
+AFTERNOON = datetime(2026, 4, 6, 17, 30)
+ABROAD = datetime(2026, 4, 6, 1, 30, tzinfo=timezone(timedelta(hours=3)))
+
+
+@pytest.mark.parametrize(
+    ("on", "second"),
+    [
+        (AFTERNOON, [63_000.0, 63_000.0]),
+        (np.datetime64("2026-04-06T17:30"), [63_000.0, 63_000.0]),
+        ([AFTERNOON, date(2026, 4, 6)], [63_000.0, np.nan]),
+        (pd.DatetimeIndex(["2026-04-06 17:30:15", "2026-04-06"]), [63_015.0, np.nan]),
+        (["2026-04-06T17:30", "2026-04-06"], [63_000.0, np.nan]),
+        ([ABROAD, ABROAD], [5400.0, 5400.0]),
+        (pd.Series([ABROAD, ABROAD]), [5400.0, 5400.0]),
+        (MONDAY, [np.nan, np.nan]),
+    ],
+)
+def test_a_time_of_day_is_when_plants_were_inspected(on, second):
+    two = Inspections.of([3, 4], [FOUND, CLEAN], on)
+    assert two.date.tolist() == [date(2026, 4, 6)] * 2
+    np.testing.assert_array_equal(two.second, second)
+
+
+def test_columns_of_more_than_one_line_are_refused_for_their_shape():
+    with pytest.raises(ObservationError, match="one an inspection, but they have the shape"):
+        Inspections.of([[5, 6]], [FOUND], MONDAY)
+
+
+def test_a_time_of_day_is_said_once():
+    with pytest.raises(ObservationError, match="be said once, but"):
+        Inspections.of([3], [FOUND], AFTERNOON, second=[8.0])
+    assert Inspections.of([3], [FOUND], MONDAY, second=[8.0]).second.tolist() == [8.0]
 
 
 def test_columns_have_the_same_types_wherever_they_come_from():

@@ -19,6 +19,12 @@ def test_columns_that_are_not_given_are_unknown():
     assert records.species.tolist() == records.stage.tolist() == ["", ""]
 
 
+def test_one_day_is_that_of_all():
+    for day in ("2026-11-18", np.datetime64("2026-11-18")):
+        records = Observations.of([[35.0, 30.0]] * 2, [PRESENT, ABSENT], day)
+        assert records.day.astype(str).tolist() == ["2026-11-18"] * 2
+
+
 def test_columns_of_other_lengths_are_refused_by_name():
     with pytest.raises(ObservationError, match="2 entries, but count has 3"):
         Observations.of([[35.0, 30.0]] * 2, [PRESENT, ABSENT], count=np.zeros(3))

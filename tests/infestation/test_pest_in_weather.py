@@ -179,8 +179,8 @@ def test_the_chance_map_is_told_the_same_rate_wind_and_warmth():
 
 
 def test_a_movement_s_reach_is_its_mean_or_its_median_jump():
-    assert kernel_of(Movement("exponential", reach_m=6.0, along_over_across=2.0)).across == 0.5
-    assert kernel_of(Movement("cauchy", reach_m=np.sqrt(3.0))).scale_m == pytest.approx(1.0)
+    assert kernel_of(Movement("exponential", 0.1, reach_m=6.0, along_over_across=2.0)).across == 0.5
+    assert kernel_of(Movement("cauchy", 0.1, reach_m=np.sqrt(3.0))).scale_m == pytest.approx(1.0)
 
 
 def test_a_night_is_a_day_long_and_an_hour_a_twenty_fourth_of_it():

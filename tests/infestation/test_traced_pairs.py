@@ -265,8 +265,9 @@ def test_offspring_is_no_surer_than_what_it_came_from(beside):
 def test_in_hindsight_an_evening_says_what_the_next_morning_does_of_the_same_finds():
     """Where a third of what was inspected is infested, and a fiftieth was told."""
     belief, plants = TracedPairs.of(GRID, FLAT), np.arange(40, dtype=np.int32)
-    belief = replace(belief, others=())  # no heavier infestation is thought of
-    evening, still = belief.learn(plants, plants % 3 == 0, LEARNING), Spread(0.0)
+    # no heavier infestation is thought of
+    evening = belief._inspected(plants, plants % 3 == 0, LEARNING).settled()
+    still = Spread(0.0)
     told, morning = evening.in_hindsight(still), evening.overnight(still)
     assert morning.chance.sum() > 1.3 * evening.chance.sum()
     assert told.chance.sum() == pytest.approx(morning.chance.sum(), rel=0.05)

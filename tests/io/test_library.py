@@ -86,7 +86,30 @@ def test_options_are_told_as_python_has_them(gate):
     for columns in (as_dict, [f"{role}={name}" for role, name in as_dict.items()]):
         assert heard(library.read_records, file, gate, columns=columns)[0].count.tolist() == [3]
     _, doubts = heard(library.read_plots, ESTATE, near=(35.0, 29.0))
-    assert [one for one in doubts if "from the place nearby" in one]
+    assert [one for one in doubts if "from the plot or place nearby" in one]
+
+
+def asked_by(read, *given, **options):
+    with pytest.raises(ChoiceNeeded) as question:
+        read(*given, **options)
+    return str(question.value)
+
+
+def test_a_question_says_which_option_answers_it_as_python_has_it(gate):
+    assert asked_by(library.read_plot, ESTATE).endswith("Answer with feature='Gate', for instance.")
+    odd = Upload("odd.csv", b"a,b\n5,45\n5.1,45\n5,45.1\n")
+    for given in ({"source": odd}, {"plants": odd}):
+        assert "Answer with columns={'lon': 'a'}, for" in asked_by(library.read_plot, **given)
+    lon, lat = gate.grid.frame.lonlat(gate.grid.xy_m[:1])[0]
+    bare = Upload("r.csv", f"lon,lat,date\n{lon},{lat},2026-11-01\n".encode())
+    assert "Answer with columns={'present': ''}" in asked_by(library.read_records, bare, gate)
+    assert len(heard(library.read_records, bare, gate, columns={"present": ""})[0]) == 1
+    lines = Upload("l.geojson", b'{"type": "LineString", "coordinates": [[5, 45], [5.1, 45]]}')
+    assert "as rows=FILE or paths=FILE" in asked_by(library.read_plot, lines)
+    # how a second file is read cannot be said here
+    second = asked_by(library.read_plot, ESTATE, "Gate", odd)
+    assert "Name them." in second
+    assert "Answer with" not in second
 
 
 def test_a_plot_may_have_paths_and_be_parted_into_blocks():

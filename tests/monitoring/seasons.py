@@ -16,7 +16,7 @@ from fieldmon.plot import local_clock
 from fieldmon.plot.field import Field
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import Plot, plot_around
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 
@@ -58,7 +58,7 @@ def a_plot_with_named_rows():
     row, plant = np.divmod(np.arange(80), 20)
     lonlat = Frame(35.0, 30.0, 90.0).lonlat(np.stack([2.0 * plant, 3.0 * row], axis=1))
     names = PlantNames(np.array(["1", "5A", "2", "Top"])[row], None, (plant + 1).astype(np.str_))
-    return Plot.around("own", lonlat, names=names)
+    return plot_around("own", lonlat, names=names)
 
 
 def some_records(plot):

@@ -89,6 +89,8 @@ def test_what_was_taken_back_of_a_batch_is_not_counted_unless_all_of_it_was(seas
     season.undo(inspection=one)
     said = season.contents([batch])[batch]
     assert (said.n, said.found, said.counting) == (2, 1, 2)
+    with pytest.raises(SettingError, match="both are given: batch 1 and inspection 1"):
+        season.undo(1, 1)
     season.undo(batch)
     said = season.contents([batch])[batch]
     assert (said.n, said.found, said.counting) == (3, 2, 0)

@@ -94,6 +94,28 @@ def test_what_was_inspected_after_a_treatment_of_the_day_counts_after_it():
     assert flagged == pytest.approx([0.125, 0.5, 1.0, 0.125], abs=0.01)
 
 
+@pytest.mark.parametrize("belief", [PairApproximation, TracedPairs])
+def test_a_find_recorded_twice_counts_once_and_one_after_a_spraying_lowers_nobody(belief):
+    morning = belief.of(PLOT.grid, np.full(N, 0.02))
+    start, beside = PLOT.grid.adjacent
+    near = beside[start[50] : start[51]]
+
+    def evening(seconds, result, *treatments):
+        done = Inspections.of(
+            np.full(len(seconds), 50), result, np.datetime64(BEGINS), second=np.array(seconds)
+        )
+        return History(PLOT.grid, BEGINS, morning, done, treatments).evening(morning, 0).chance
+
+    once = evening([36_000.0], [FOUND])
+    assert (once[near] > 0.1).all()
+    np.testing.assert_array_equal(evening([36_000.0, 36_001.0], [FOUND, FOUND]), once)
+    np.testing.assert_array_equal(evening([36_000.0, 50_000.0], [FOUND, CLEAN]), once)
+    none = Treatment(0, np.zeros(N, bool), 0.5, 40_000.0)
+    again = evening([36_000.0, 50_000.0], [FOUND, FOUND], none)
+    assert (again[near] >= evening([36_000.0], [FOUND], none)[near]).all()
+    assert again[50] < 0.01
+
+
 def test_an_inspection_past_midnight_counts_after_what_was_treated_before_it():
     done = Inspections.of(
         np.array([5, 6]), np.array([FOUND, FOUND]), np.datetime64(BEGINS) + np.array([0, 1]),

@@ -14,6 +14,7 @@ from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season, setting
 from fieldmon.monitoring.transactions import Store
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.local_clock import local_clock
+from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.simulation.season import SeasonSettings, simulated_days
 from fieldmon.simulation.start import Start
@@ -181,7 +182,7 @@ def test_what_a_season_answers_is_of_one_moment_others_may_write_between_two(
 @pytest.mark.parametrize("wrong", [
     {"plot": "vineyard.kml"}, {"plot": None}, {"observations": [(35.15, 30.36)]},
     {"settings": {"begins": BEGINS}}, {"settings": None, "colour": "green"},
-    {"settings": None, "begins": "tomorrow"},
+    {"settings": None, "begins": "tomorrow"}, {"robot": Robot(hours=7)},
 ])  # fmt: skip
 def test_what_is_no_plot_no_records_or_no_settings_is_refused_and_nothing_is_written(
     tmp_path, wrong

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
+from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.pests.pest import Entry, Increase, Movement, Pest, Stage
 from fieldmon.plot.robot import Robot, Viewpoints
 
@@ -31,6 +32,14 @@ def test_a_pest_of_no_known_temperature_is_alike_at_all():
     assert float(pest.infests_per_day()) == 0.3
 
 
+def test_a_pest_that_says_no_rate_has_a_seasons_usual_one_and_says_so():
+    usual = BeliefSettings().spread.rate_per_day
+    for pest in (Pest("a"), Pest("a", movement=Movement(hours=(6.0, 20.0)))):
+        assert float(pest.infests_per_day()) == usual
+        assert [(one.setting, one.value) for one in pest.assumed] == [("rate_per_day", usual)]
+    assert Pest("a", movement=Movement(per_day=usual)).assumed == ()
+
+
 def test_a_pest_is_seen_by_its_own_viewpoints_or_chance_or_the_robots():
     assert Pest("a").seen_by(Robot()) == Robot()
     own = Pest("a", viewpoints=Viewpoints(((10.0, 0.2),), 0.3))
@@ -46,9 +55,10 @@ def test_a_pest_is_seen_by_its_own_viewpoints_or_chance_or_the_robots():
         (lambda: Stage("egg", 10, 5, upper_c=9), "upper_c of egg must be above threshold_c"),
         (lambda: Increase((), ()), "one or more"),
         (lambda: Increase((90.0,), (0.1,)), "at_c of increase must be -40 to 60"),
-        (lambda: Movement("cauchy"), "must have a reach_m"),
+        (lambda: Movement("cauchy", per_day=0.1), "must have a reach_m"),
+        (lambda: Movement("cauchy", reach_m=3.0), "must have a per_day. Add it"),
         (lambda: Movement(per_day=1.5), "a chance in 0..1"),
-        (lambda: Movement("cauchy", reach_m=0.0), "above 0"),
+        (lambda: Movement("cauchy", 0.1, reach_m=0.0), "above 0"),
         (lambda: Movement(wind="against"), "'none' or 'with'"),
         (lambda: Movement(hours=(6.0, 25.0)), "0 to 24"),
         (lambda: Movement(share_of_long_jumps=2.0), "in 0..1"),

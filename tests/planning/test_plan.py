@@ -83,6 +83,13 @@ def test_a_record_raises_the_chance_about_it_on_its_day_and_less_later(plot):
     assert plain < late < soon
 
 
+def test_what_was_planned_cannot_be_changed_by_accident(plot):
+    day = plan_day(plot, on="2026-11-18", robot=Robot(hours=0.5))
+    for array in (day.chance, day.route.plant, day.route.arrive_s, day.route.line_m):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+
+
 def test_a_sampler_is_named_or_brought(plot):
     named = plan_day(plot, on="2026-11-18", robot=ROBOT, sampler="naive").route
     brought = plan_day(plot, on="2026-11-18", robot=ROBOT, sampler=Naive()).route

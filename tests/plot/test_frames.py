@@ -7,7 +7,7 @@ import pytest
 import shapely
 from shapely import LineString, MultiPolygon, Point, box
 
-from fieldmon.errors import PlotError, SettingError
+from fieldmon.errors import ImportDoubt, PlotError, SettingError
 from fieldmon.plot.frames import plant_frame
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.plant_names import PlantNames
@@ -69,6 +69,39 @@ def test_measured_plants_are_taken_as_they_stand_with_and_without_an_area():
     moved = alone.to_geopandas().to_crs(UTM).geometry
     known = {(round(p.x, 2), round(p.y, 2)) for p in plants.to_crs(UTM).geometry}
     assert {(round(p.x, 2), round(p.y, 2)) for p in moved} == known
+
+
+def test_points_outside_the_area_are_left_out_as_of_files_and_it_is_said():
+    points = Plot.from_geopandas(frame(SQUARE), PLANTING).to_geopandas()[["geometry"]]
+    near = box(*SQUARE.buffer(-20).bounds)
+    both = pd.concat([frame(near).to_crs(4326), points])
+    with pytest.warns(ImportDoubt, match="outside plot") as said:
+        plot = Plot.from_geopandas(both, PLANTING)
+    left_out, beside = (str(one.message) for one in said)
+    assert "left out: " in left_out
+    assert 'far="keep" keeps them' in left_out
+    assert "taken to be of it" in beside
+    within = points.to_crs(UTM).distance(near)
+    assert plot.n_plants == (within <= 5.0).sum() < len(points)
+    assert {one.filename for one in said} == {__file__}
+    with pytest.warns(ImportDoubt, match="left out"):
+        assert Plot.from_geopandas(both, PLANTING, far="drop").n_plants == (within == 0).sum()
+    assert Plot.from_geopandas(both, PLANTING, far="keep").n_plants == len(points)
+    with pytest.raises(SettingError, match="must be one of 'keep', 'drop'"):
+        Plot.from_geopandas(both, PLANTING, far="maybe")
+
+
+@pytest.mark.parametrize("nowhere", [None, Point(), Point(np.nan, np.nan)])
+def test_lines_of_a_frame_that_have_no_place_are_said(nowhere):
+    points = named_points().reset_index(drop=True)
+    points.loc[[3, 7], "geometry"] = nowhere
+    with pytest.warns(ImportDoubt, match=r"without a place were left out: 2 of 15 \(3, 7\)"):
+        plot = Plot.from_geopandas(points)
+    kept = points.drop([3, 7])
+    back = plot.to_geopandas()
+    assert back.groupby("row_name")["number"].agg(set)["Top"] == {
+        *kept[kept["row"] == "Top"]["plant"].astype(int)
+    }
 
 
 @pytest.mark.parametrize(

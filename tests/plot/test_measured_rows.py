@@ -16,7 +16,7 @@ from fieldmon.plot.layout import grid_from_plants
 from fieldmon.plot.measured_rows import SaidRows, name_numbers
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import Plot, plot_around
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import row_ends, rows_from_plants
 from tests.bent import right_share
@@ -50,7 +50,7 @@ def test_straight_rows_are_kept_as_they_were_before_rows_could_bend():
 @pytest.mark.parametrize("radius_m", [30.0, 60.0, 200.0])
 def test_bent_rows_are_taken_as_they_bend(radius_m):
     xy_m, row = planted(radius_m=radius_m)
-    plot = Plot.around("bent", FRAME.lonlat(xy_m))
+    plot = plot_around("bent", FRAME.lonlat(xy_m))
     assert plot.grid.aisles_m is not None
     assert right_share(rows_of(plot.grid, xy_m), row) == 1.0
     assert plot.rows.in_rows
@@ -64,7 +64,7 @@ def test_a_bearing_that_is_said_keeps_rows_that_run_that_way():
     xy_m = np.stack([2.2 * j, 2.0 * k], axis=1)
     xy_m += np.random.default_rng(3).normal(0, 0.05, xy_m.shape)
     for bearing_deg in (90.0, 0.0):
-        plot = Plot.around("square", FRAME.lonlat(xy_m), Planting(row_bearing_deg=bearing_deg))
+        plot = plot_around("square", FRAME.lonlat(xy_m), Planting(row_bearing_deg=bearing_deg))
         off_deg = (plot.grid.frame.bearing_deg - bearing_deg + 90) % 180 - 90
         assert off_deg == pytest.approx(0.0, abs=1.0)
         assert plot.grid.n_rows == 20
@@ -77,7 +77,7 @@ def test_names_of_rows_decide_where_they_tell_of_rows():
     far = xy_m[:, 0] > 10
     named[far & (row == 4)], named[far & (row == 5)] = 5, 4
     names = np.array([f"R{k}" for k in named])
-    plot = Plot.around("named", FRAME.lonlat(xy_m), names=PlantNames(names))
+    plot = plot_around("named", FRAME.lonlat(xy_m), names=PlantNames(names))
     assert right_share(rows_of(plot.grid, xy_m), named) == 1.0
     (doubt,) = [said for said in plot.rows.doubts if "names" in said]
     assert "in another row than the file names; the names decided" in doubt
@@ -85,7 +85,7 @@ def test_names_of_rows_decide_where_they_tell_of_rows():
 
 def test_names_that_fit_are_checked_and_not_doubted():
     xy_m, row = planted(radius_m=60.0)
-    plot = Plot.around("named", FRAME.lonlat(xy_m), names=PlantNames(row.astype(np.str_)))
+    plot = plot_around("named", FRAME.lonlat(xy_m), names=PlantNames(row.astype(np.str_)))
     assert plot.rows.misnamed_share == 0.0
     assert plot.rows.doubts == ()
 
@@ -93,7 +93,7 @@ def test_names_that_fit_are_checked_and_not_doubted():
 def test_one_name_for_all_plants_is_no_name_of_a_row():
     xy_m, row = planted(radius_m=60.0)
     names = np.full(len(row), "Riesling")
-    plot = Plot.around("variety", FRAME.lonlat(xy_m), names=PlantNames(names))
+    plot = plot_around("variety", FRAME.lonlat(xy_m), names=PlantNames(names))
     assert right_share(rows_of(plot.grid, xy_m), row) == 1.0
     assert "rows were found instead" in " ".join(plot.rows.doubts)
 
@@ -107,7 +107,7 @@ def test_names_are_numbers_only_where_every_plant_has_one():
 
 def test_trees_that_stand_anyhow_are_in_no_rows():
     xy_m = np.random.default_rng(5).uniform(0, 120, (80, 2))
-    plot = Plot.around("park", FRAME.lonlat(xy_m))
+    plot = plot_around("park", FRAME.lonlat(xy_m))
     assert not plot.rows.in_rows
     assert plot.rows.doubts[0].startswith("No rows were found")
     assert len(plot.grid) == 80
@@ -117,7 +117,7 @@ def test_the_share_of_plants_off_their_row_is_said():
     xy_m, _ = planted(n_plants=60)
     stray = np.random.default_rng(2).random(len(xy_m)) < 0.06
     xy_m[stray] += np.where(xy_m[stray, :1] > 0, 0.7, -0.7) * np.array([1.0, 1.3])
-    plot = Plot.around("strays", FRAME.lonlat(xy_m))
+    plot = plot_around("strays", FRAME.lonlat(xy_m))
     assert plot.rows.off_share == pytest.approx(stray.mean(), abs=0.02)
     said = f"{100 * plot.rows.off_share:.0f} % of the plants stand more"
     assert any(said in sentence for sentence in plot.rows.doubts)
@@ -133,7 +133,7 @@ def test_a_square_planting_has_rows_two_ways_and_takes_the_longer_ones():
         (110, 30),
     ]
     assert [one.row_spacing_m for one in rows.directions] == pytest.approx([3.0, 3.0], abs=0.05)
-    plot = Plot.around("square", Frame(8.0, 47.0, 20.0).lonlat(xy_m))
+    plot = plot_around("square", Frame(8.0, 47.0, 20.0).lonlat(xy_m))
     assert any("but also 30 rows along 110 degrees" in said for said in plot.rows.doubts)
     ends_m = Frame(8.0, 47.0, 20.0).xy_m(row_ends(plot.field.plants, 110.0, 3.0).reshape(-1, 2))
     assert np.ptp(ends_m.reshape(-1, 2, 2)[..., 1], axis=1) == pytest.approx(33.0, abs=0.4)
@@ -157,7 +157,7 @@ def in_blocks(spacings_m):
     xy_m = np.concatenate(parts)
     lonlat = FRAME.lonlat(xy_m)
     blocks = np.array(of)
-    return Plot.around("blocks", lonlat, names=PlantNames(None, blocks)), blocks
+    return plot_around("blocks", lonlat, names=PlantNames(None, blocks)), blocks
 
 
 def test_named_blocks_have_rows_and_spacings_of_their_own():
@@ -176,7 +176,7 @@ def test_named_blocks_have_rows_and_spacings_of_their_own():
 def test_blocks_that_plants_name_within_rows_are_those_of_a_trial():
     xy_m, row = planted()
     names = np.where(xy_m[:, 0] > xy_m[:, 0].mean(), "I", "II")
-    plot = Plot.around("trial", FRAME.lonlat(xy_m), names=PlantNames(None, names))
+    plot = plot_around("trial", FRAME.lonlat(xy_m), names=PlantNames(None, names))
     assert plot.grid.n_blocks == 1
     assert right_share(rows_of(plot.grid, xy_m), row) == 1.0
     assert "as those of a trial do; they were left aside" in " ".join(plot.rows.doubts)
@@ -186,7 +186,7 @@ def test_every_block_may_count_its_rows_from_one():
     plot, named = in_blocks((2.5, 2.5))
     lonlat = plot.field.plants
     rows = np.array([str(k // 30 % 8) for k in range(480)])
-    again = Plot.around("both", lonlat, names=PlantNames(rows, named))
+    again = plot_around("both", lonlat, names=PlantNames(rows, named))
     assert again.grid.n_rows == 16
     assert again.rows.misnamed_share == 0.0
 
@@ -208,7 +208,7 @@ def test_a_block_of_a_plant_or_two_is_a_row():
     xy_m = np.concatenate([planted()[0], [[200.0, 0.0]], [[300.0, 0.0], [302.0, 0.0]]])
     n = len(xy_m)
     names = np.array(["home"] * (n - 3) + ["one"] + ["two"] * 2)
-    plot = Plot.around("few", FRAME.lonlat(xy_m), names=PlantNames(None, names))
+    plot = plot_around("few", FRAME.lonlat(xy_m), names=PlantNames(None, names))
     assert plot.grid.n_blocks == 3
     assert len(plot.grid) == n
 
@@ -239,14 +239,14 @@ def doubled(half_m, apart_m, stagger, radius_m=None, noise_m=0.02):
 )
 def test_double_rows_are_told_of_abreast_or_staggered(radius_m, half_m, stagger, apart_m):
     xy_m, _, _ = doubled(half_m, apart_m, stagger, radius_m)
-    assert Plot.around("double", FRAME.lonlat(xy_m)).rows.doubts != ()
+    assert plot_around("double", FRAME.lonlat(xy_m)).rows.doubts != ()
 
 
 @pytest.mark.parametrize("radius_m", [None, 80.0])
 @pytest.mark.parametrize("noise_m", [0.02, 0.08])
 def test_a_staggered_double_row_is_one_row_and_said_to_be(radius_m, noise_m):
     xy_m, pair, _ = doubled(0.15, 1.0, 0.5, radius_m, noise_m)
-    plot = Plot.around("double", FRAME.lonlat(xy_m))
+    plot = plot_around("double", FRAME.lonlat(xy_m))
     assert right_share(rows_of(plot.grid, xy_m), pair) >= 0.99
     assert plot.rows.zigzag_m == pytest.approx(0.15, abs=0.02)
     assert any("0.15 m to its left and right by turns" in said for said in plot.rows.doubts)
@@ -254,7 +254,7 @@ def test_a_staggered_double_row_is_one_row_and_said_to_be(radius_m, noise_m):
 
 def test_double_rows_taken_as_two_are_said_with_both_distances():
     xy_m, _, line = doubled(0.25, 0.5, 0.5)
-    plot = Plot.around("double", FRAME.lonlat(xy_m))
+    plot = plot_around("double", FRAME.lonlat(xy_m))
     assert right_share(rows_of(plot.grid, xy_m), line) >= 0.99
     assert plot.rows.gaps_m == pytest.approx((0.5, 2.5), abs=0.05)
     assert any("0.50 and 2.50 m apart by turns" in said for said in plot.rows.doubts)
@@ -276,7 +276,7 @@ def test_rows_that_bend_and_are_nearly_square_are_right_or_doubted(size, closer,
     rng = np.random.default_rng(seed)
     kept = rng.permutation(np.flatnonzero(rng.random(len(k)) > 0.1))
     xy_m = xy_m[kept] + rng.normal(0.0, 0.1, (len(kept), 2))
-    plot = Plot.around("square", FRAME.lonlat(xy_m))
+    plot = plot_around("square", FRAME.lonlat(xy_m))
     assert right_share(rows_of(plot.grid, xy_m), k[kept]) >= 0.99 or plot.rows.doubts
 
 
@@ -284,7 +284,7 @@ def test_straight_rows_that_have_nothing_to_do_with_each_other_are_no_square():
     xy_m, row = planted()
     xy_m[:, 0] *= 1.5
     xy_m[:, 0] += np.random.default_rng(8).uniform(0, 2.1, 10)[row]
-    plot = Plot.around("orchard", FRAME.lonlat(xy_m))
+    plot = plot_around("orchard", FRAME.lonlat(xy_m))
     assert plot.grid.plant_spacing_m / plot.grid.row_spacing_m == pytest.approx(0.84, abs=0.03)
     assert plot.rows.nearly_square_m is None
 
@@ -292,13 +292,13 @@ def test_straight_rows_that_have_nothing_to_do_with_each_other_are_no_square():
 @pytest.mark.parametrize("radius_m", [None, 80.0])
 @pytest.mark.parametrize("noise_m", [0.0, 0.05, 0.2])
 def test_single_rows_are_no_double_rows(radius_m, noise_m):
-    plot = Plot.around("single", FRAME.lonlat(planted(radius_m=radius_m, noise_m=noise_m)[0]))
+    plot = plot_around("single", FRAME.lonlat(planted(radius_m=radius_m, noise_m=noise_m)[0]))
     assert (plot.rows.zigzag_m, plot.rows.gaps_m) == (0.0, None)
 
 
 def test_two_plants_close_in_a_row_are_in_that_row():
     xy_m, row = planted(noise_m=0.02)
     both = np.concatenate([xy_m, xy_m[::3] + np.array([0.3, 0.0])])
-    plot = Plot.around("close", FRAME.lonlat(both))
+    plot = plot_around("close", FRAME.lonlat(both))
     found = rows_of(plot.grid, both)
     assert right_share(found, np.concatenate([row, row[::3]])) == 1.0

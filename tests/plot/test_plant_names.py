@@ -8,7 +8,7 @@ from fieldmon.plot.grid import plant_at, row_in_block, row_label, rows_listed
 from fieldmon.plot.named_rows import plant_meant, plants_in_rows, rows_meant
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, said_of_numbers
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import plot_around
 from fieldmon.plot.projection import Frame
 
 FRAME = Frame(34.9, 31.5, 90.0)
@@ -20,7 +20,7 @@ XY_M = np.stack([2.0 * PLANT, 3.0 * ROW], axis=1)
 def named(rows, plants=None, blocks=None, **planting):
     """Return the plot of the plants with names."""
     names = (None if one is None else np.array(one, np.str_) for one in (rows, blocks, plants))
-    return Plot.around("own", FRAME.lonlat(XY_M), Planting(**planting), names=PlantNames(*names))
+    return plot_around("own", FRAME.lonlat(XY_M), Planting(**planting), names=PlantNames(*names))
 
 
 def labels(plot):

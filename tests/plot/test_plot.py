@@ -8,13 +8,13 @@ import shapely
 from shapely import MultiPolygon, box
 
 import fieldmon as fm
-from fieldmon.errors import PlotError, SettingError
+from fieldmon.errors import ImportDoubt, PlotError, SettingError
 from fieldmon.io import prepare
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.plot import Plot, planting_of
+from fieldmon.plot.plot import Plot, planting_of, plot_around
 
 AREA = MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)])
 PLANTING = Planting(row_bearing_deg=90.0, row_spacing_m=5.0, plant_spacing_m=4.0)
@@ -54,12 +54,23 @@ def measured():
 def test_measured_plants_stay_where_they_were_measured(planting):
     there = measured()
     field = Field("Gate", AREA, plants=there)
-    for plot in (Plot.of(field, planting), Plot.around("Gate", there, planting)):
+    for plot in (Plot.of(field, planting), plot_around("Gate", there, planting)):
         assert plot.n_plants == len(there)
         off = plot.grid.frame.xy_m(np.array(sorted(there.tolist())))
         off -= plot.grid.frame.xy_m(np.array(sorted(plot.grid.lonlat().tolist())))
         assert np.abs(off).max() < 1e-3
         assert plot.grid.n_rows == lay(FIELD, PLANTING).n_rows
+
+
+def test_what_is_doubtful_about_measured_plants_is_warned_of():
+    there, other = measured(), replace(PLANTING, row_spacing_m=9.0)
+    with pytest.warns(ImportDoubt, match="apart") as said:
+        plot = Plot.around("Gate", there, other)
+    assert any("not 9 m as was said" in one for one in plot.doubts)
+    assert tuple(str(one.message) for one in said) == plot.doubts
+    assert {one.filename for one in said} == {__file__}
+    with pytest.warns(ImportDoubt, match="No rows were found"):
+        Plot.around("three", np.array([[1.0, 41.0], [2.0, 41.0], [1.0001, 41.0]]))
 
 
 def test_around_plants_whose_boundary_nobody_drew_there_is_room_to_turn():

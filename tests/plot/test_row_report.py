@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import plot_around
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import RowDirection
 from fieldmon.plot.row_report import RowReport
@@ -27,6 +27,8 @@ SURE = RowReport("20 plants in 4 rows", 0.02, 0.0, in_rows=True)
             "in 2 directions: 9 rows along 20 degrees, but also 12 rows along 80 degrees. The",
         ),
         ({"in_rows": False}, "No rows were found"),
+        ({"rows_said_m": (7.0, 2.5)}, "Rows of the measured plants are 2.50 m apart, not 7 m"),
+        ({"plants_said_m": (5.0, 1.4)}, "Measured plants are 1.40 m apart in their rows, not 5 m"),
     ],
 )
 def test_each_doubt_is_a_sentence_and_what_is_certain_is_none(changes, said):
@@ -49,7 +51,7 @@ def test_the_share_beside_a_row_is_that_of_the_plants_moved_out_of_it():
     xy_m = np.stack([1.5 * number, 3.0 * row], axis=1) + rng.normal(0, 0.02, (600, 2))
     moved = rng.choice(np.flatnonzero((number > 4) & (number < 45)), 30, replace=False)
     xy_m[moved, 1] += 1.0
-    found = Plot.around("plot", Frame(8.0, 47.0).lonlat(xy_m)).rows
+    found = plot_around("plot", Frame(8.0, 47.0).lonlat(xy_m)).rows
     assert found.in_rows
     assert found.off_share == pytest.approx(30 / 600, abs=0.01)
     assert any("beside their row" in doubt for doubt in found.doubts)

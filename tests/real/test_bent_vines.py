@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import plot_around
 from fieldmon.plot.row_detection import distinct
 from tests.bent import FRAME, bent, measured, right_share, side_by_side, surveyed, tiled
 from tests.crossing import crosses_rows
@@ -23,7 +23,7 @@ def survey(shared):
 def found(vines):
     """Return the vines that stand apart, the plot of them, and the plant in the grid of each."""
     vines = vines.take(distinct(vines.lonlat))
-    plot = Plot.around("vines", vines.lonlat)
+    plot = plot_around("vines", vines.lonlat)
     return vines, plot, cKDTree(plot.grid.xy_m).query(plot.grid.frame.xy_m(vines.lonlat))[1]
 
 

@@ -12,10 +12,10 @@ from fieldmon.io.import_report import Severity
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.read import read_lines, read_plants, read_plots, read_records
-from fieldmon.io.readers.nearby import distance_m
 from fieldmon.io.readers.places import NamedPlaces, Plants
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.plants_outside import distance_m
 
 ACRE_M2 = 4046.8564224
 

@@ -14,7 +14,7 @@ from fieldmon.plot.grid import nearest_plants, row_label
 from fieldmon.plot.layout import found_planting, grid_from_plants, lay
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import plot_around
 from fieldmon.plot.row_detection import distinct, rows_from_plants
 
 GEOD = Geod(ellps="WGS84")
@@ -68,7 +68,7 @@ def test_every_riseholme_vine_is_in_its_own_row_and_place(vines, vine_lonlat):
 
 def test_every_riseholme_vine_has_the_row_and_the_number_that_it_is_called_by(vines, vine_lonlat):
     rows, plants = (vines[name].to_numpy(np.str_) for name in ("Vine Row", "Vine ID"))
-    grid = Plot.around("vines", vine_lonlat, names=PlantNames(rows, None, plants)).grid
+    grid = plot_around("vines", vine_lonlat, names=PlantNames(rows, None, plants)).grid
     label = row_label(grid, nearest_plants(grid, vine_lonlat, 0.01)[0])
     assert label.line.tolist() == vines["row"].tolist()
     assert label.number.tolist() == vines["number"].tolist()

@@ -12,6 +12,7 @@ from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.pests.pest import Pest
 from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.robot import Robot
@@ -132,3 +133,5 @@ def test_a_named_pest_and_its_weather_stand_in_the_place_of_the_usual_nights():
     assert "Spread to a neighbour, a night" not in with_weather
     without = rows(replace(TOLD, pest_in_weather=PestInWeather(mite)))
     assert without["Its weather"][0] == "none: as its figures hold"
+    unsaid = rows(replace(TOLD, pest_in_weather=PestInWeather(Pest("own"))))
+    assert unsaid["Spread to a neighbour, a night"] == ("2 %", "assumed")

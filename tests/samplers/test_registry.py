@@ -12,6 +12,7 @@ from fieldmon.planning.workday import plan_work
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import COMPARED, SAMPLERS, USUAL, kind_of, of_equal_times, sampler
 from fieldmon.samplers.base import Sampler
+from fieldmon.samplers.registry import sampler_or_name
 from tests.scenes import GRIDS, scene_on
 
 NAMES = sorted(SAMPLERS)
@@ -63,6 +64,17 @@ def test_an_unknown_sampler_is_refused_with_the_known_ones():
     for ask in (sampler, kind_of):
         with pytest.raises(SettingError, match=r"one of .*dynamic.* but it is 'best'"):
             ask("best")
+
+
+def test_a_class_of_ones_own_that_nobody_made_is_refused_with_what_to_write():
+    class Mine(Sampler):
+        def walk(self, scene, would_find):
+            """Inspect nothing."""
+
+    with pytest.raises(SettingError, match=r"it is the class Mine itself\. Give Mine\(\)\."):
+        sampler_or_name(Mine)
+    with pytest.raises(SettingError, match="but it is the class int"):
+        sampler_or_name(int)
 
 
 def test_names_are_known_without_loading_anything():

@@ -15,6 +15,7 @@ from fieldmon.samplers.sweeps import Bouncy, Naive
 from fieldmon.simulation.comparison import CompareSettings, Comparison, compare
 from fieldmon.simulation.library import draw_start, simulate
 from fieldmon.simulation.season import SeasonSettings
+from fieldmon.simulation.treating import TreatmentRule
 from tests.simulation.test_library import CHANCE, PLOT, ROBOT, SHORT
 
 SETTINGS = CompareSettings(seeds=4, share=0.1, robot=ROBOT, season=SHORT)
@@ -92,6 +93,15 @@ def test_seasons_are_those_of_the_commands_and_a_sentence_says_what_insects_did(
         "each neighbour with a chance of 10 % a night): ": {"spread": Spread(0.1)},
         "one neighbour with a chance of 30 % a night): ": {"spread": Spread(0.3, "one")},
         "(pest spider-mite): ": {"pest": PestInWeather(shipped_pest("spider-mite"))},
+        "a night, and 0.02 % of the others are infested from outside): ": {
+            "spread": Spread(0.1, arrivals_per_day=0.0002)
+        },
+        " % a night; new infestations hide for 3 nights; a visit every 7 days): ": {
+            "hidden_nights": 3,
+            "visit_every": 7,
+        },
+        " % a night; zones treated from 5 % infested on): ": {"treating": TreatmentRule()},
+        "; the plot treated from 2 % infested on): ": {"treating": TreatmentRule(0.02, "whole")},
         "(insects of your own): ": {"pests": lambda _grid, infested, _key: infested},
     }
     for words, chosen in worlds.items():

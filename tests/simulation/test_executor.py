@@ -1,5 +1,6 @@
 """Workers: whoever dies, and however many there are, the seasons of a study are the same."""
 
+import logging
 import os
 import signal
 import subprocess
@@ -85,6 +86,16 @@ def test_ctrl_c_is_heard_here_and_by_no_worker(two_workers):
     run(Experiment(tuple(range(4)), range(1), _holds_ctrl_c), two_workers, made)
     assert all(made.values())
     assert not _holds_ctrl_c(None, None)
+
+
+def _level(setting, seeds):  # noqa: ARG001
+    return logging.getLogger("distributed.worker.state_machine").getEffectiveLevel()
+
+
+def test_workers_say_nothing_of_their_own_at_the_terminal(two_workers):
+    made = Memory()
+    run(Experiment(tuple(range(4)), range(1), _level), two_workers, made)
+    assert set(made.values()) == {logging.CRITICAL}
 
 
 def test_threads_make_the_same_files(undisturbed, tmp_path):

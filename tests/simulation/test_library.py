@@ -39,7 +39,7 @@ def test_the_share_is_met_on_average_and_likelier_plants_are_infested_more_often
 
 @pytest.mark.parametrize("share", [0.0, 1.0, -0.1])
 def test_a_share_of_nobody_or_all_is_refused(share):
-    with pytest.raises(SettingError, match=f"between 0 and 1, but it is {share}"):
+    with pytest.raises(SettingError, match=f"above 0 and below 1, but it is {share}"):
         draw_start(PLOT, CHANCE, share)
 
 

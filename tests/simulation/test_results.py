@@ -1,6 +1,7 @@
 """The folder of a study: whole parts, of one study, for any reader of Parquet."""
 
 import json
+from dataclasses import replace
 
 import pyarrow.parquet as pq
 import pytest
@@ -11,7 +12,7 @@ from fieldmon.simulation.design import Design, study_of
 from fieldmon.simulation.experiment import run
 from fieldmon.simulation.results import MANIFEST, SCHEMA, StudyFolder
 from fieldmon.simulation.worker import RefusedPlot
-from tests.simulation.study_plots import SMALL, plot
+from tests.simulation.study_plots import DAY, SMALL, plot
 
 SHORT = Design(samplers=("naive", "bouncy"), n_days=2, n_seeds=3)
 
@@ -51,7 +52,7 @@ def test_the_manifest_says_what_was_asked_for(tmp_path):
     said = json.loads((tmp_path / MANIFEST).read_text(encoding="utf-8"))
     assert list(said) == [
         *("samplers", "hours", "look_s", "infested", "spread"),
-        *("n_days", "n_seeds", "first_seed", "plots"),
+        *("n_days", "n_seeds", "first_seed", "first_day", "plots"),
     ]
     assert said["plots"] == [f"plot {plot().digest}"]
 
@@ -71,6 +72,55 @@ def test_a_folder_with_another_study_is_refused(tmp_path):
     for plots, asked in (([plot()], Design()), ([plot(41.0)], SMALL)):
         with pytest.raises(SettingError, match="another study"):
             StudyFolder(tmp_path, plots, asked)
+
+
+def test_what_another_study_has_otherwise_is_named(tmp_path):
+    StudyFolder(tmp_path, [plot()], SMALL)
+    later = replace(plot(), day=DAY + 1)
+    says = r"its first day \(--date\) is 2026-11-02, not 2026-11-03\. Choose"
+    with pytest.raises(SettingError, match=says):
+        StudyFolder(tmp_path, [later], SMALL)
+    with pytest.raises(SettingError, match=r"03, and its days are others\."):
+        StudyFolder(tmp_path, [later], replace(SMALL, n_days=9))
+    with pytest.raises(SettingError, match=r"its plots or records are others\."):
+        StudyFolder(tmp_path, [plot(41.0)], SMALL)
+
+
+def test_a_study_of_before_that_does_not_say_its_first_day_goes_on_and_says_it(tmp_path):
+    StudyFolder(tmp_path, [plot()], SMALL)
+    manifest = tmp_path / MANIFEST
+    said = json.loads(manifest.read_text(encoding="utf-8"))
+    before = {name: value for name, value in said.items() if name != "first_day"}
+    manifest.write_text(json.dumps(before), encoding="utf-8")
+    assert results.first_day(tmp_path) is None
+    with pytest.raises(SettingError, match=r"its plots, records or first day \(--date\) are"):
+        StudyFolder(tmp_path, [replace(plot(), day=DAY + 1)], SMALL)
+    StudyFolder(tmp_path, [plot()], SMALL)
+    assert json.loads(manifest.read_text(encoding="utf-8")) == said
+    assert results.first_day(tmp_path) == DAY.item()
+
+
+def test_seasons_of_a_sampler_whose_file_has_changed_are_not_mixed_with_those_of_before(tmp_path):
+    file, folder = tmp_path / "own.py", tmp_path / "study"
+    code = "from fieldmon.samplers.sweeps import Naive\nclass Mine(Naive):\n    pass\n"
+    file.write_text(code)
+    asked = replace(SMALL, samplers=(f"{file}:Mine", "naive"))
+    StudyFolder(folder, [plot()], asked)
+    file.write_text(f"{code}    more = 1\n")
+    says = r"another study.*: its seasons of Mine are of other code than the file's\. Choose"
+    with pytest.raises(SettingError, match=says):
+        StudyFolder(folder, [plot()], asked)
+    with pytest.raises(SettingError, match=r": its samplers are others\."):
+        StudyFolder(folder, [plot()], SMALL)
+    file.write_text(code)
+    StudyFolder(folder, [plot()], asked)
+
+
+@pytest.mark.parametrize("text", ["", "[1]", '{"first_day": 3}', '{"first_day": "today"}'])
+def test_a_manifest_that_was_cut_or_changed_is_a_sentence(tmp_path, text):
+    (tmp_path / MANIFEST).write_text(text)
+    with pytest.raises(FileProblem, match="must say what the study in its folder is"):
+        results.first_day(tmp_path)
 
 
 def test_a_file_is_no_folder(tmp_path):

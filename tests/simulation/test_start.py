@@ -44,7 +44,7 @@ def test_both_faces_of_a_plant_are_infested_together():
 
 @pytest.mark.parametrize("share", [0.0, 1.0, -0.1, float("nan")])
 def test_a_share_of_none_or_all_is_refused(share):
-    with pytest.raises(SettingError, match="between 0 and 1"):
+    with pytest.raises(SettingError, match="above 0 and below 1"):
         season_start(GRID, CHANCE, share, RandomStreams(1))
 
 

@@ -169,7 +169,7 @@ def ask_for_crs(xy: NDArray[np.float64], options: ReadOptions, why: str) -> Choi
     offered = candidates(centre, options.country, options.near)
     lines = [
         f"{c.code} ({c.name}) would put it at {c.lon:.4f}, {c.lat:.4f}"
-        + (f", {c.km_away:.1f} km from the place nearby" if np.isfinite(c.km_away) else "")
+        + (f", {c.km_away:.1f} km from the plot or place nearby" if np.isfinite(c.km_away) else "")
         for c in offered
     ]
     listed = "; ".join(lines) if lines else "none of the usual ones fits the coordinates"

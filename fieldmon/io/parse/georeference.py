@@ -284,14 +284,16 @@ def _check_near(
     if _nearest_km(lonlat[:, ::-1], options.near) < away / 10:
         raise ChoiceNeeded(
             worded(
-                "It lies {away:.0f} km from the place nearby. Exchange "
+                "It lies {away:.0f} km from the plot or place nearby. Exchange "
                 "longitude and latitude if they are in the wrong order.",
                 away=away,
             ),
             "swap_axes",
             ("yes",),
         )
-    said = worded("As {code} it lies {away:.0f} km from the place nearby.", code=code, away=away)
+    said = worded(
+        "As {code} it lies {away:.0f} km from the plot or place nearby.", code=code, away=away
+    )
     stay = worded("{code} keeps it there.", code=code)
     if (np.abs(xy) <= (180, 90)).all():  # degrees in any system
         raise ChoiceNeeded(
@@ -328,7 +330,7 @@ def _distance(lonlat: NDArray[np.float64], options: ReadOptions) -> list[ImportM
         return [
             doubtful(
                 worded(
-                    "It lies {away:.0f} km from the place nearby, but "
+                    "It lies {away:.0f} km from the plot or place nearby, but "
                     "{swapped:.0f} km from it with longitude and latitude "
                     "exchanged.",
                     away=away,
@@ -337,7 +339,7 @@ def _distance(lonlat: NDArray[np.float64], options: ReadOptions) -> list[ImportM
                 remedy=remedy,
             )
         ]
-    return [doubtful(worded("It lies {away:.0f} km from the place nearby.", away=away))]
+    return [doubtful(worded("It lies {away:.0f} km from the plot or place nearby.", away=away))]
 
 
 def _step(xy: NDArray[np.float64]) -> float:

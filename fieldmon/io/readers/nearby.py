@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pyproj
 import shapely
 
 from fieldmon.compute.units import distance_figure
@@ -15,6 +14,7 @@ from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import Imported, ImportMessage, Remedy, doubtful, dropped, seen
 from fieldmon.plot.grid import nearest_plants
+from fieldmon.plot.plants_outside import PlantsOutside, between_m, distance_m
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -26,11 +26,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
 
-_GEOD = pyproj.Geod(ellps="WGS84")
-_FAR_M, _DEGREE_M = 100_000.0, 111_000.0
+_DEGREE_M = 111_000.0
 _MOST_NAMED = 5
-# a plant so far outside a boundary may be one of the plot: a phone is off by as much
-_GPS_M = 5.0
 #: a tenth of a millimetre: one position, read twice
 _SAME_DEG = 1e-9
 
@@ -66,7 +63,7 @@ class RecordsNearPlot:
                     n=n,
                     all=n + len(self.inside),
                     plot=plot,
-                    away=_between(self.outside_m),
+                    away=between_m(self.outside_m),
                 )
             )
         ]
@@ -181,38 +178,16 @@ def on_other_plots(
 
 
 def plants_on(measured: Plants, field: Field, far: str | None = None) -> Imported[Plants]:
-    """Return which measured plants are those of a plot: not those outside by more than GPS errs.
-
-    All, where none is near it. ``far="keep"`` keeps all, ``far="drop"`` only those on the plot.
-    """
-    away = distance_m(measured.lonlat, field)
-    outside = away > 0 if far == "drop" else away > _GPS_M
-    if far == "keep" or outside.all():
-        return Imported(measured)
-    beside = (away > 0) & ~outside
+    """Return which measured plants are those of a plot, see `PlantsOutside`."""
+    split = PlantsOutside.of(measured.lonlat, field, far)
     messages = []
-    if outside.any():
-        said = worded(
-            "{n} of {all} {all:plant stands|plants stand} outside {plot} and {n:was|were} left "
-            "out: {away} away.",
-            n=int(outside.sum()),
-            all=len(measured),
-            plot=field.name,
-            away=_between(away[outside]),
-        )
+    if said := split.of_left_out():
         messages.append(dropped(said, remedy=Remedy("far", "keep", worded("Keep them"))))
-    if beside.any():
-        said = worded(
-            "{n} {n:plant stands|plants stand} outside {plot}, up to {away} away, and {n:is|are} "
-            "taken to be of it: a boundary may be drawn tight.",
-            n=int(beside.sum()),
-            plot=field.name,
-            away=distance_figure(float(away[beside].max())),
-        )
+    if beside := split.of_beside():
         # beside plants of other plots they may be of those, too
-        say = doubtful if outside.any() else seen
-        messages.append(say(said, remedy=Remedy("far", "drop", worded("Leave them out"))))
-    return Imported(measured.take(~outside), tuple(messages))
+        say = doubtful if said else seen
+        messages.append(say(beside, remedy=Remedy("far", "drop", worded("Leave them out"))))
+    return Imported(measured.take(~split.left_out), tuple(messages))
 
 
 def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage]:
@@ -233,7 +208,7 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage
                     "{n:It counts|They count} for plants nearby, if there are any, but "
                     "{n:belongs|belong} to no single one.",
                     n=int(beside.sum()),
-                    away=_between(away[beside]),
+                    away=between_m(away[beside]),
                 )
             )
         )
@@ -252,22 +227,6 @@ def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage
             )
         )
     return messages
-
-
-def distance_m(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.float64]:
-    """Return how far each position is from a plot's area ``(n,)``; 0 on it."""
-    west, south, east, north = field.boundary.bounds
-    lon, lat = (west + east) / 2, (south + north) / 2
-    possible = np.clip(lonlat[:, 1], -90, 90)
-    away = np.asarray(
-        _GEOD.inv(np.full(len(lonlat), lon), np.full(len(lonlat), lat), lonlat[:, 0], possible)[2]
-    )
-    close = away < _FAR_M
-    frame = field.frame()
-    area = frame.geometry_m(field.boundary)
-    shapely.prepare(area)
-    away[close] = shapely.distance(area, shapely.points(frame.xy_m(lonlat[close])))
-    return away
 
 
 def doubt_of_order(
@@ -294,11 +253,3 @@ def doubt_of_order(
             remedy=Remedy("swap_axes", "yes", worded("Exchange longitude and latitude")),
         )
     ]
-
-
-def _between(away_m: NDArray[np.float64]) -> str:
-    """Return the least and the greatest of distances, once where they read alike."""
-    nearest, farthest = (distance_figure(float(end)) for end in (away_m.min(), away_m.max()))
-    if str(nearest) == str(farthest):
-        return nearest
-    return worded("{nearest} to {farthest}", nearest=nearest, farthest=farthest)

@@ -349,14 +349,19 @@ def _chosen(names: list[str], feature: str | int | None) -> NDArray[np.int64]:
 
 def _which_plot(names: list[str], wanted: str, alike: list[str] | None = None) -> ChoiceNeeded:
     offered = alike or names
+    said = {"n": len(names), "wanted": wanted, "names": ", ".join(offered[:20])}
     return ChoiceNeeded(
         worded(
-            "There {n:is|are} {n} {n:plot|plots}, but {value} called {wanted!r}. Choose one "
-            "of: {names}; or its number, as fieldmon plots lists it.",
-            n=len(names),
-            value="several are" if alike else "none is",
-            wanted=wanted,
-            names=", ".join(offered[:20]),
+            "There {n:is|are} {n} {n:plot|plots}, but none is called {wanted!r}: several have it "
+            "in their names. Choose one of: {names}; or its number from 1, as fieldmon plots lists "
+            "it.",
+            **said,
+        )
+        if alike
+        else worded(
+            "There {n:is|are} {n} {n:plot|plots}, but none is called {wanted!r}. Choose one of: "
+            "{names}; or its number from 1, as fieldmon plots lists it.",
+            **said,
         ),
         "feature",
         tuple(offered),

@@ -47,6 +47,10 @@ _FAR_M, _RARE = 1000.0, 10
 # no plot is so wide
 _ELSEWHERE_DEG = 1.0
 _NAMED = 5
+# so many positions may be corners of a plot that holds such a share of the others, and so many
+# marks tell them from plants
+_LEAST_CORNERS, _MOST_CORNERS, _MOST_MARKS = 3, 20, 20
+_HELD = 0.95
 
 
 class DrawnBlocks(NamedTuple):
@@ -69,6 +73,8 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         named = options.column(role) or find(role, found.layer.columns, frozenset(taken))
         if named is None and role == "plant":
             named = find("name", found.layer.columns, frozenset(taken))
+        if role == "plant" and options.column(role) is None and _is_constant(found.layer, named):
+            named = None  # it tells no plant from another
         if named is None:
             labels.append(np.full(len(found.layer), "", dtype=np.str_))
             continue
@@ -76,6 +82,7 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         columns[role] = named
         messages.append(seen(worded("Column {named!r} names the {role}s.", named=named, role=role)))
         labels.append(np.array([text(v) for v in found.layer.column(named)], dtype=np.str_))
+    messages += _corners_among(found.layer, found.lonlat)
     gone = _elsewhere(found.lonlat)
     if gone.any():
         said = worded(
@@ -107,6 +114,55 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         if role in columns and (names == "").any():
             messages.append(_of_blanks(names, columns[role]))
     return Imported(plants, (*layer.messages, *messages))
+
+
+def _is_constant(layer: Layer, column: str | None) -> bool:
+    """Return whether a column says the same of all, of several."""
+    return column is not None and len(layer) > 1 and len({*map(text, layer.column(column))}) == 1
+
+
+def _corners_among(layer: Layer, lonlat: NDArray[np.float64]) -> list[ImportMessage]:
+    """Return what to say where a few positions, marked in a column, go round the others."""
+    for column, values in layer.columns.items():
+        if not _has_few(values):
+            continue
+        marks = np.array([text(value) for value in values], np.str_)
+        known, counts = np.unique(marks, return_counts=True)
+        by_number = sorted(zip((-counts).tolist(), known.tolist(), strict=True))
+        for less, mark in by_number:
+            corners = marks == mark
+            others = [f"{column}={other}" for _, other in by_number if other not in {mark, ""}]
+            if others and _go_round(lonlat[corners], lonlat[~corners]):
+                said = worded(
+                    "{n} of {all} plants, with {mark}, go round the others, as the corners of a "
+                    "plot do. Say which are the plants if they are none.",
+                    n=-less,
+                    all=len(marks),
+                    mark=f"{column}={mark}",
+                )
+                remedy = Remedy(
+                    "where", others[0], worded("Take the others alone"), tuple(others[1:])
+                )
+                return [doubtful(said, remedy=remedy)]
+    return []
+
+
+def _has_few(values: NDArray[np.object_]) -> bool:
+    """Return whether a column holds several values, but few; looks no farther than it must."""
+    known = set()
+    for value in values.tolist():
+        known.add(text(value))
+        if len(known) > _MOST_MARKS:
+            return False
+    return len(known) > 1
+
+
+def _go_round(corners: NDArray[np.float64], others: NDArray[np.float64]) -> bool:
+    """Return whether positions are the corners, in their order, of an area that holds others."""
+    if not _LEAST_CORNERS <= len(corners) <= _MOST_CORNERS or len(corners) >= len(others):
+        return False
+    area = shapely.Polygon(corners)
+    return area.is_valid and float(shapely.contains_xy(area, others).mean()) >= _HELD
 
 
 def _of_blanks(names: NDArray[np.str_], column: str) -> ImportMessage:

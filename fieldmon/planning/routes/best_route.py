@@ -438,10 +438,15 @@ def _known(other: ArrayLike, n: int) -> Int:
 
 def _checked(reward: ArrayLike, n: int, seconds: float) -> Float:
     values = array_of(np.float64, "Rewards", reward)
-    if values.shape != (n,) or not (np.isfinite(values).all() and (values >= 0).all()):
+    if values.shape != (n,):
         raise SettingError(
-            f"Rewards must be {n} numbers of 0 or more, one a plant, but they are "
-            f"{values.size} with a least value of {values.min() if values.size else 'none'}."
+            f"Rewards must be {n} numbers in a row, one a plant, but they have the shape "
+            f"{values.shape}."
+        )
+    if not (np.isfinite(values).all() and (values >= 0).all()):
+        raise SettingError(
+            f"Rewards must be numbers of 0 or more, but one is "
+            f"{values[~(values >= 0) | np.isinf(values)][0]}."
         )
     if not 0 < seconds < np.inf:
         raise SettingError(

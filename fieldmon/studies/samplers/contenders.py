@@ -7,28 +7,33 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.digest import digest
+from fieldmon.errors import SettingError
 from fieldmon.infestation.independent import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.plot.robot import Robot
+from fieldmon.samplers import kind_of, sampler_maker
 from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import Sampler
 from fieldmon.samplers.dynamic import Dynamic
+from fieldmon.samplers.own import is_own, labels_of, own_text
 from fieldmon.samplers.sweeps import Bouncy, Naive
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable, Sequence
 
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.samplers.base import Scene, Stops, WouldFind
+    from fieldmon.samplers.base import InspectionTimes, Scene, Stops, WouldFind
 
 ADAPTIVE, WORDED, TUNED = "adaptive", "dynamic, as worded", "dynamic, tuned"
 PAIRS, NAIVE = "adaptive, pairs only", "naive"
 NO_TRAVEL, CLAIRVOYANT = "no travel", "clairvoyant"
 SOME = 10
+_DIGITS = 6
 #: what no sampler can reach, and samplers that take part in every tenth season only
 BOUNDS = (
     NO_TRAVEL, CLAIRVOYANT, "dynamic, independent plants", "adaptive, independent plants",
@@ -94,6 +99,56 @@ OF_PESTS = tuple(
 NAMES = (*(contender.name for contender in CONTENDERS), CLAIRVOYANT)
 
 
+@dataclass(frozen=True)
+class Added:
+    """A sampler that somebody adds to those compared, on the map that Adaptive is given.
+
+    Parameters
+    ----------
+    label
+        What sentences and reports call it.
+    called
+        What the table calls it: of an own one with digits that tell its code from any other.
+    about
+        What it is, in a sentence.
+    make
+        Makes one: what an own one keeps in mind is of one season.
+    """
+
+    label: str
+    called: str
+    about: str
+    make: Callable[[], Sampler]
+
+    def contender(self) -> Contender:
+        """Return it as it takes part in one season."""
+        return Contender(self.called, self.make(), TracedPairs.of)
+
+
+def added(names: Iterable[str], to: Sequence[str] = NAMES) -> tuple[Added, ...]:
+    """Return samplers to be added, by name or as ``my_sampler.py:Mine``.
+
+    Those that take part anyway, `to` which they are added, are left out. Raise `SettingError` if
+    there is none of that name, or two have one name.
+    """
+    told = [name for name in dict.fromkeys(names) if is_own(name) or name not in to]
+    made = []
+    for name, label in zip(told, labels_of(told), strict=True):
+        if label in to:
+            raise SettingError(
+                f"A sampler of your own must have another name than those compared, but {name} is "
+                f"called {label}, too. Give the class another name."
+            )
+        make, called, about = sampler_maker(name), label, "added; on the map of adaptive"
+        if is_own(name):
+            called = f"{label}, {digest(own_text(name), length=_DIGITS)}"
+            about = f"of your own, {about}."
+        else:
+            about = f"{kind_of(name).does}; {about}."
+        made.append(Added(label, called, about, make))
+    return tuple(made)
+
+
 class Oracle(Sampler):
     """The clairvoyant: drives as Adaptive does, on the truth instead of a chance map.
 
@@ -125,6 +180,10 @@ class Misinformed(Sampler):
 
     def __init__(self, sampler: Sampler) -> None:
         self.sampler = sampler
+
+    def inspection_times(self, robot: Robot) -> InspectionTimes:
+        """Return the times among which it chooses, and what they really detect."""
+        return self.sampler.inspection_times(robot)
 
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops of the rest of the day."""

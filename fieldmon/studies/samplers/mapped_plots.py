@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Sampler
     from fieldmon.studies.plant_maps import PlantMap
+    from fieldmon.studies.samplers.contenders import Added
+
+    Believe = Callable[[PlantGrid, NDArray[np.float64]], Belief]
 
 SHARES = (0.05, 0.10, 0.20, 0.40)
 # what is believed before the first inspection, of every map (our choice; nothing is known of it)
@@ -38,6 +41,8 @@ _FLAT = 0.1
 # a day lasts for a twentieth of the plants, with some time to drive
 _DAY, _DRIVING = 0.05, 1.3
 _HOUR_S = 3600.0
+#: who takes part; the last is what random inspections are expected to find
+WHO = ("adaptive", "dynamic", "tuned", "naive", "random")
 # less than a twentieth more or less is even
 _EVEN = (0.95, 1.05)
 # of fewer plants a twentieth is none
@@ -83,14 +88,16 @@ def _name(of: PlantMap, date: str) -> str:
     return " ".join(word for word in (file.split(".", maxsplit=1)[0], part, date) if word)
 
 
-def found_at(plot: DatedMap, sampler: Sampler) -> tuple[list[int], list[float]]:
+def found_at(
+    plot: DatedMap, sampler: Sampler, believe: Believe = PairApproximation.of
+) -> tuple[list[int], list[float]]:
     """Return infested plants found, and hours worked, when each of `SHARES` was inspected.
 
     No plant is inspected twice, every infested one inspected is found, and none infects another.
     """
     n = len(plot.infested)
     robot = Robot(detection=1.0, returns=False).with_times("thesis")
-    belief = _believed(sampler)(plot.aisles.grid, np.full(n, _FLAT))
+    belief = believe(plot.aisles.grid, np.full(n, _FLAT))
     seen = np.zeros(n, np.bool_)
     order, done_s = np.empty(0, np.int32), np.empty(0)
     while len(order) < SHARES[-1] * n:
@@ -116,11 +123,6 @@ def found_at(plot: DatedMap, sampler: Sampler) -> tuple[list[int], list[float]]:
     finds = np.cumsum(plot.infested[order])
     last = [min(round(share * n), len(order)) - 1 for share in SHARES]
     return [int(finds[k]) for k in last], [float(done_s[k]) / _HOUR_S for k in last]
-
-
-def _believed(sampler: Sampler) -> Callable[[PlantGrid, NDArray[np.float64]], Belief]:
-    """Return the belief that suits a sampler best, as in `contenders`."""
-    return TracedPairs.of if isinstance(sampler, Adaptive) else PairApproximation.of
 
 
 def correlation(plot: DatedMap) -> float:
@@ -151,20 +153,21 @@ class MapRow(NamedTuple):
     per_hour: list[float]
 
 
-def table(plots: list[DatedMap]) -> list[MapRow]:
-    """Return what each sampler finds on each map."""
-    samplers: dict[str, Sampler] = {
-        "adaptive": Adaptive(),
-        "dynamic": Dynamic(),
-        "tuned": Dynamic(suspicious=0.06),
-        "naive": Naive(),
+def table(plots: list[DatedMap], added: Sequence[Added] = ()) -> list[MapRow]:
+    """Return what each sampler finds on each map, with the belief that suits it best."""
+    samplers: dict[str, tuple[Callable[[], Sampler], Believe]] = {
+        "adaptive": (Adaptive, TracedPairs.of),
+        "dynamic": (Dynamic, PairApproximation.of),
+        "tuned": (lambda: Dynamic(suspicious=0.06), PairApproximation.of),
+        "naive": (Naive, PairApproximation.of),
+        **{one.label: (one.make, TracedPairs.of) for one in added},
     }
     rows = []
     for each in plots:
         alike = correlation(each)
         inspected = [round(share * len(each.infested)) for share in SHARES]
-        for who, sampler in samplers.items():
-            made = [found_at(turned, sampler) for turned in _turned(each)]
+        for who, (make, believe) in samplers.items():
+            made = [found_at(turned, make(), believe) for turned in _turned(each)]
             finds, hours = (np.mean(values, axis=0) for values in zip(*made, strict=True))
             per_inspection = [float(f / k) for f, k in zip(finds, inspected, strict=True)]
             rows.append(MapRow(each.name, alike, who, per_inspection, (finds / hours).tolist()))
@@ -176,8 +179,10 @@ def table(plots: list[DatedMap]) -> list[MapRow]:
 def sentences(rows: Sequence[MapRow]) -> list[str]:
     """Return what Adaptive finds per hour in proportion to each other, whichever way it falls."""
     by = {(row.name, row.who): row.per_hour[-1] for row in rows if row.per_hour}
+    others = {"naive": "a sweep (naive)", "dynamic": "dynamic", "tuned": "tuned"}
+    others |= {row.who: row.who for row in rows if row.who not in WHO}
     said = []
-    for who, called in (("naive", "a sweep (naive)"), ("dynamic", "dynamic"), ("tuned", "tuned")):
+    for who, called in others.items():
         ratios = {
             row.name: by[row.name, "adaptive"] / by[row.name, who]
             for row in rows

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.wording import estimate
 from fieldmon.io.html import page
 from fieldmon.studies.charts import Range, range_chart
-from fieldmon.studies.samplers.contenders import ABOUT, ADAPTIVE, NAMES
-from fieldmon.studies.samplers.summary import OTHERS, means, ratios, sentences
+from fieldmon.studies.samplers.contenders import ABOUT, ADAPTIVE
+from fieldmon.studies.samplers.summary import means, names_in, others_in, ratios, sentences
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from markupsafe import Markup
 
@@ -27,17 +27,18 @@ _WORDS = {
 }
 
 
-def report_html(outcomes: Sequence[SeasonOutcome]) -> str:
-    """Return the whole report as one HTML document."""
-    took_part = {outcome.contender for outcome in outcomes}
+def report_html(outcomes: Sequence[SeasonOutcome], about: Mapping[str, str] | None = None) -> str:
+    """Return the whole report as one HTML document; `about` says what was added."""
+    took_part, known = {outcome.contender for outcome in outcomes}, {**ABOUT, **(about or {})}
+    names = tuple(name for name in names_in(outcomes) if name in took_part)
     return page(
         "fieldmon/studies/samplers/report.html.j2",
         seeds=len({outcome.seed for outcome in outcomes}),
         sentences=sentences(outcomes),
-        charts=[_chart(outcomes, other) for other in OTHERS if other in took_part],
-        about={name: ABOUT[name] for name in NAMES if name in took_part},
+        charts=[_chart(outcomes, other) for other in others_in(outcomes) if other in took_part],
+        about={name: known[name] for name in names},
         estimate=estimate,
-        names=tuple(name for name in NAMES if name in took_part),
+        names=names,
         tables=[(_WORDS[measure], by_name) for measure, by_name in means(outcomes).items()],
     )
 

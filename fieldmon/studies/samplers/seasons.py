@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fieldmon.compute.random_streams import RandomStreams
@@ -12,6 +13,7 @@ from fieldmon.simulation.season import simulated_days
 from fieldmon.studies.samplers.contenders import (
     CLAIRVOYANT,
     CONTENDERS,
+    NAMES,
     OF_PESTS,
     SOME,
     Misinformed,
@@ -25,8 +27,11 @@ if TYPE_CHECKING:
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.season import SimulatedDay
     from fieldmon.simulation.start import Start
-    from fieldmon.studies.samplers.contenders import Contender
+    from fieldmon.studies.samplers.contenders import Added, Contender
     from fieldmon.studies.samplers.scenarios import Scenario
+
+    Setting = tuple[Scenario, Added | None]
+    Key = tuple[str, int] | tuple[str, int, str]
 
 _FAST = 1e6
 MEASURES = ("infested_plant_days", "d50", "d80", "inspected", "found", "visited_pct")
@@ -51,19 +56,38 @@ class SeasonOutcome:
     kinds: ClassVar[tuple[type[Any], ...]] = (str, int, str, *(float,) * len(MEASURES))
 
     @property
-    def key(self) -> tuple[str, int]:
-        """Return the chunk that it is of: scenario and seed."""
-        return self.scenario, self.seed
+    def key(self) -> Key:
+        """Return the chunk that it is of: scenario and seed, and the contender if it was added."""
+        usual = self.scenario, self.seed
+        return usual if self.contender in NAMES else (*usual, self.contender)
 
 
 def study_of(
-    scenarios: Sequence[Scenario], seeds: range
-) -> Experiment[Scenario, list[SeasonOutcome]]:
+    scenarios: Sequence[Scenario], seeds: range, added: Sequence[Added] = ()
+) -> Experiment[Setting, list[SeasonOutcome]]:
     """Return the study of some scenarios: all contenders meet a scenario and seed in one chunk.
 
-    A chunk's key is the scenario's name and the seed.
+    Each that is added has chunks of its own, before them: what it answers wrongly is said at once.
+    A chunk's key is the scenario's name and the seed, and what was added.
     """
-    return paired(scenarios, seeds, outcomes, lambda one, seeds: (one.name, seeds.start))
+    settings: list[Setting] = [*product(scenarios, added), *((one, None) for one in scenarios)]
+
+    def key(setting: Setting, seeds: range) -> Key:
+        scenario, one = setting
+        usual = scenario.name, seeds.start
+        return usual if one is None else (*usual, one.called)
+
+    return paired(settings, seeds, _of_setting, key)
+
+
+def _of_setting(setting: Setting, seed: int) -> list[SeasonOutcome]:
+    """Return what a season comes to for all contenders, or for one that is added."""
+    scenario, added = setting
+    if added is None:
+        return outcomes(scenario, seed)
+    streams, contender = RandomStreams(seed), added.contender()
+    days = season(scenario, contender, scenario.draw_start(streams), streams)
+    return [_outcome(scenario, seed, contender.name, season_metrics(days))]
 
 
 def outcomes(scenario: Scenario, seed: int) -> list[SeasonOutcome]:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.actions import drawing, turning_rows
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import plot_around
 from fieldmon.plot.projection import Frame
 from tests.app.chosen import a_plot, chosen
 from tests.app.driving import go, layer, map_of, metric, press, row_box, upload
@@ -65,7 +65,7 @@ def test_lines_buttons_legend_and_numbers_tell_ways_apart_alike(square):
 
 @pytest.mark.usefixtures("session")
 def test_a_triangular_planting_has_three_ways_to_choose_from():
-    choices = chosen(Plot.around("trees", planted(triangular=True)))
+    choices = chosen(plot_around("trees", planted(triangular=True)))
     found = turning_rows.directions(choices)
     assert sorted(round(one.bearing_deg) for one in found) == [20, 80, 140]
     made, _ = drawing.content(choices, choices.records)
@@ -77,5 +77,5 @@ def test_a_triangular_planting_has_three_ways_to_choose_from():
 def test_where_there_is_one_way_only_or_plants_were_laid_nothing_is_asked():
     k, j = np.divmod(np.arange(200), 20)
     rows = FRAME.lonlat(np.stack([1.0 * j, 3.0 * k], axis=1))
-    for plot in (a_plot(), Plot.around("vines", rows)):
+    for plot in (a_plot(), plot_around("vines", rows)):
         assert turning_rows.directions(chosen(plot)) == ()

@@ -47,6 +47,14 @@ def test_rain_wind_latency_and_entry_are_told(said):
     assert "adults on a leaf" in shown
 
 
+def test_a_rate_that_the_file_does_not_say_is_called_assumed(said):
+    pest_figures.show(Pest("own"))
+    assert said == [
+        "- It goes to each plant beside it with a chance of 0.02 a day.",
+        f"- {texts.PEST_RATE_ASSUMED}",
+    ]
+
+
 @pytest.mark.parametrize("words", NAMES)
 def test_a_pest_of_ones_own_is_called_as_its_file_says_and_leads_nowhere(said, words):
     pest = Pest(

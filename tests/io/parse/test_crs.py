@@ -95,7 +95,7 @@ def test_the_question_says_where_the_data_would_lie():
     question = ask_for_crs(np.array([ITM]), ReadOptions(near=(35.1, 30.3)), "It does not say.")
     assert (question.option, question.choices[0]) == ("crs", "EPSG:2039")
     assert "It does not say. The coordinates are around 207000, 470000." in str(question)
-    assert "km from the place nearby" in str(question)
+    assert "km from the plot or place nearby" in str(question)
 
 
 def test_what_fits_no_usual_system_is_said():

@@ -105,7 +105,7 @@ def test_what_lies_far_from_the_place_named_is_doubtful_and_a_swap_is_offered():
     assert (said.severity, said.remedy.option) == (Severity.DOUBTFUL, "swap_axes")
     (far,) = place(PARAN + np.array([2.0, 0.0]), "EPSG:4326", near).messages
     assert far.remedy is None
-    assert "km from the place nearby" in far.sentence
+    assert "km from the plot or place nearby" in far.sentence
 
 
 @pytest.mark.parametrize(("decimals", "step_m"), [(3, 111.32), (5, 1.1132), (0, 111_320.0)])

@@ -15,7 +15,7 @@ from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.layout import lay
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import plot_around
 from tests.io.readers.test_inspections import GRID, read
 from tests.io.tables_of_cells import sentences
 
@@ -143,7 +143,7 @@ def test_rows_and_plants_are_those_of_the_file_of_plants():
     xy_m = np.stack([2.0 * j, 3.0 * k], axis=1)
     lonlat = GRID.frame.lonlat(xy_m)
     names = PlantNames((6 - k).astype(np.str_), None, (20 - j).astype(np.str_))
-    grid = Plot.around("own", lonlat, names=names).grid
+    grid = plot_around("own", lonlat, names=names).grid
     text = "".join(f"{6 - k[i]},{20 - j[i]},x\n" for i in (0, 15, 59))
     imported = read(f"row,plant,found\n{text}", grid=grid)
     assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 15, 59]], abs=1e-9)
@@ -154,7 +154,7 @@ def test_rows_of_blocks_are_those_of_the_file_of_plants():
     block, row = np.where(k < 3, "1", "2"), np.where(k < 3, 3 - k, k - 2)
     lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
     names = PlantNames(row.astype(np.str_), block, (10 - j).astype(np.str_))
-    grid = Plot.around("own", lonlat, names=names).grid
+    grid = plot_around("own", lonlat, names=names).grid
     text = "".join(f"{block[i]},{row[i]},{10 - j[i]},x\n" for i in (0, 25, 30, 59))
     imported = read(f"block,row,plant,found\n{text}", grid=grid)
     assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25, 30, 59]], abs=1e-9)
@@ -166,7 +166,7 @@ def own_names(row, plant):
     lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
     names = (np.array([name(*at) for at in zip(k, j, strict=True)]) for name in (row, plant))
     rows, plants = names
-    return Plot.around("own", lonlat, names=PlantNames(rows, None, plants)).grid, lonlat
+    return plot_around("own", lonlat, names=PlantNames(rows, None, plants)).grid, lonlat
 
 
 def test_rows_and_plants_may_be_named_as_their_file_has_them():
@@ -241,7 +241,7 @@ def test_rows_of_blocks_may_be_named_as_their_file_has_them():
     block, row = np.where(k < 3, "1", "2"), np.where(k < 3, 3 - k, k - 2)
     lonlat = GRID.frame.lonlat(np.stack([2.0 * j, 3.0 * k], axis=1))
     rows = np.array([f"R{one}" for one in row])
-    grid = Plot.around("own", lonlat, names=PlantNames(rows, block, (j + 1).astype(np.str_))).grid
+    grid = plot_around("own", lonlat, names=PlantNames(rows, block, (j + 1).astype(np.str_))).grid
     text = "".join(f"{block[i]},R{row[i]},{j[i] + 1},x\n" for i in (0, 25, 30, 59))
     imported = read(f"block,row,plant,found\n{text}", grid=grid)
     assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25, 30, 59]], abs=1e-9)
@@ -256,12 +256,12 @@ def test_blocks_are_those_of_the_file_of_plants():
     row, plant = np.where(k < 3, 3 - k, k - 2).astype(np.str_), (j + 1).astype(np.str_)
     for names in (("west", "east"), ("3", "4"), ("2", "10")):
         block = np.where(k < 3, *names)
-        grid = Plot.around("own", lonlat, names=PlantNames(row, block, plant)).grid
+        grid = plot_around("own", lonlat, names=PlantNames(row, block, plant)).grid
         text = "".join(f"{block[i]},{row[i]},{plant[i]},x\n" for i in (0, 25, 30, 59))
         imported = read(f"block,row,plant,found\n{text}", grid=grid)
         assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[0, 25, 30, 59]], abs=1e-9)
     block = np.where(k < 3, "2", "3")
-    grid = Plot.around("own", lonlat, names=PlantNames(row, block, plant)).grid
+    grid = plot_around("own", lonlat, names=PlantNames(row, block, plant)).grid
     imported = read("block,row,plant,found\n3,1,1,x\n2,1,1,x\n", grid=grid)
     assert grid.lonlat(imported.value.plant) == pytest.approx(lonlat[[30]], abs=1e-9)
     assert "row 1 of block 2" in imported.of(Severity.DROPPED)[0].sentence

@@ -26,7 +26,7 @@ from fieldmon.plot.grid import plant_at
 from fieldmon.plot.layout import lay, rectangle
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import plot_around
 
 NORTH, SOUTH, EAST = (
     Field(name, MultiPolygon([shapely.box(5.0 + east, 45.0, 5.001 + east, 45.001)]))
@@ -189,7 +189,7 @@ def test_the_numbers_of_measured_plants_are_those_of_the_plot():
     k, j = np.divmod(np.arange(60), 10)
     lonlat = np.stack([5 + 2e-5 * j, 45 + 3e-5 * k], axis=1)
     rows, names = np.array(list("FEDCBA"))[k], np.array([f"v{10 - one}" for one in j])
-    grid = Plot.around("own", lonlat, names=PlantNames(rows, None, names)).grid
+    grid = plot_around("own", lonlat, names=PlantNames(rows, None, names)).grid
     row, number = labelled(grid, Plants(lonlat, rows, names)).numbers
     assert number.tolist() == [f"{10 - one}" for one in j]
     there = [plant_at(grid, int(r), int(n)) for r, n in zip(row, number, strict=True)]
@@ -200,7 +200,7 @@ def test_blocks_may_be_named_as_their_file_has_them():
     k, j = np.divmod(np.arange(60), 10)
     lonlat = np.stack([5 + 2e-5 * j, 45 + 3e-5 * k], axis=1)
     row, block = np.where(k < 3, k + 1, k - 2).astype(np.str_), np.where(k < 3, "west", "east")
-    known = labelled(Plot.around("own", lonlat, names=PlantNames(row, block)).grid)
+    known = labelled(plot_around("own", lonlat, names=PlantNames(row, block)).grid)
     named = by_plant(cells("1", "2"), cells("1", "1"), known, cells("west", "east"))
     assert named.lonlat[:, 1] == pytest.approx(lonlat[[0, 40], 1], abs=1e-9)
 

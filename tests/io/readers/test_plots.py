@@ -253,6 +253,9 @@ def test_the_number_of_a_plot_is_its_place_among_those_that_can_be_used():
         assert [f.name for f in read.value] == [name]
     with pytest.raises(ChoiceNeeded, match="There are 2 plots, but none is called '3'"):
         plots_of(file, PlotOptions(feature="3"))
+    tens = estate(square(0), square(1), name=["(10)", "(20)"])
+    with pytest.raises(ChoiceNeeded, match=r"none is called '0': several have it .* from 1"):
+        plots_of(tens, PlotOptions(feature="0"))
 
 
 def test_plots_are_named_by_the_column_that_says_anything():

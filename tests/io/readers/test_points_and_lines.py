@@ -90,6 +90,32 @@ def test_plants_can_be_named_by_hand():
     assert (plants.row[0], plants.plant[0]) == ("3", "7")
 
 
+def test_a_column_that_is_the_same_for_all_names_no_plant_unless_it_is_named_by_hand():
+    shapes = [Point(5.0, 45.0), Point(5.00001, 45.0)]
+    layer = layer_of(shapes, field=["11", "11"])
+    imported = plants_of(layer, ANY)
+    assert imported.value.plant.tolist() == ["", ""]
+    assert "names the plants" not in sentences(imported)
+    assert plants_of(layer, ANY.naming(plant="field")).value.plant.tolist() == ["11", "11"]
+    assert plants_of(layer_of(shapes[:1], field=["11"]), ANY).value.plant.tolist() == ["11"]
+
+
+CORNERS = [Point(5.0, 45.0), Point(5.001, 45.0), Point(5.001, 45.001), Point(5.0, 45.001)]
+WITHIN = [Point(5.0001 + 0.0001 * (i % 5), 45.0001 + 0.0001 * (i // 5)) for i in range(15)]
+
+
+def test_corners_of_a_plot_among_its_plants_are_doubted_and_the_answer_is_named():
+    layer = layer_of([*CORNERS, *WITHIN], marker=["polygon"] * 4 + ["planta"] * 15)
+    (said,) = (one for one in plants_of(layer, ANY).messages if one.remedy is not None)
+    assert said.severity == Severity.DOUBTFUL
+    assert "4 of 19 plants, with marker=polygon, go round the others" in said.sentence
+    assert said.remedy.setting == "where=marker=planta"
+    assert len(plants_of(layer.where(said.remedy.value), ANY).value) == 15
+    # among the others they are plants of another kind
+    kinds = layer_of([*WITHIN, *CORNERS], kind=[*"bbcc", *"a" * 15])
+    assert "go round" not in sentences(plants_of(kinds, ANY))
+
+
 def test_lines_come_in_whole_and_what_leads_nowhere_is_left_out_and_said():
     whole, nowhere = LineString([(5, 45), (5.1, 45)]), LineString([(5, 45), (5, 45)])
     several = MultiLineString([[(5, 45), (5, 45.1)], [(6, 45), (6, 45.1)]])

@@ -156,10 +156,17 @@ def test_it_is_never_below_a_route_it_was_told_of():
 
 
 @pytest.mark.parametrize(
-    ("reward", "seconds"), [(np.ones(19), 60.0), (-np.ones(20), 60.0), (np.ones(20), 0.0)]
+    ("reward", "seconds", "said"),
+    [
+        (np.ones(19), 60.0, r"20 numbers in a row, one a plant, but they have the shape \(19,\)"),
+        (np.ones((20, 1)), 60.0, r"they have the shape \(20, 1\)"),
+        (-np.ones(20), 60.0, "0 or more, but one is -1"),
+        (np.r_[np.ones(19), np.inf], 60.0, "0 or more, but one is inf"),
+        (np.ones(20), 0.0, "must be above 0 s"),
+    ],
 )
-def test_what_makes_no_sense_is_refused(reward, seconds):
-    with pytest.raises(SettingError, match="must be"):
+def test_what_makes_no_sense_is_refused(reward, seconds, said):
+    with pytest.raises(SettingError, match=said):
         best(Aisles.of(rectangle(4, 5)), reward, Robot(), seconds)
 
 

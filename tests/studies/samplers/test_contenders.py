@@ -3,10 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
+from fieldmon.errors import SettingError
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
+from fieldmon.samplers import sampler
 from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.samplers.sweeps import Naive
@@ -16,6 +19,7 @@ from fieldmon.studies.samplers.contenders import (
     NAMES,
     Misinformed,
     Oracle,
+    added,
 )
 
 AISLES = Aisles.of(rectangle(12, 12))
@@ -34,6 +38,22 @@ def test_names_are_unique_and_end_with_the_clairvoyant():
     assert NAMES[-1] == CLAIRVOYANT
 
 
+def test_a_sampler_of_ones_own_is_added_under_a_name_that_is_free(tmp_path):
+    file = tmp_path / "own.py"
+    file.write_text("from fieldmon.samplers.sweeps import Naive\nnaive = Mine = Naive\n")
+    own = f"{file}:Mine"
+    assert [one.label for one in added(["naive", "snake", "snake"])] == ["snake"]
+    (mine,) = added([own])
+    assert mine.label == "Mine"
+    assert mine.make() is not mine.make()
+    file.write_text(f"{file.read_text()}# changed\n")
+    assert added([own])[0].called != mine.called
+    with pytest.raises(SettingError, match=r"than those compared, but .*:naive is called naive"):
+        added([f"{file}:naive"])
+    with pytest.raises(SettingError, match="must have different names, but they are Mine, Mine"):
+        added([own, f"{tmp_path / 'other.py'}:Mine"])
+
+
 def test_the_oracle_reaches_all_infested_plants_in_a_day_that_is_far_too_short_for_all():
     truth = np.zeros(N, np.bool_)
     truth[[17, 60, 61, 140]] = True
@@ -50,6 +70,12 @@ def test_the_oracle_hears_of_a_new_morning():
     stops = oracle.walk(scene(Robot(hours=0.2)), oracle.truth)
     assert len(stops.plant) < N / 10
     assert 100 in stops.plant
+
+
+def test_the_misinformed_choose_among_times_as_who_is_not():
+    robot, own = Robot(hours=1.0), sampler("adaptive-looks")
+    times = Misinformed(own).inspection_times(robot)
+    assert len(times.stop_s) == len(own.inspection_times(robot).stop_s) > 1
 
 
 def test_the_misinformed_decide_as_if_the_robot_saw_as_the_thesiss_does():

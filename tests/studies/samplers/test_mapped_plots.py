@@ -10,9 +10,11 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers.sweeps import Naive
+from fieldmon.studies.samplers.contenders import added
 from fieldmon.studies.samplers.mapped_plots import (
     FILES,
     SHARES,
+    WHO,
     DatedMap,
     MapRow,
     correlation,
@@ -40,8 +42,15 @@ def test_naive_finds_what_stands_in_its_first_rows():
 
 def test_where_all_are_infested_every_inspection_finds_one():
     rows = table([mapped(*range(200))])
-    assert [row.who for row in rows] == ["adaptive", "dynamic", "tuned", "naive", "random"]
+    assert [row.who for row in rows] == list(WHO)
     assert all(row.per_inspection == [1.0] * len(SHARES) for row in rows)
+
+
+def test_a_sampler_that_is_added_is_in_table_and_sentences():
+    rows = table([mapped(0, 5, 19, 39, 100)], added(["snake"], to=WHO))
+    assert [row.who for row in rows][-2:] == ["snake", "random"]
+    assert " of the finds per hour of snake: over 1.05 on " in sentences(rows)[-1]
+    assert added(WHO, to=WHO) == ()
 
 
 def test_who_begins_at_every_corner_meets_a_corner_as_often_as_there_are_corners():

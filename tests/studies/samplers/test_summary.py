@@ -76,8 +76,8 @@ def test_who_finds_half_later_is_named():
 
 def test_inspections_per_find_are_compared():
     idle = [replace(o, inspected=500.0) if o.contender == ADAPTIVE else o for o in MADE]
-    assert f"fewer than {TUNED} in 0 of 2 scenarios" in sentences(idle)[-1]
-    assert f"fewer than {TUNED} in 2 of 2 scenarios" in sentences(MADE)[-1]
+    assert f"no more than {TUNED} in 0 of 2 scenarios" in sentences(idle)[-1]
+    assert f"no more than {TUNED} in 2 of 2 scenarios" in sentences(MADE)[-1]
 
 
 def test_adaptive_is_held_against_each_other_that_took_part_in_all_seasons():
@@ -106,6 +106,18 @@ def test_who_loses_least_is_said_first_and_where_that_is_sure():
     assert f"{TUNED}: surely fewer in 1, surely more in 1" in tuned
     many = [replace(o, seed=o.seed + 4 * k) for k in range(5) for o in MADE]
     assert not any("too narrow" in said for said in verdict(many))
+
+
+def test_who_loses_as_few_is_named_too():
+    def said(*alike):
+        return verdict([replace(o, infested_plant_days=1.0 if o.contender in alike else 2.0)
+                        if o.scenario == "one" else o for o in MADE])[0]  # fmt: skip
+
+    head = "Fewest infested plant-days, of 2 scenarios: adaptive in 1; "
+    assert said("naive", WORDED) == f"{head}{WORDED} and naive alike in 1."
+    assert said() == f"{head}all alike in 1."
+    one = [replace(o, infested_plant_days=3.0) for o in MADE if o.scenario == "one"]
+    assert verdict(one)[0] == "Fewest infested plant-days, of 1 scenario: all alike in 1."
 
 
 def test_a_bound_is_not_said_to_lose_least():

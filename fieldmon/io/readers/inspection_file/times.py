@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.wording import worded
-from fieldmon.io.import_report import ImportMessage, Remedy, guessed
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
 from fieldmon.io.parse.clock import as_clocks, clock_time, is_clock_alone, local_time, zone_of
 from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.values import dates, is_missing, is_written_as_day, numbers
@@ -71,7 +71,20 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
             n_utc += clock.offset is not None and zone is None
     day = np.where(np.isnat(when), day, when.astype("datetime64[D]")).astype("datetime64[D]")
     about = _about_times(broken, read.is_ambiguous, n_utc)
-    return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *about])
+    idle = _of_told_day(options.day, day, needed=unsaid & np.isnat(planned))
+    return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *idle, *about])
+
+
+def _of_told_day(
+    told: np.datetime64 | None, day: NDArray[np.datetime64], *, needed: NDArray[np.bool_]
+) -> list[ImportMessage]:
+    """Return a doubt where a day was told by hand, but lines are all of other days."""
+    if told is None or needed.any() or np.isnat(day).any() or (day == told).all():
+        return []
+    said = worded(
+        "The day that was told, {told}, counts for no line: each is of a day of its own.", told=told
+    )
+    return [doubtful(said)]
 
 
 def _planned_days(

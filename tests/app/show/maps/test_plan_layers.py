@@ -7,7 +7,7 @@ from shapely import MultiPolygon, box
 
 from app.show.maps import plan_layers
 from fieldmon.plot.field import Field
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import Plot, plot_around
 from fieldmon.plot.projection import Frame
 from tests.app.chosen import CORNER, a_plot
 
@@ -58,7 +58,7 @@ def test_rows_that_bend_are_drawn_bent_and_aisles_as_far_as_their_lanes():
     xy_m = np.stack([at * np.sin(turn), at * np.cos(turn)], axis=1)
     # where plants are missing a row bends on
     there = (k != 2) | (j < 9) | (j > 30)
-    bent = Plot.around("bent", Frame(LON, LAT).lonlat(xy_m[there])).grid
+    bent = plot_around("bent", Frame(LON, LAT).lonlat(xy_m[there])).grid
     rows = [*plan_layers.rows_m(bent)]
     assert len(rows) == 6
     assert max(len(row) for row in rows) > 3

@@ -52,6 +52,15 @@ def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
     assert np.isnat(read(colour=["red"]).day).all()
 
 
+def test_a_day_that_was_told_of_lines_that_all_have_their_own_is_said_to_count_for_none():
+    told = InspectionOptions(day=np.datetime64("2026-11-20"))
+    dated = read(told, date=["17.11.2026", "20.11.2026"])
+    (said,) = (one.sentence for one in dated.messages if "told" in one.sentence)
+    assert said.startswith("The day that was told, 2026-11-20, counts for no line")
+    for quiet in (read(told, date=["20.11.2026"]), read(told, date=["17.11.2026", ""])):
+        assert not [one for one in quiet.messages if "told" in one.sentence]
+
+
 def test_what_a_shift_past_midnight_finds_is_of_the_day_on_which_it_began():
     plan = {"arrive": ["2026-11-18T23:59:00", "2026-11-19T00:31:00"], "arrive_s": ["60", "1980"]}
     assert read(**plan).day.astype(str).tolist() == ["2026-11-18", "2026-11-18"]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -26,9 +24,6 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 SOURCE = "scout mode"
-#: a hand that bounces must say nothing of the next plant
-REST_S = 0.5
-_SHOWN = "scout plant shown since"
 
 
 def _second(choices: Choices) -> float:
@@ -52,17 +47,8 @@ def _tap(choices: Choices, plant: int, result: int) -> str:
     return ""
 
 
-def shown(plant: int) -> None:
-    """Note which plant is in large print, and since when."""
-    if st.session_state.get(_SHOWN, (None,))[0] != plant:
-        st.session_state[_SHOWN] = plant, time.monotonic()
-
-
 def tap(choices: Choices, plant: int, result: int) -> None:
-    """Record a tap at once, unless nobody can have seen yet which plant it is of."""
-    of, since = st.session_state.get(_SHOWN, (plant, -math.inf))
-    if of == plant and time.monotonic() - since < REST_S:
-        return
+    """Record a tap at once."""
     _tap(choices, plant, result)
     st.session_state["scout_count"] = None
 

@@ -48,7 +48,6 @@ def show(choices: Choices) -> None:
         inviting.show_below(choices)
         return
     stop = next_stop(plan, chosen_day.n_done(choices), choices.units)
-    scouting.shown(stop.plant)
     st.markdown(f"## {stop.arrow} {stop.place}")
     st.markdown(f"**{stop.direction}**")
     with st.container(key="scout_buttons", horizontal=True):

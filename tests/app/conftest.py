@@ -22,7 +22,6 @@ from streamlit.components.v2 import manifest_scanner
 from streamlit.runtime.scriptrunner.script_cache import ScriptCache
 from streamlit.testing.v1 import local_script_runner
 
-from app.actions import scouting
 from app.words import language
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import MonitoringSettings, Season
@@ -104,12 +103,6 @@ def begun_file(tmp_path_factory):
         patch.setenv("FIELDMON_SEASONS", str(folder))
         assert "has begun" in begun(opened()).success[0].value
     return folder / "Gate 2026.gpkg"
-
-
-@pytest.fixture(autouse=True)
-def _taps_at_once(monkeypatch):
-    """Let a tap count at once: no hand bounces here."""
-    monkeypatch.setattr(scouting, "REST_S", 0.0)
 
 
 @pytest.fixture

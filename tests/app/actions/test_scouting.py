@@ -5,7 +5,6 @@ from datetime import UTC, date, datetime
 
 import numpy as np
 
-from app.actions import scouting
 from app.state.choices import WHOSE_DAY
 from app.words import texts
 from fieldmon.errors import FileProblem
@@ -35,19 +34,6 @@ def test_each_tap_of_the_scout_is_kept_at_once_and_the_route_goes_on(season_app,
     assert done.result.tolist() == [0, 1, 2]
     assert (np.diff(done.second) > 0).all()
     assert season_app.number_input(key="scout_count").value is None
-
-
-def test_a_tap_that_comes_before_the_plant_can_be_seen_says_nothing_of_it(
-    season_app, season, monkeypatch
-):
-    go(season_app, "scout")
-    tap(season_app, "scout_clean")
-    with monkeypatch.context() as patch:
-        patch.setattr(scouting, "REST_S", 3600.0)
-        tap(season_app, "scout_clean")
-        assert len(season().history.inspections) == 1
-    tap(season_app, "scout_clean")
-    assert len(season().history.inspections) == 2
 
 
 def test_a_reload_of_the_page_goes_on_where_the_scout_stood(season_app):

@@ -11,10 +11,10 @@ import streamlit as st
 
 from fieldmon.io.writers import FORMATS, HandoffPlan
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring import scouts
+from fieldmon.monitoring import day_ahead, scouts
 
 from ..show import qr_code
-from ..state import chosen_day, morning, notices, phone
+from ..state import chosen_day, morning, notices, phone, wishes
 from ..words import texts
 from . import inviting
 
@@ -39,7 +39,8 @@ def show(choices: Choices, plan: DayPlan) -> None:
 
 def give_out(choices: Choices) -> None:
     """Keep the day's route with the season as the one given out: stops are counted along it."""
-    choices.season.plan(choices.on, wishes=choices.wishes)
+    anew = wishes.were_told(choices.place, choices.day)
+    day_ahead.planned(choices.season, choices.on, wishes=choices.wishes, keep=True, anew=anew)
 
 
 @notices.reporting

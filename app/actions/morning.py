@@ -23,7 +23,7 @@ from ..state import (
 from ..state.morning import BEGIN, LOOK_BACK, NEXT_DAY, PLAN, RECORD, REPORT, SEND
 from ..words import texts
 from ..words.language import listed
-from . import acting, beginning, changing, handing_out
+from . import acting, beginning, changing, handing_out, news
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -92,7 +92,9 @@ def _planned(choices: Choices, plan: DayPlan) -> str:
         return texts.STEP_OTHER.format(plan=rest or texts.STEP_NO_STOPS, kept=said)
     if kept is None:
         return rest and texts.STEP_REST.format(plan=rest)
-    return texts.STEP_KEPT.format(plan=said, left=kept.left)
+    # who is alone has what is left of the day, as it stands above
+    is_alone = kept.people == 1 and len(plan.route)
+    return texts.STEP_KEPT.format(plan=said, left=len(plan.route) if is_alone else kept.left)
 
 
 def _today(choices: Choices, _: DayPlan) -> str:
@@ -176,7 +178,8 @@ def _note_sent(choices: Choices) -> None:
 def _send(choices: Choices, plan: DayPlan, step: Step) -> None:
     shown = _of_plan(choices, step)
     if st.button(texts.STEP_BUTTONS[SEND], on_click=_note_sent, args=(choices,), **shown):
-        st.dialog(texts.SEND_TITLE)(handing_out.show)(choices, plan)
+        news.hold()
+        st.dialog(texts.SEND_TITLE, on_dismiss="rerun")(handing_out.show)(choices, plan)
 
 
 def _record(_: Choices, __: DayPlan, step: Step) -> None:

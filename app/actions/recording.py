@@ -39,8 +39,9 @@ if TYPE_CHECKING:
 
     from ..state.choices import Choices
 
-# batches shown, the last ones
+# batches shown, the last ones, and so many more at each press
 _MOST = 20
+_UNDO_ASKED, _SHOWN = "undo asked", "batches shown"
 _LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
 #: what a season's file calls what was typed in here, whatever the page's language
 TYPED_IN, _ROUTE_TABLE = "typed in", "route table"
@@ -461,29 +462,74 @@ def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others
 
 def show_batches(choices: Choices) -> None:
     """Show what was recorded, if anything was, the last one first, each with its undo."""
-    shown = [batch for batch in choices.season.batches()[:_MOST] if batch.rows]
-    if not shown:
+    kept = [batch for batch in choices.season.batches() if batch.rows]
+    if not kept:
         return
+    shown = kept[: _MOST + _more_shown(choices)]
     contents = choices.season.contents([batch.number for batch in shown])
     with st.expander(texts.BATCHES, expanded=True):
         for batch in shown:
             _show_batch(choices, batch, contents.get(batch.number))
+        if more := len(kept) - len(shown):
+            st.button(texts.BATCHES_MORE.format(n=min(more, _MOST)), key="batches_more",
+                      on_click=_show_more, args=(choices,))  # fmt: skip
+
+
+def _more_shown(choices: Choices) -> int:
+    """Return how many batches are shown beside the last ones."""
+    key, more = st.session_state.get(_SHOWN, ("", 0))
+    return more if key == choices.key else 0
+
+
+def _show_more(choices: Choices) -> None:
+    st.session_state[_SHOWN] = choices.key, _more_shown(choices) + _MOST
 
 
 def _show_batch(choices: Choices, batch: Batch, contents: BatchContents | None) -> None:
     said = recorded_batches.line(choices, batch, contents)
+    why = recorded_batches.why_to_ask(choices, batch, contents)
+    n, asked = batch.number, _undo_asked(choices) == batch.number and not batch.undone
     # side by side, not in columns: a button takes what its word needs in each language
-    key = f"batch_{batch.number}"
-    with st.container(horizontal=True, vertical_alignment="center", key=key):
+    with st.container(horizontal=True, vertical_alignment="center", key=f"batch_{n}"):
         st.markdown(said, width="stretch")
-        if not batch.undone:
-            st.button(texts.UNDO, key=f"undo {batch.number}", on_click=undo, help=said,
-                      args=(choices, batch.number))  # fmt: skip
+        if batch.undone and batch.kind != "corrections":
+            st.button(texts.REDO, key=f"redo {n}", on_click=redo, help=said, args=(choices, n))
+        elif not batch.undone and not asked:
+            st.button(texts.UNDO, key=f"undo {n}", on_click=_ask_undo if why else undo, help=said,
+                      args=(choices, n))  # fmt: skip
+    if asked:
+        st.warning(" ".join([texts.UNDO_ASK, *why]))
+        with st.container(horizontal=True, key=f"undo_asked_{n}"):
+            st.button(texts.UNDO_YES, key=f"undo_yes {n}", on_click=undo, args=(choices, n))
+            st.button(texts.UNDO_NO, key=f"undo_no {n}", on_click=_ask_no_undo)
+
+
+def _undo_asked(choices: Choices) -> int | None:
+    """Return the batch of which it is asked whether it is to be undone."""
+    key, batch = st.session_state.get(_UNDO_ASKED, ("", None))
+    return batch if key == choices.key else None
+
+
+def _ask_undo(choices: Choices, batch: int) -> None:
+    st.session_state[_UNDO_ASKED] = choices.key, batch
+
+
+def _ask_no_undo() -> None:
+    st.session_state.pop(_UNDO_ASKED, None)
 
 
 @notices.reporting
 def undo(choices: Choices, batch: int) -> str:
     """Take a batch back, unless somebody did so in another window."""
+    _ask_no_undo()
     if batch not in {one.number for one in choices.season.batches() if not one.undone}:
         raise SettingError(texts.UNDONE_BEFORE)
     return in_words(choices.season.undo(batch, who=choices.who or ""))
+
+
+@notices.reporting
+def redo(choices: Choices, batch: int) -> str:
+    """Let a batch that was undone count again, unless somebody did so in another window."""
+    if batch not in {one.number for one in choices.season.batches() if one.undone}:
+        raise SettingError(texts.REDONE_BEFORE)
+    return in_words(choices.season.redo(batch, who=choices.who or ""))

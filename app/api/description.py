@@ -202,6 +202,12 @@ DAY: dict[str, Any] = {
         "clean": _LIST,
         "today": _SAID,
         "contradicting": _SAID,
+        "taken_back": {
+            "type": "array",
+            "description": "This person's findings of the day that somebody else took back in the "
+            "season: they count no more. Told again with another id, they do.",
+            "items": ID,
+        },
         "hot_spots": {"type": "array", "items": {"type": "object"}},
         "photos": {"type": "array", "items": {"type": "object"}},
         "photos_asked": {

@@ -27,6 +27,7 @@ from fieldmon.monitoring.day_ahead import (
     work_hours,
 )
 from fieldmon.monitoring.derived_layers import spot_area
+from fieldmon.monitoring.findings import taken_back
 from fieldmon.monitoring.photos import photos_of
 from fieldmon.monitoring.plant_states import hot_spots_on, shown_states
 from fieldmon.planning.skips import left_out
@@ -122,6 +123,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "clean": np.flatnonzero(known == ABSENT).tolist(),
         "today": _said(history.inspections.on(on)),
         "contradicting": _said(season.contradicting(on)),
+        "taken_back": list(taken_back(season, scout.name, on)),
         "hot_spots": _hot_spots(season, on),
         "photos": [photo._asdict() for photo in photos_of(season)],
         "photos_asked": [one._asdict() for one in ahead.asked_of(part)],
@@ -207,7 +209,7 @@ def _closed(season: Season, ahead: DayAhead, on: date, part: Part) -> list[dict[
     With which of their plants, as runs of numbers, and how many of these are somebody's own.
     """
     closed, line, mine = [], season.label.line, ahead.own(part)
-    for one in season.closed(on, part.name):
+    for one in season.closed(on, ahead.works_as(part)):
         rows = np.unique(line[one.plants])
         for run in run_ends(rows).tolist():
             plants = np.flatnonzero(one.plants & (line >= run[0]) & (line <= run[1]))
@@ -230,7 +232,7 @@ def _left_out(
     mine = ahead.own(part)
     return [
         {"why": why, "plants": run_ends(plants).tolist(), "own": int(mine[plants].sum())}
-        for why, plants in left_out(season.scene(on, who=part.name), route).items()
+        for why, plants in left_out(season.scene(on, who=ahead.works_as(part)), route).items()
         if len(plants)
     ]
 

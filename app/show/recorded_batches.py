@@ -6,6 +6,7 @@ from datetime import date, datetime
 from typing import TYPE_CHECKING
 
 from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.planning.members import person_key
 
 from ..words import texts
 from ..words.language import number
@@ -57,6 +58,19 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     parts += [texts.isolated(who) if who else "", texts.UNDONE if batch.undone else ""]
     parts.append(texts.COUNTS_ELSEWHERE if batch.stands_back(said) else "")
     return " · ".join(part for part in parts if part)
+
+
+def why_to_ask(choices: Choices, batch: Batch, said: BatchContents | None) -> list[str]:
+    """Return why it is asked before a batch is undone: it is another person's, or another day's."""
+    why, who = [], batch.by(said)
+    if who and person_key(who) != person_key(choices.who or ""):
+        why.append(texts.UNDO_ASK_WHO.format(who=texts.isolated(who)))
+    if said is not None and {said.first, said.last} != {choices.day}:
+        days = [date.fromisoformat(day) for day in dict.fromkeys((said.first, said.last))]
+        named = "–".join(choices.units.said_day(day, choices.on) for day in days)
+        here = choices.units.said_day(choices.on)
+        why.append(texts.UNDO_ASK_DAY.format(days=named, day=here))
+    return why
 
 
 def _row(choices: Choices, said: BatchContents) -> str:

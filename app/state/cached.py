@@ -17,7 +17,7 @@ from fieldmon.infestation import hotspots
 from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.monitoring import estate_day, worked_route
+from fieldmon.monitoring import day_ahead, estate_day, worked_route
 from fieldmon.monitoring.plant_states import hot_spots_on
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed
 from fieldmon.reports import season as reports
@@ -141,11 +141,32 @@ def season_plan(
     revision: str,
     of: tuple[str, str | None],
     _season: Season,
-    wishes: Wishes,
+    wished: tuple[Wishes, bool],
 ) -> DayPlan:
     """Return what is left of a season's day for one of its team, or for the one who works."""
+    on, part = _day_of(of)
+    wishes, anew = wished
+    return day_ahead.planned(_season, on, part, wishes=wishes, anew=anew)
+
+
+@st.cache_resource(max_entries=FEW, show_spinner=WORKING)
+def season_plan_now(
+    key: str,
+    revision: str,
+    minute: str,
+    of: tuple[str, str | None],
+    _season: Season,
+    wished: tuple[Wishes, bool],
+) -> DayPlan:
+    """Return the same by the clock; `minute` is that of today, and empty on another day."""
+    on, part = _day_of(of)
+    plan = season_plan(key, revision, of, _season, wished)
+    return day_ahead.by_the_clock(_season, on, part, plan)
+
+
+def _day_of(of: tuple[str, str | None]) -> tuple[date, day_ahead.Part]:
     day, who = of
-    return _season.plan(np.datetime64(day).item(), keep=False, wishes=wishes, who=who)
+    return np.datetime64(day).item(), day_ahead.Part(name=who or "")
 
 
 @st.cache_resource(max_entries=FEW)

@@ -161,7 +161,9 @@ class Choices:
         if self.season is not None:
             of = self.day, self.who
             now = cached.revision_on(self.season, self.on, self.who)
-            return cached.season_plan(self.key, now, of, self.season, self.wishes)
+            wished = self.wishes, wishes.were_told(self.place, self.day)
+            minute = f"{self.clock.now():%F %H:%M}" if self.is_today else ""
+            return cached.season_plan_now(self.key, now, minute, of, self.season, wished)
         known = self.records, self.risk
         settings = PlanSettings(self.robot, self.decides, self.prior)
         return cached.day_plan(

@@ -15,6 +15,11 @@ def of(place: str, day: str) -> Wishes:
     return wishes
 
 
+def were_told(place: str, day: str) -> bool:
+    """Return whether anything was wished of a day, though it may be wished no more."""
+    return _key(place, day) in st.session_state
+
+
 def want(place: str, day: str, wishes: Wishes) -> None:
     """Want this of a day."""
     st.session_state[_key(place, day)] = wishes

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from ..actions import news
 from ..state import rooms, widget_memory
 from ..words import texts
 
@@ -29,3 +30,4 @@ def show(name: str, choices: Choices, view: Callable[[str], ModuleType]) -> None
     rooms.keep_in_address(name, part)
     with widget_memory.part(part):
         view(part).show(choices)
+    news.watch(choices)

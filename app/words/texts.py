@@ -911,6 +911,12 @@ RECORD_NONE = "Record nothing"
 NOTICE_CLOSE = "Close this message"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
 COUNTS_ELSEWHERE = "counts in another recording"
+BATCHES_MORE = "Show {n} more"
+REDO, REDONE_BEFORE = "Redo", "This counts again already. Nothing changed."
+UNDO_ASK = "Take this back? It can be redone here."
+UNDO_ASK_WHO = "{who} recorded it; a phone that has it is told so."
+UNDO_ASK_DAY = "It is of {days}, and this page is about {day}."
+UNDO_YES, UNDO_NO = "Take it back", "Leave it"
 UNDONE_BEFORE = "This was taken back already, perhaps in another window. Nothing changed."
 RESULT_COUNTED = "{result}, count {n}"
 BATCHES_SAID = {
@@ -1177,6 +1183,9 @@ SCOUT_PAGE = {
     "scan": "Scan the code that the app shows: Today, Send to phone.",
     "not_loaded": "{season}: nothing is loaded yet. A network is needed once.",
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
+    "taken_back": "Records of yours that count no more: {n}",
+    "taken_back_why": "Somebody took them back in the season.",
+    "tell_again": "Send them again", "let_go": "Let them go",
     "newer_plan": "There is a newer plan: load it",
     "clock_wrong": "The clock of this phone is wrong: set it right.",
     "other_day": "What is recorded now counts for {day}.",

@@ -45,6 +45,7 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
 
 def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     """Plan a day for who works alone or for each of a team."""
+    from fieldmon.monitoring.day_ahead import plan_ahead
     from fieldmon.planning.day_bound import with_bound
     from fieldmon.planning.route import with_forecast
     from fieldmon.reports.words import DAY_OF_NOBODY
@@ -58,7 +59,10 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
         _plan_team(season, options, on, settings)
         return
     refuse_unrecorded(season, options.output or [ROUTE])
-    today = season.plan(on, None if now is None else clock(now, "--now"))
+    if now is None:
+        today = plan_ahead(season, on, keep=True, anew=options.enter_treated or options.as_now)
+    else:
+        today = season.plan(on, clock(now, "--now"))
     if options.bound and len(today.route):
         today = with_bound(today)
     route = today.route
@@ -196,6 +200,7 @@ def _plan_team(
     season: Season, options: PlanOptions, on: date, settings: MonitoringSettings
 ) -> None:
     """Plan what is left of a day for each of a team; write a file for each."""
+    from fieldmon.monitoring.day_ahead import Part, by_the_clock
     from fieldmon.monitoring.history import Besides
     from fieldmon.planning.route import with_forecast
     from fieldmon.planning.team import bound_of_days
@@ -204,6 +209,9 @@ def _plan_team(
     files = files_of_each(options.output, team)
     refuse_unrecorded(season, (file for each in files for file in each))
     days = season.plan_each(on, None if options.now is None else clock(options.now, "--now"))
+    if options.now is None:
+        days = tuple(by_the_clock(season, on, Part(name=one.name), today)
+                     for one, today in zip(team, days, strict=True))  # fmt: skip
     named = tuple(zip((one.name for one in team), days, strict=True))
     off = _LeftOff.of(season, on, named)
     _tell_skipped(days)

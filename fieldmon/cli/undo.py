@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from typing import Annotated
 
 import typer
@@ -30,6 +31,12 @@ def undo(
             help="Number (fid) of one inspection in the season's file.", callback=within(NUMBER)
         ),
     ] = None,
+    redo: Annotated[
+        int | None,
+        typer.Option(
+            help="Number of a batch that was undone: let it count again.", callback=within(NUMBER)
+        ),
+    ] = None,
     change: UndoChange = False,  # noqa: FBT002 - a flag
     who: Annotated[str, typer.Option(help="Who takes it back.")] = "",
 ) -> None:
@@ -37,8 +44,8 @@ def undo(
 
     Example: fieldmon undo season.gpkg
     """
-    if (batch is not None) + (inspection is not None) + change > 1:
-        raise SettingError("Give --batch, --inspection or --change, not two of them.")
+    if sum(one is not None for one in (batch, inspection, redo)) + change > 1:
+        raise SettingError("Give --batch, --inspection, --redo or --change, not two of them.")
     from fieldmon.monitoring import Season
 
     if change:
@@ -49,4 +56,14 @@ def undo(
         with telling_anew(kept, settings, kept.before_change() or settings, typer.echo):
             typer.echo(taken_back(settings, kept.undo_change(who)))
         return
-    typer.echo(Season(season).undo(batch, inspection, who))
+    kept = Season(season)
+    if redo is not None:
+        typer.echo(kept.redo(redo, who))
+        return
+    before = {one.number for one in kept.batches() if one.undone}
+    typer.echo(kept.undo(batch, inspection, who))
+    gone = [one for one in kept.batches() if one.undone and one.number not in before]
+    for one in gone:
+        if one.kind != "corrections":
+            again = shlex.join(["fieldmon", "undo", str(season), "--redo", str(one.number)])
+            typer.echo(f"To let it count again: {again}")

@@ -215,6 +215,34 @@ def undo(
     What another batch says, too, counts there. `signs` is how rows are shown, by their numbers.
     Return the batches that changed.
     """
+    batch = _waiting(db, number)
+    table = _TABLE_OF[batch.kind]
+    db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
+    db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
+    replaced.undo_corrections(db, batch.number)
+    rows = treatments if batch.kind == "treatment" else replaced
+    again = rows.count_again(db)
+    touch(db, table)
+    said = _undone(batch, contents(db, [batch.number]).get(batch.number), signs or {})
+    return {batch.number, *again}, _still(said, rows.n_elsewhere(db, batch.number))
+
+
+def to_undo(db: sqlite3.Connection, number: int | None) -> tuple[int, list[str]]:
+    """Return which batch is undone by `undo`, and the digests of what was taken back of it before.
+
+    Raise `SettingError` as that does.
+    """
+    batch = _waiting(db, number)
+    rows = db.execute(
+        "SELECT digest FROM inspections WHERE undone = ? AND digest NOTNULL AND batch = ? "
+        "ORDER BY digest",
+        (replaced.TAKEN_BACK, batch.number),
+    )
+    return batch.number, [mark for (mark,) in rows]
+
+
+def _waiting(db: sqlite3.Connection, number: int | None) -> Batch:
+    """Return a batch that counts (None: the last one), or raise `SettingError`."""
     waiting = [batch for batch in all_of(db) if not batch.undone]
     if number is not None:
         waiting = [batch for batch in waiting if batch.number == number]
@@ -227,16 +255,60 @@ def undo(
                 what=what,
             )
         )
-    batch = waiting[0]
+    return waiting[0]
+
+
+def redo(
+    db: sqlite3.Connection, number: int, but: Sequence[str] = (),
+    signs: Mapping[int, str] | None = None,
+) -> tuple[set[int], str]:  # fmt: skip
+    """Let a batch that was undone count again, `but` for inspections with these digests.
+
+    `signs` as in `undo`. Return the batches that changed, and what was done.
+    """
+    batch = next((one for one in all_of(db) if one.number == number and one.undone), None)
+    if batch is None:
+        raise SettingError(
+            worded(
+                "A batch that is to count again must have been undone, but batch {batch} was not. "
+                "See what was recorded with: fieldmon status --batches",
+                batch=number,
+            )
+        )
+    if batch.kind == "corrections":
+        raise SettingError(
+            worded(
+                "Corrections that were undone cannot count again, and batch {batch} is of them. "
+                "Change the inspections anew, and take that with: fieldmon correct",
+                batch=number,
+            )
+        )
     table = _TABLE_OF[batch.kind]
-    db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
-    db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
-    replaced.undo_corrections(db, batch.number)
-    rows = treatments if batch.kind == "treatment" else replaced
-    again = rows.count_again(db)
+    stays = ", ".join("?" * len(but))
+    of = f"batch = ? AND undone = ? AND coalesce(digest, '') NOT IN ({stays})"
+    db.execute(
+        f"UPDATE {table} SET undone = ? WHERE {of}",  # noqa: S608 - ours
+        (replaced.STANDS_BACK, number, replaced.TAKEN_BACK, *but),
+    )
+    db.execute("UPDATE batches SET undone = 0 WHERE fid = ?", (number,))
+    again = (treatments if batch.kind == "treatment" else replaced).count_again(db)
     touch(db, table)
-    said = _undone(batch, contents(db, [batch.number]).get(batch.number), signs or {})
-    return {batch.number, *again}, _still(said, rows.n_elsewhere(db, batch.number))
+    said = contents(db, [number]).get(number)
+    return {number, *again}, _counts_again(batch, said, batch.rows - len(but), signs or {})
+
+
+def _counts_again(
+    batch: Batch, said: BatchContents | None, n: int, signs: Mapping[int, str]
+) -> str:
+    """Return in words that so many rows of a batch count again."""
+    if batch.kind == "findings" and said is not None and batch.rows == 1:
+        return worded(
+            "Counts again: row {row}, plant {plant} on {date} ({result}).",
+            row=signs.get(said.row, said.row), plant=said.plant, date=date_or_text(said.first),
+            result=_RESULTS.get(said.result, said.result),
+        )  # fmt: skip
+    noun = {"findings": "inspection", "treatment": "treatment"}[batch.kind]
+    return worded("Batch {batch} counts again: {what}.", batch=batch.number, what=counted(n, noun))
 
 
 def _undone(batch: Batch, said: BatchContents | None, signs: Mapping[int, str]) -> str:
@@ -334,7 +406,7 @@ def undo_one(
 def close_if_empty(db: sqlite3.Connection, batch: int) -> None:
     """Mark a batch of findings as undone if all of them were taken back."""
     db.execute(
-        "UPDATE batches SET undone = 1 WHERE fid = ? AND NOT EXISTS "
+        "UPDATE batches SET undone = 1 WHERE fid = ? AND kind <> 'treatment' AND NOT EXISTS "
         "(SELECT 1 FROM inspections WHERE batch = batches.fid AND undone <> 1) "
         "AND NOT EXISTS (SELECT 1 FROM outside_changes WHERE batch = batches.fid "
         "AND before NOTNULL AND undone = 0)",

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime, time, timedelta
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import routes
 from fieldmon.monitoring.closures import closed_plants
+from fieldmon.monitoring.history import BEGINS_OTHERWISE_S
 from fieldmon.monitoring.photos_asked import photos_asked_in
 from fieldmon.monitoring.scouts import inside, scouts_in
 from fieldmon.planning.members import person_key
@@ -144,18 +146,9 @@ class DayAhead:
         return tuple(one for one in self.crew(part) if person_key(one) != person_key(part.name))
 
     def kept_as(self, part: Part) -> str:
-        """Return by which name a part's route is kept.
-
-        The season's own is that of who works alone, unless one of their own was given to them
-        after it.
-        """
-        if (member := self.member(part)) is not None:
-            return member.name
-        if part.rows is not None or self.settings.team or self.others(part):
-            return part.name
-        own, seasons = (self.last.get(person_key(who)) for who in (part.name, ""))
-        is_newer = own is not None and (seasons is None or own.number > seasons.number)
-        return part.name if is_newer else ""
+        """Return by which name a part's route is kept; empty: it is the season's own."""
+        member = self.member(part)
+        return self.works_as(part) if member is None else member.name
 
     def plan_of(self, part: Part) -> int | None:
         """Return the number of the route kept last of a part as a plan; None: none is kept."""
@@ -166,6 +159,19 @@ class DayAhead:
         """Return the digest of the route kept last of a part; empty: none is kept."""
         kept = self.last.get(person_key(self.kept_as(part)))
         return "" if kept is None else kept.digest
+
+    def is_seasons(self, part: Part) -> bool:
+        """Return whether a part's day is the season's own: that of who works alone on the plot.
+
+        What anybody inspected is then part of its work.
+        """
+        if part.rows is not None or self.settings.team:
+            return False
+        return not part.name or not self.others(part)
+
+    def works_as(self, part: Part) -> str:
+        """Return by whose inspections a part's hours are counted; empty: everybody's."""
+        return "" if self.is_seasons(part) else part.name
 
     def route(self, part: Part) -> Plants:
         """Return the plants of the route kept of a part, wherever they lie."""
@@ -220,17 +226,96 @@ class DayAhead:
         return rows or (int(self.label.line.min()), int(self.label.line.max()))
 
 
-def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
-    """Return what is left of the route given out for a day; give one out if there is none.
+def plan_ahead(
+    season: Season, on: date, part: Part = WHOLE, *, wishes: Wishes | None = None,
+    keep: bool = False, anew: bool = False,
+) -> DayPlan:  # fmt: skip
+    """Return what is left of the season's own day, or of that of one of its team, as of now.
 
-    Somebody of the team has a route of their own, and so has whoever has rows, or shares them, see
-    `DayAhead.crew`. It begins where that person inspected last, or at the gate. What no longer fits
-    the hours that run is left out at its end. One that leads to plants that are closed is planned
-    again.
+    App, command, report and phone ask here: they say the same route and the same hours. It is
+    what `planned` says, `by_the_clock`.
+    """
+    plan = planned(season, on, part, wishes=wishes, keep=keep, anew=anew)
+    return by_the_clock(season, on, part, plan)
+
+
+def planned(
+    season: Season, on: date, part: Part = WHOLE, *, wishes: Wishes | None = None,
+    keep: bool = False, anew: bool = False,
+) -> DayPlan:  # fmt: skip
+    """Return what is left of a day after the last inspection, planned with all that is known.
+
+    As long as nothing was found or changed since its route was given out, it is what is left of
+    that one, unless it is to be planned `anew`. `keep`: whether it is kept as given out.
     """
     ahead = DayAhead.of(season, on)
+    if not anew and ahead.is_seasons(part):
+        given = _given_last(season, on, ahead, Wishes() if wishes is None else wishes)
+        if given is not None:
+            return given
+    who = None if ahead.member(part) is None else part.name
+    return season.plan(on, keep=keep, wishes=wishes, who=who)
+
+
+def by_the_clock(season: Season, on: date, part: Part, plan: DayPlan) -> DayPlan:
+    """Return a plan as of now where its hours run: what no longer fits them is left out at its end.
+
+    Where they do not run, it is the same.
+    """
+    hours = work_hours(season, on, part)
+    if not hours.run:
+        return plan
+    scene = replace(plan.scene, seconds_left=min(hours.left_s, plan.scene.seconds_left))
+    fit, notes = _fitting(scene, plan.route.plant, scene.seconds_left), plan.route.notes
+    if len(fit.route) == len(plan.route):
+        fit = replace(plan, scene=scene)
+    if notes is None:
+        return fit
+    notes = replace(notes, start=routes.begins(season.planned_by(on), fit, hours.begins_s))
+    return replace(fit, route=replace(fit.route, notes=notes))
+
+
+def _given_last(season: Season, on: date, ahead: DayAhead, wishes: Wishes) -> DayPlan | None:
+    """Return what is left of the season's own route; None: there is none that holds still.
+
+    None holds that leads to plants that are closed by now, or not where it is wished.
+    """
+    if not routes.is_last(ahead.last) or not season.holds_still(on, ahead.last[""].digest):
+        return None
     with season.entering_treated():
-        scene = season.scene(on, who=part.name)
+        scene = season.scene(on)
+    plants = ahead.kept()
+    left = plants[scene.are_open(plants)]
+    closed = closed_plants(season.closed_to_kept(on), len(scene.chance))
+    done = season.history.on(ahead.settings.day(on)).plant
+    if not np.isin(wishes.wanted, np.append(plants, done)).all():
+        return None
+    if not len(left) or closed[left].any() or np.isin(wishes.unwanted, left).any():
+        return None
+    begins = ahead.last[""].begins
+    if len(season.worked(on)):  # a second more or less is no stop less
+        given = _fitting(scene, left, scene.seconds_left + 1.0)
+        begins = routes.begins(season.planned_by(on), given, season.begun_s(on))
+    else:
+        given = through(scene, left)
+    notes = RouteNotes(season.plot.field.name, ahead.settings.sampler, begins)
+    return replace(given, route=replace(given.route, notes=notes))
+
+
+def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
+    """Return what is left of a day's route for whoever leaves now; it is kept as given out.
+
+    Who works alone on the plot has the season's own, see `plan_ahead`. Somebody of the team has a
+    route of their own, and so has whoever has rows, or shares them, see `DayAhead.crew`: what is
+    left of the one given out, from where that person inspected last, or from the gate. What no
+    longer fits the hours that run is left out at its end. One that leads to plants that are closed
+    is planned again.
+    """
+    ahead = DayAhead.of(season, on)
+    if ahead.is_seasons(part):
+        return plan_ahead(season, on, part, wishes=Wishes(ahead.wanted(part)), keep=True).route
+    with season.entering_treated():
+        scene = season.scene(on, who=ahead.works_as(part))
     to_kept = season.closed_to_kept(on, part.name, ahead.kept_as(part))
     closed = closed_plants(to_kept, len(scene.chance))
     kept = ahead.route(part)
@@ -239,7 +324,8 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
     if not len(left) or closed[left].any() or (part.name and ahead.is_others(part, kept)):
         return planned_again(season, on, part)
     hours = work_hours(season, on, part)
-    return _fitting(scene, left, hours.left_s) if hours.run else through(scene, left).route
+    fits = _fitting(scene, left, hours.left_s) if hours.run else through(scene, left)
+    return fits.route
 
 
 def planned_again(
@@ -248,7 +334,8 @@ def planned_again(
     """Plan what is left of a day with all that is known now, by the plants to be photographed.
 
     It is kept as the route given out, unless it is a part of the plot and nobody's own.
-    `seconds_left`: as told by whose part it is; None: what `work_hours` says.
+    `seconds_left`: as told by whose part it is, no more than the season says; None: what
+    `work_hours` says.
     """
     ahead = DayAhead.of(season, on)
     own, member = ahead.own(part), ahead.member(part)
@@ -257,29 +344,30 @@ def planned_again(
             own[ahead.kept(one.name)] = False
     others = tuple(np.flatnonzero(~own).tolist())
     wishes = Wishes(ahead.wanted(part), others)
-    if part.name and member is None:
+    if part.name and member is None and not ahead.is_seasons(part):
         crew = ahead.crew(part)
         (me,) = {*crew} - {*ahead.others(part)}
         said = {} if seconds_left is None else {me: seconds_left}
         told = said | {
-            one: work_hours(season, on, Part(name=one)).left_s for one in {*crew} - {*said}
+            one: work_hours(season, on, Part(part.rows, one)).left_s for one in {*crew} - {*said}
         }
         named = (ahead.kept_as(part),) if len(crew) == 1 else None
         days = season.plan_crew(on, crew, told, wishes=wishes, kept_as=named)
         return days[crew.index(me)].route
-    who = None if member is None else member.name
-    if seconds_left is None and (hours := work_hours(season, on, part)).run:
-        seconds_left = hours.left_s
-    now = None if seconds_left is None else _time(season, on, seconds_left, member)
+    who, hours = None if member is None else member.name, work_hours(season, on, part)
+    left_s = hours.left_s if seconds_left is None else min(seconds_left, hours.left_s)
+    is_told = hours.left_s - left_s > BEGINS_OTHERWISE_S  # a phone counts a little otherwise
+    now = _time(season, on, left_s, member) if is_told or hours.run else None
     return season.plan(on, now, keep=ahead.rows(part) is None, wishes=wishes, who=who).route
 
 
 def work_hours(season: Season, on: date, part: Part = WHOLE) -> WorkHours:
-    """Return somebody's hours on a day."""
-    second, now = season.worked(on, part.name).second, local_clock(season.plot.field).now()
+    """Return somebody's hours on a day; those of who works alone are everybody's."""
+    who = DayAhead.of(season, on).works_as(part)
+    second, now = season.worked(on, who).second, local_clock(season.plot.field).now()
     run = now.date() == on and len(second) > 0 and bool(np.isfinite(second[0]))
-    scene = season.scene(on, now.time() if run else None, part.name)
-    return WorkHours(season.begun_s(on, part.name), run, float(scene.seconds_left))
+    left_s = season.left_s(on, now.time() if run else None, who)
+    return WorkHours(season.begun_s(on, who), run, left_s)
 
 
 def _time(season: Season, on: date, seconds_left: float, member: TeamMember | None) -> time:
@@ -291,15 +379,16 @@ def _time(season: Season, on: date, seconds_left: float, member: TeamMember | No
     return (datetime.combine(on, MIDNIGHT) + timedelta(seconds=round(now_s))).time()
 
 
-def _fitting(scene: Scene, plants: Plants, left_s: float) -> Route:
-    """Return the way through as many of the plants as fit with the way back."""
-    route, robot = through(scene, plants).route, scene.robot
+def _fitting(scene: Scene, plants: Plants, left_s: float) -> DayPlan:
+    """Return a day of as many of the plants as fit with the way back."""
+    plan, robot = through(scene, plants), scene.robot
+    route = plan.route
     if route.end_s <= left_s:
-        return route
+        return plan
     back = [np.array([plant, GATE]) for plant in plants] if robot.returns else []
     back_s = np.array([driven_s(scene.aisles.travel, scene.clock, leg) for leg in back] or 0.0)
     fit = np.flatnonzero(route.leave_s + back_s <= left_s)
-    return through(scene, plants[: fit[-1] + 1 if len(fit) else 0]).route
+    return through(scene, plants[: fit[-1] + 1 if len(fit) else 0])
 
 
 def through(scene: Scene, plants: Plants) -> DayPlan:

@@ -25,6 +25,7 @@ from fieldmon.monitoring import (
     people,
     phone_tables,
     photos,
+    replaced,
     schema,
     scouts,
     season_log,
@@ -300,6 +301,22 @@ class _SentFindings:
     shift: timedelta
 
 
+def taken_back(season: Season, who: str, on: date) -> tuple[str, ...]:
+    """Return the ids of what somebody told of a day and somebody else took back in the season.
+
+    What the same person took back, or counts in another recording, is not among it.
+    """
+    with season.store.reading() as db:
+        rows = db.execute(
+            "SELECT t.id, t.scout FROM tellings t JOIN inspections i ON i.fid = t.inspection "
+            "WHERE i.undone = ? AND i.date = ? AND NOT EXISTS (SELECT 1 FROM inspections "
+            "WHERE digest = i.digest AND undone = 0) AND NOT EXISTS (SELECT 1 FROM tellings "
+            "WHERE undoes = t.id) ORDER BY t.fid",
+            (replaced.TAKEN_BACK, str(on)),
+        ).fetchall()
+    return tuple(one for one, name in rows if person_key(name) == person_key(who))
+
+
 def _known(db: sqlite3.Connection, ids: list[str]) -> dict[str, tuple[str, str]]:
     """Return content and problem of those of the findings that are there, by id."""
     wanted = "SELECT content, coalesce(problem, '') FROM tellings WHERE id = ?"
@@ -347,6 +364,8 @@ def _write(
                 made = _inspection(season, one, letter)
                 days = (settings, (batch, scout.name))
                 (row,) = inspection_table.rows(made, season.plot.grid, season.label, *days)
+                mark = str(row[schema.INSPECTIONS.names.index("digest")])
+                phone_tables.move_photos(change.db, mark, one.id)
                 inspection = _insert(change.db, row, one.id)
                 change.reaches(settings.day(made.date[0].item()))
                 seen.append(made)

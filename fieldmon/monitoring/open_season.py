@@ -356,11 +356,11 @@ class OpenSeason:
     def entering_treated(self) -> Iterator[None]:
         """Let days be planned for who may enter all the same, as robots: nothing is closed."""
         with self._lock:
-            self._enters = True
+            before, self._enters = self._enters, True
             try:
                 yield
             finally:
-                self._enters = False
+                self._enters = before
 
     def _closed(
         self, contents: SeasonContents, on: date, who: str | Besides, seconds_left: float | None
@@ -403,6 +403,14 @@ class OpenSeason:
     def _begun_s(self, contents: SeasonContents, on: date, who: str | Besides) -> float:
         shift, name = self._shift(self._planned_by(contents, on), who)
         return contents.history.begun_s(shift, contents.settings.day(on), name)
+
+    def left_s(self, on: date, now: time | None = None, who: str | Besides = "") -> float:
+        """Return the seconds left of the working day `on`; `now` and `who` as in `scene`."""
+        with self._lock:
+            contents = self._now()
+            shift, name = self._shift(self._planned_by(contents, on), who)
+            day, now_s = contents.settings.day(on), None if now is None else seconds(now)
+            return max(0.0, shift.robot.day_s - contents.history.gone_s(shift, day, now_s, name))
 
     def worked(self, on: date, who: str | Besides = "") -> Inspections:
         """Return what somebody inspected in the work of the day `on`; `who` as in `plan`.

@@ -137,6 +137,18 @@ def n_sent(db: sqlite3.Connection, table: GeoPackageTable, who: str, since: str)
     return sum(n for name, n in db.execute(sent, (since,)) if person_key(name) == person_key(who))
 
 
+def move_photos(db: sqlite3.Connection, mark: str, told: str) -> None:
+    """Let photos of what was taken back belong to the finding `told`, which says the same again.
+
+    `mark` is the digest of its inspection.
+    """
+    db.execute(
+        "UPDATE photos SET telling = ? WHERE telling IN (SELECT t.id FROM tellings t JOIN "
+        "inspections i ON i.fid = t.inspection WHERE i.digest = ? AND i.undone = ?)",
+        (told, mark, replaced.TAKEN_BACK),
+    )
+
+
 def phones_come(db: sqlite3.Connection) -> None:
     """Add what phones need to a file that knows none of it."""
     for table in _FIRST:

@@ -46,14 +46,14 @@ def keep(
 ) -> bool:
     """Keep a day's route, of one of a team, unless it is the one kept last; tell whether it was.
 
-    It has a stop or more.
+    It has a stop or more. The season's own is kept anew after that of another.
     """
     day, route, notes = today.scene.day, today.route, today.route.notes
     assert notes is not None  # noqa: S101 - whoever planned said
     assert notes.start is not None  # noqa: S101 - when it begins
     begin, clock = notes.start, grid_clock(route.aisles.grid)
-    mark, last = _digest(today), kept_last(db, day).get(person_key(who))
-    if last is not None and last.digest == mark:
+    last = kept_last(db, day).get(person_key(who))
+    if is_kept(db, today, who):
         return False
     line = route.line_lonlat()
     row = {
@@ -69,7 +69,7 @@ def keep(
         "expected": route.expected_finds,
         "at_plant": today.scene.at,
         "seconds_left": today.scene.seconds_left,
-        "digest": mark,
+        "digest": _digest(today),
         "who": who,
     }
     cursor = db.execute(
@@ -108,8 +108,19 @@ def in_words(settings: MonitoringSettings, today: DayPlan) -> dict[str, Any]:
 
 def is_kept(db: sqlite3.Connection, today: DayPlan, who: str = "") -> bool:
     """Tell whether a day's route, of one of a team, is the one kept last."""
-    last = kept_last(db, today.scene.day).get(person_key(who))
-    return last is not None and last.digest == _digest(today)
+    last = kept_last(db, today.scene.day)
+    return is_last(last, who) and last[person_key(who)].digest == _digest(today)
+
+
+def is_last(last: dict[str, KeptRoute], who: str = "") -> bool:
+    """Return whether somebody's route of those kept last counts: the season's own if none is newer.
+
+    Another's ends that one, as of who is left alone.
+    """
+    own = last.get(person_key(who))
+    if own is None or who:
+        return own is not None
+    return own.number == max(one.number for one in last.values())
 
 
 def days(db: sqlite3.Connection) -> NDArray[np.int64]:

@@ -597,6 +597,34 @@ def given_out(db: sqlite3.Connection) -> Iterator[GivenOut]:
             yield GivenOut(said["at"], said["who"], what["date"], what["digest"])
 
 
+def holds_still(db: sqlite3.Connection, on: date, plan: str) -> bool:
+    """Return whether nothing is told since a day's plan was kept, by its digest, but what is clean.
+
+    Other plans, and plants of that day on which nothing was found, change none.
+    """
+    for (content,) in db.execute("SELECT entry FROM log ORDER BY fid DESC"):
+        said = json.loads(content)
+        kind, what = said["kind"], said["what"]
+        if kind == "planned":
+            if (what.get("date"), what.get("digest")) == (str(on), plan):
+                return True
+        elif kind == "seen":
+            if what.get("found") or {what.get("from"), what.get("to")} != {str(on)}:
+                return False
+        elif kind != "advised":
+            return False
+    return False
+
+
+def left_out_of(db: sqlite3.Connection, batch: int) -> list[str]:
+    """Return the digests of what was taken back of a batch before it was undone last."""
+    for entry in reversed(entries(db)):
+        number = entry.what.get("batch") if entry.kind == "undone" else None
+        if number is not None and entry.numbers.get(number, number) == batch:
+            return list(entry.what.get("but", ()))
+    return []
+
+
 def labels_kept(db: sqlite3.Connection) -> dict[str, str]:
     """Return when (UTC) each table of labels was kept, here or in a copy, by its entry's digest."""
     kept = {}

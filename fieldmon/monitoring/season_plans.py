@@ -168,6 +168,14 @@ class SeasonPlans(OpenSeason):
             last = routes.kept_last(db, settings.day(on))
             return routes.plants(db, last.get(person_key(who if named is None else named.name)))
 
+    def holds_still(self, on: date, plan: str) -> bool:
+        """Return whether nothing was found or changed since a `plan` of the day `on` was kept.
+
+        It is named by its digest.
+        """
+        with self.store.reading() as db:
+            return season_log.holds_still(db, on, plan)
+
     def closed_to_kept(
         self, on: date, who: str = "", kept_as: str | None = None
     ) -> tuple[Closure, ...]:

@@ -22,6 +22,7 @@ from fieldmon.monitoring import (
     label_table,
     merging,
     outside_changes,
+    phone_tables,
     scouts,
     season_log,
     tables,
@@ -255,7 +256,7 @@ class SeasonRecords(OpenSeason):
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
         """Take a `batch` back (None: the last one), or one `inspection`; nothing is deleted.
 
-        Both are numbers; `who` takes it back, for the log.
+        Both are numbers; `who` takes it back, for the log. `redo` lets a batch count again.
         Return a sentence that says what was undone. Raise `SettingError` if there is nothing, or
         both are given.
         """
@@ -271,13 +272,46 @@ class SeasonRecords(OpenSeason):
         signs = self.plot.grid.row_signs
         with self._lock, self.store.writing() as db:
             if inspection is None:
-                changed, said = batches.undo(db, batch, signs)
+                number, before = batches.to_undo(db, batch)
+                changed, said = batches.undo(db, number, signs)
+                what = {"batch": number, **({"but": before} if before else {})}
             else:
                 changed, said = batches.undo_one(db, inspection, signs)
-            states = season_log.states(db, changed)
-            season_log.append(db, "undone", written_in(db, who), states=states, said=said)
-            self._refresh(db, min(batches.first_day(db, one) for one in changed))
+                what = {}
+            self._note_undone(db, who, changed, said, **what)
         return said
+
+    def redo(self, batch: int, who: str = "") -> str:
+        """Let a `batch` that was undone count again; `who` does so, for the log.
+
+        What was taken back of it before, one by one or on a phone, stays so. Return a sentence that
+        says what counts again. Raise `SettingError` if the batch was not undone.
+        """
+        with self._lock, self.store.writing() as db:
+            but = season_log.left_out_of(db, batch)
+            changed, said = batches.redo(db, batch, but, self.plot.grid.row_signs)
+            told = phone_tables.undo_as_told(db)
+            changed |= {number for number, _ in told}
+            for one in changed:
+                batches.close_if_empty(db, one)
+            if all(one.undone for one in batches.all_of(db) if one.number == batch):
+                raise SettingError(
+                    worded(
+                        "Batch {batch} must have something that can count again, but all of it was "
+                        "taken back on the phone. Record it anew.",
+                        batch=batch,
+                    )
+                )
+            self._note_undone(db, who, changed, said, batch=batch)
+        return said
+
+    def _note_undone(
+        self, db: sqlite3.Connection, who: str, changed: set[int], said: str,
+        **what: object,
+    ) -> None:  # fmt: skip
+        states = season_log.states(db, changed)
+        season_log.append(db, "undone", written_in(db, who), states=states, said=said, **what)
+        self._refresh(db, min(batches.first_day(db, one) for one in changed))
 
     def correct(self, who: str) -> int:
         """Take what another program changed of inspections as corrections; return how many.

@@ -22,6 +22,7 @@ from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import utc_now
+from tests.app.driving import until
 from tests.app.scouting import BrokenLine, Line, PhoneBrowser, a_picture, kept
 from tests.app.test_hostile_texts import EVIL, NAMES, hostile_season
 from tests.monitoring.phone import a_finding, told
@@ -316,6 +317,31 @@ def test_a_newer_plan_is_said_and_loaded_by_whoever_wants_it(season, line, phone
     page.locator("#closed", has_text="Sprayed: do not enter before").wait_for()
     page.locator("#open_menu").click()
     page.locator("#menu .bad", has_text="Rows 1 to ").wait_for()
+
+
+def test_a_phone_learns_what_the_season_took_back_and_sends_it_again(season, line, phone):
+    invited(phone, line, season)
+    page = phone.page
+    page.locator(SENT).wait_for()
+    page.locator("#found").click()
+    page.locator("#save").wait_for()
+    assert not page.locator("#undo").count(), "beside what is not saved yet"
+    page.locator("#cancel").click()
+    plant = plant_of(page)
+    told_now(page, "clean")
+    page.locator("#undo").wait_for()
+    page.locator(SENT).wait_for()
+    season.undo()
+    page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
+    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    page.locator("#taken_back").click()
+    label = season.label
+    name = f"Row {label.line[plant]}, plant {label.number[plant]}: Clean"
+    page.locator("#menu li", has_text=name).wait_for()
+    page.locator("#tell_again").click()
+    page.locator("#taken_back").wait_for(state="hidden")
+    until(lambda: plant in season.history.inspections.plant)
+    page.locator(SENT).wait_for()
 
 
 def test_the_page_says_what_waits_and_takes_no_half_pests(season, line, phone):

@@ -1,5 +1,6 @@
 """`fieldmon plan` with a season: from plan to status, and again."""
 
+import csv
 import json
 from datetime import date, time, timedelta
 
@@ -9,8 +10,10 @@ import pytest
 from fieldmon.compute.wording import written
 from fieldmon.errors import ImportDoubt
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
-from fieldmon.monitoring import Season
+from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.day_ahead import Part, route_ahead, work_hours
+from fieldmon.reports.day import DayFacts
 from tests.cli.estate import BEGINS, ZIP, filled_in
 
 
@@ -33,6 +36,24 @@ def test_a_day_from_plan_to_status(run, season, tmp_path):
     assert "10 findings by Ann  r.csv  2 found" in out
     assert "never" in out
     assert "chance it is clean" in out
+
+
+def test_command_report_and_phone_say_the_same_route_and_hours_after_any_record(
+    run, season, tmp_path
+):
+    kept, on, dana = Season(season), date.fromisoformat(BEGINS), Part(name="Dana")
+    scouts.let_in(kept, "Dana")
+    given = route_ahead(kept, on, dana).plant
+    for k, (who, result) in enumerate((("Dana", 0), ("", 0), ("Dana", 1), ("", 0))):
+        results = np.array([0, 0, result])
+        kept.record(Inspections.of(given[3 * k : 3 * k + 3], results, on), "f", who)
+        assert run("plan", season, "--date", BEGINS, "-o", "r.csv")[0] == 0
+        with (tmp_path / "r.csv").open(encoding="utf-8-sig", newline="") as file:
+            command = [int(row["plant"]) for row in csv.DictReader(file)]
+        facts = DayFacts.of_season(kept, on)
+        assert command == route_ahead(kept, on, dana).plant.tolist()
+        assert command == facts.route.plant.tolist()
+        assert facts.route.end_s <= work_hours(kept, on, dana).left_s + 1.0
 
 
 def test_a_plant_that_was_pulled_out_is_recorded_by_file_and_no_treatment_stands(

@@ -19,6 +19,12 @@ def test_what_was_recorded_last_is_as_if_it_had_not_been(run, season, tmp_path):
     code, out, _, _ = run("undo", season)
     assert (code, "5 inspections from r.csv" in out) == (0, True)
     assert np.array_equal(Season(season).evening(ON), before)
+    assert out.splitlines()[1] == f"To let it count again: fieldmon undo {season} --redo 1"
+    assert run("undo", season, "--redo", 1)[:2] == (0, "Batch 1 counts again: 5 inspections.\n")
+    assert not np.array_equal(Season(season).evening(ON), before)
+    code, _, err, _ = run("undo", season, "--redo", 1)
+    assert (code, "must have been undone, but batch 1 was not" in err) == (2, True)
+    assert "Batch 1 counts again" in run("log", season)[1]
 
 
 def test_one_inspection_alone_is_taken_back(run, season, tmp_path):

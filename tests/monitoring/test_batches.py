@@ -8,7 +8,7 @@ from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import batches
 from fieldmon.monitoring.batches import Batch
 from fieldmon.plot.grid import row_label
-from tests.monitoring.seasons import a_plot_with_named_rows, a_season
+from tests.monitoring.seasons import BEGINS, a_plot_with_named_rows, a_season
 
 
 def recorded(db, rows, source="x", who="", kind="findings"):
@@ -123,3 +123,36 @@ def test_findings_are_added_to_batches_of_findings_that_count_and_to_no_others(d
     for other in (undone, soap, soap + 1):
         with pytest.raises(SettingError, match=f"batch {other} does not"):
             batches.must_count(db, other)
+
+
+def test_what_was_taken_back_alone_stays_so_when_its_batch_counts_again(season):
+    plants, on = np.array([1, 2, 3]), np.datetime64(BEGINS)
+    batch = season.record(Inspections.of(plants, np.array([0, 1, 1]), on), "day.csv").batch
+    with season.store.reading() as db:
+        wanted = "SELECT fid FROM inspections WHERE batch = ? AND plant = 2"
+        (one,) = db.execute(wanted, (batch,)).fetchone()
+    season.undo(inspection=one)
+    before = season.history.states(0).copy()
+    season.undo(batch)
+    other = season.record(Inspections.of(plants[2:], np.array([1]), on), "again.csv").batch
+    assert season.redo(batch) == f"Batch {batch} counts again: 2 inspections."
+    assert np.array_equal(season.history.states(0), before)
+    assert len(season.history.inspections.on(BEGINS)) == 2, "the same result counts once"
+    season.undo(other)
+    assert np.array_equal(season.history.states(0), before)
+
+
+def test_a_treatment_that_was_undone_counts_again(season):
+    season.treat(BEGINS, 0.5, plants=np.arange(438) < 20)
+    batch = season.batches()[0].number
+    season.undo(batch)
+    assert not season.treatments()
+    assert season.redo(batch) == f"Batch {batch} counts again: 1 treatment."
+    assert len(season.treatments()) == 1
+
+
+def test_corrections_do_not_count_again(db):
+    recorded(db, 1)
+    db.execute("UPDATE batches SET kind = 'corrections', undone = 1")
+    with pytest.raises(SettingError, match="Change the inspections anew"):
+        batches.redo(db, 1)

@@ -12,12 +12,14 @@ from fieldmon.monitoring.day_ahead import (
     DayAhead,
     Part,
     inside,
+    plan_ahead,
     planned_again,
     route_ahead,
     work_hours,
 )
 from fieldmon.monitoring.photos_asked import ask_photo
 from fieldmon.planning.members import team_of
+from fieldmon.plot import local_clock
 from fieldmon.plot.robot import Robot
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -27,10 +29,68 @@ def season(path):
     return Season(path)
 
 
-def test_it_is_the_route_given_out_without_what_was_done(season):
-    given = season.kept_route(BEGINS)
-    done = season.history.inspections.plant
-    assert route_ahead(season, BEGINS).plant.tolist() == [p for p in given if p not in done]
+def test_it_is_the_route_given_out_without_what_was_clean_until_something_is_found(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    given = route_ahead(fresh, BEGINS).plant
+    told(fresh, "", given[:3], 21_700.0)
+    for left in (route_ahead(fresh, BEGINS), plan_ahead(fresh, BEGINS).route):
+        assert 0 < len(left) <= len(given) - 3, "some took longer than is charged for"
+        assert left.plant.tolist() == given[3 : len(left) + 3].tolist()
+        assert left.end_s <= fresh.scene(BEGINS).seconds_left + 1.0
+    fresh.record(Inspections.of(given[3:4], np.ones(1, np.int8), BEGINS), "f")
+    found = fresh.plan(BEGINS, keep=False).route.plant.tolist()
+    assert found != given[4:].tolist()
+    assert plan_ahead(fresh, BEGINS).route.plant.tolist() == found
+    assert fresh.kept_route(BEGINS).tolist() == given.tolist(), "who only looks gives none out"
+    assert route_ahead(fresh, BEGINS).plant.tolist() == found
+    assert fresh.kept_route(BEGINS).tolist() == found
+
+
+def test_who_is_alone_on_the_plot_has_the_route_and_hours_of_the_season_whoever_worked(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    dana = Part(name="Dana")
+    scouts.let_in(fresh, "Dana")
+    given = route_ahead(fresh, BEGINS, dana).plant
+    for plants, who in ((given[:4], "Dana"), (given[4:9], "")):
+        results = np.arange(len(plants)) % 4 == 3
+        fresh.record(Inspections.of(plants, results.astype(np.int8), BEGINS), "f", who)
+    season, phone = plan_ahead(fresh, BEGINS), route_ahead(fresh, BEGINS, dana)
+    assert phone.plant.tolist() == season.route.plant.tolist()
+    assert work_hours(fresh, BEGINS, dana).left_s == season.scene.seconds_left
+    again = planned_again(fresh, BEGINS, dana, season.scene.seconds_left + 60.0)
+    assert again.plant.tolist() == phone.plant.tolist()
+
+
+def test_a_day_that_was_worked_to_its_end_by_one_gives_another_nothing_more(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    dana, day_s = Part(name="Dana"), fresh.settings.robot.day_s
+    scouts.let_in(fresh, "Dana")
+    given = route_ahead(fresh, BEGINS, dana).plant
+    fresh.record(Inspections.of(given[:2], np.zeros(2, np.int8), BEGINS), "f", "Dana")
+    results = (np.arange(len(given) - 2) % 9 == 0).astype(np.int8)
+    fresh.record(Inspections.of(given[2:], results, BEGINS), "robot.csv")
+    assert len(route_ahead(fresh, BEGINS, dana)) == 0
+    assert len(planned_again(fresh, BEGINS, dana, day_s)) == 0
+    kept = fresh.planned_and_done(BEGINS)
+    assert (kept.planned, kept.left) == (len(given), 0)
+    assert kept.hours <= fresh.settings.robot.hours
+
+
+def test_a_day_that_runs_is_cut_at_its_end_by_the_clock_for_all_alike(tmp_path, monkeypatch):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    dana, day_s = Part(name="Dana"), fresh.settings.robot.day_s
+    scouts.let_in(fresh, "Dana")
+    given = route_ahead(fresh, BEGINS, dana)
+    told(fresh, "Dana", given.plant[:1], 6 * 3600.0 + 120.0)
+    now = local_clock.local_clock(fresh.plot.field).moment(BEGINS, time(6, 45))
+    monkeypatch.setattr(local_clock, "utc_now", lambda: now)
+    season, phone = plan_ahead(fresh, BEGINS), route_ahead(fresh, BEGINS, dana)
+    assert season.scene.seconds_left == work_hours(fresh, BEGINS, dana).left_s == day_s - 2700.0
+    assert season.route.notes.start.time() == time(6, 45)
+    assert phone.plant.tolist() == season.route.plant.tolist()
+    assert 0 < len(phone) < len(given) - 1
+    assert phone.plant.tolist() == given.plant[1 : len(phone) + 1].tolist()
+    assert phone.end_s <= day_s - 2700.0
 
 
 def test_where_none_was_given_out_one_is(tmp_path):
@@ -77,11 +137,13 @@ def test_the_hours_of_each_run_from_the_first_inspection_of_that_person(tmp_path
     late = np.array([15.5, 16.5]) * 3600.0
     first_s = fresh.plan(BEGINS).route.leave_s[0]
     fresh.record(Inspections.of(plants[:2], np.zeros(2, np.int8), BEGINS, second=late), "f", "Ann")
-    ann, ben, whole = (work_hours(fresh, BEGINS, Part(name=who)) for who in ("Ann", "Ben", ""))
+    rows = (1, int(fresh.label.line.max()))
+    ann, ben = (work_hours(fresh, BEGINS, Part(rows, who)) for who in ("Ann", "Ben"))
     assert ann.left_s == pytest.approx(day_s - 3600 - first_s)
-    assert (ben.left_s, whole) == (day_s, ann)
+    assert ben.left_s == day_s
+    assert work_hours(fresh, BEGINS) == work_hours(fresh, BEGINS, Part(name="Ben")) == ann
     fresh.record(Inspections.of(plants[2:3], np.zeros(1, np.int8), BEGINS), "f", "Cem")
-    assert 0 < work_hours(fresh, BEGINS, Part(name="Cem")).left_s < day_s
+    assert 0 < work_hours(fresh, BEGINS, Part(rows, "Cem")).left_s < day_s
     assert len(planned_again(fresh, BEGINS, Part((1, 3), "Ben"), day_s)), "though it is evening"
 
 
@@ -174,7 +236,7 @@ def test_a_code_with_other_rows_is_a_full_day_in_these(tmp_path):
         assert again.plant.tolist() == route.plant.tolist()
 
 
-def test_who_is_left_alone_keeps_what_was_given_and_who_comes_back_takes_nothing_of_it(tmp_path):
+def test_who_is_left_alone_has_the_seasons_own_and_who_comes_back_takes_nothing_of_it(tmp_path):
     fresh = a_season(tmp_path / "fresh.gpkg")
     ann, dan = Part(name="Ann"), Part(name="Dan")
     scouts.let_in(fresh, "Ann")
@@ -184,7 +246,7 @@ def test_who_is_left_alone_keeps_what_was_given_and_who_comes_back_takes_nothing
     shared = route_ahead(fresh, BEGINS, ann).plant.tolist()
     assert shared != alone
     scouts.withdraw_key(fresh, "Dan")
-    assert route_ahead(fresh, BEGINS, ann).plant.tolist() == shared
+    assert route_ahead(fresh, BEGINS, ann).plant.tolist() == alone
     rest = planned_again(fresh, BEGINS, ann).plant
     assert route_ahead(fresh, BEGINS, ann).plant.tolist() == rest.tolist()
     scouts.let_in(fresh, "Dan")

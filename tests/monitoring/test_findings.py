@@ -14,9 +14,10 @@ from fieldmon.errors import AccessError, LimitError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
 from fieldmon.io.readers.phone_file import PhoneFile, SavedRecord, fields_of
 from fieldmon.monitoring import Season, findings, photos, scouts
-from fieldmon.monitoring.findings import Finding, of_others, take, take_saved
+from fieldmon.monitoring.findings import Finding, of_others, take, take_saved, taken_back
 from fieldmon.monitoring.photos import Photo
 from fieldmon.planning.members import TeamMember
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot
 from tests.monitoring.phone import JPEG, NOW, a_days_findings, a_finding, told
 from tests.monitoring.seasons import BEGINS, state
@@ -63,6 +64,28 @@ def test_what_is_taken_back_does_not_count_whichever_came_first(season, key):
     assert len(ids) == 5
     assert [one for one, *_ in rows] == [kept.id]
     assert season.history.inspections.plant.tolist().count(34) == 0
+    season.store.check()
+    assert season.verify() == ()
+
+
+def test_whoever_told_what_the_season_took_back_learns_which_and_may_tell_it_again(season, key):
+    kept, gone, own = a_finding(33), a_finding(34, FOUND), a_finding(35)
+    on = local_clock(season.plot.field).at(NOW).date()
+    take(season, key, [kept], NOW)
+    take(season, key, [gone, own, a_finding(None, None, undoes=own.id)], NOW)
+    photos.keep(season, key, photos.Photo("one", gone.id, JPEG, NOW))
+    assert taken_back(season, "Ann", on) == ()
+    batch = season.batches()[0].number
+    season.undo(batch)
+    assert taken_back(season, "ann", on) == (gone.id,)
+    assert taken_back(season, "Ben", on) == taken_back(season, "Ann", on - timedelta(days=1)) == ()
+    again = replace(gone, id="again")
+    assert [one.new for one in take(season, key, [again], NOW)] == [True]
+    assert taken_back(season, "Ann", on) == ()
+    assert [one.plant for one in photos.photos_of(season)] == [34]
+    season.redo(batch)
+    assert sorted(season.history.inspections.on(on).plant.tolist()).count(34) == 1
+    assert season.history.inspections.plant.tolist().count(35) == 0, "that was told to be no more"
     season.store.check()
     assert season.verify() == ()
 

@@ -2,7 +2,7 @@
 
 import { Clock } from "./clock.js";
 import { laidOut, metres, neighbours, offered, rings, rowOf } from "./geo.js";
-import { afterFind, results, secondsAhead, secondsLeft, withAsked } from "./plan.js";
+import { afterFind, results, secondsAhead, secondsLeft, secondsThrough, withAsked } from "./plan.js";
 import { fetchDay, fetchRest, isOf } from "./sync.js";
 import { wayAhead } from "./way.js";
 
@@ -41,6 +41,7 @@ export class Field {
     Object.assign(this, { store, ask: time.listening(ask), clock, id, time });
     this.coords = null;
     this.records = [];
+    this.back = new Set();
     this.people = {};
     this.seasons = [];
   }
@@ -197,7 +198,7 @@ export class Field {
   #hours(day) {
     if (day.begun) return { seconds_left: day.seconds_left, begun: this.time.best() };
     // the season has not heard yet that work began
-    const isGoing = this.begun && this.day?.day === day.day && this.lastRecord();
+    const isGoing = this.begun && day.live && this.day?.day === day.day && this.lastRecord();
     return isGoing ? { seconds_left: this.day.seconds_left, begun: this.begun } : { seconds_left: day.seconds_left, begun: null };
   }
 
@@ -247,7 +248,9 @@ export class Field {
   }
 
   #take(day) {
-    this.day = { ...day, chance: Uint16Array.from(day.chance),
+    // what of this phone the season counts in what it says
+    const heard = Math.max(0, ...this.records.filter((one) => one.state === "kept").map((one) => one.order));
+    this.day = { ...day, heard, chance: Uint16Array.from(day.chance),
       spots: day.hot_spots.flatMap(rings).map((ring) => ring.map((at) => metres(this.plot, at))) };
     delete this.day.hot_spots;
     this.#work();
@@ -256,13 +259,42 @@ export class Field {
   /** What is done, by this phone and by others. */
   #work() {
     const today = this.records.filter((one) => one.day === this.day?.day);
-    this.own = results(today);
-    this.done = new Set([...this.own.keys(), ...(this.day?.today ?? []).map((one) => one.plant)]);
-    // taken back here, though the server may still say it
-    for (const one of today) {
-      const gone = one.undoes && today.find((other) => other.id === one.undoes);
-      if (gone && !this.own.has(gone.plant)) this.done.delete(gone.plant);
-    }
+    const gone = this.#gone(), { heard = 0 } = this.day ?? {};
+    this.own = results(today.filter((one) => !gone.has(one.id)));
+    // taken back here, though what the season said last still says it
+    const undone = new Map(today.filter((one) => one.undoes && one.order > heard).map((one) => [one.undoes, one]));
+    this.back = new Set(today.filter((one) => undone.has(one.id) && !this.own.has(one.plant)).map((one) => one.plant));
+    const said = (this.day?.today ?? []).map((one) => one.plant).filter((plant) => this.said(plant).length > 0);
+    this.done = new Set([...this.own.keys(), ...said]);
+  }
+
+  /** What is said of a plant today, as far as this phone did not take it back since. */
+  said(plant) {
+    const name = this.day.scout?.toLowerCase(), isBack = this.back.has(plant);
+    return (this.day.today ?? []).filter((one) => one.plant === plant && !(isBack && one.who.toLowerCase() === name));
+  }
+
+  // -- what somebody took back in the season
+
+  #gone() { return new Set(this.day?.taken_back ?? []); }
+
+  /** Records of this phone that count no more, as the season says, and of which nobody said yet what is to come of them. */
+  takenBack() {
+    const gone = this.#gone(), undone = new Set(this.records.map((one) => one.undoes).filter(Boolean));
+    return this.records.filter((one) => gone.has(one.id) && !undone.has(one.id) && !one.answered);
+  }
+
+  /** Tell again what was taken back, or let it go. */
+  async answer(again) {
+    await this.settled();
+    const some = this.takenBack(), order = this.#order();
+    const told = some.map(({ answered, problem, ...one }, k) => ({ ...one, id: this.id(), order: order + k }));
+    await this.store.answer(some.map((one) => one.id), again ? told : []);
+    await this.reread();
+    if (!this.ahead.some((one) => this.done.has(one))) return;
+    this.ahead = this.ahead.filter((one) => !this.done.has(one));
+    this.draft = this.#keepDraft();
+    await this.#keep("ahead", "draft");
   }
 
   #keep(...names) {
@@ -378,15 +410,14 @@ export class Field {
     const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute, photos: photos ?? 0,
       // of the route that one goes by; a server of before said none
       ...(this.day.route.detects == null ? {} : { detects: this.day.route.detects }) };
-    // the hours of a day ahead begin on it
-    const isAhead = this.meant() !== null && this.day.past === false;
-    const begun = this.begun ?? (isAhead ? null : this.#begins(plant));
+    // the hours of another day run by no clock
+    const begun = this.meant() === null ? this.begun ?? this.#begins(plant) : null;
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
       const done = new Set([...this.done, plant]);
       // a neighbour that nobody may come to yet, or that plans leave out, is none to go to
       const out = neighbours(this.plot, plant).filter((one) => this.closedUntil(one) || this.isLeftOut(one));
-      ahead = afterFind(this.plot, this.day, ahead, plant, new Set([...done, ...out]), secondsLeft(this.day, begun, this.time.best()));
+      ahead = afterFind(this.plot, this.day, ahead, plant, new Set([...done, ...out]), this.#secondsLeft(begun, [plant]));
     }
     const follows = { ahead, begun, draft: this.#comesNext(ahead), last: { id, plant, ahead: this.ahead } };
     return this.#step(follows, () => this.store.record(record, { ...follows, ...this.time.known() }), record);
@@ -394,7 +425,7 @@ export class Field {
 
   /** The last record that can be taken back, or undefined. */
   lastRecord() {
-    const gone = new Set(this.records.map((one) => one.undoes).filter(Boolean));
+    const gone = new Set([...this.records.map((one) => one.undoes).filter(Boolean), ...this.#gone()]);
     return this.records.filter((one) => one.day === this.day?.day && !one.undoes && !gone.has(one.id)).at(-1);
   }
 
@@ -437,7 +468,16 @@ export class Field {
   /** How many plants are done and on the disk. */
   kept() { return [...this.own.values()].filter((one) => one.state !== WRITING).length; }
 
-  secondsLeft() { return secondsLeft(this.day, this.begun, this.time.best()); }
+  /** What is left of the hours: by the clock where they run, else by what the plants told since cost, as the season counts them. */
+  secondsLeft() { return this.#secondsLeft(this.begun); }
+
+  #secondsLeft(begun, more = []) {
+    if (this.meant() === null) return secondsLeft(this.day, begun, this.time.best());
+    const { heard = 0 } = this.day, told = [...this.own.values()].sort((a, b) => a.order - b.order);
+    const known = told.findLast((one) => one.order <= heard)?.plant ?? -1;
+    const since = told.filter((one) => one.order > heard).map((one) => one.plant);
+    return Math.max(0, this.day.seconds_left - secondsThrough(this.plot, this.day, known, [...since, ...more]));
+  }
 
   /** The line ahead as it is gone, metres. */
   way() {
@@ -453,6 +493,9 @@ export class Field {
   /** What is known of plants, for the map. */
   known() {
     const shown = { found: new Set(this.day.found), clean: new Set(this.day.clean), skipped: new Set() };
+    for (const plant of this.back) {
+      if (this.said(plant).length === 0) for (const kind of ["found", "clean"]) shown[kind].delete(plant);
+    }
     for (const [plant, one] of this.own) {
       for (const kind of ["found", "clean", "skipped"]) shown[kind].delete(plant);
       shown[one.result].add(plant);

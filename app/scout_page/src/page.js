@@ -226,7 +226,25 @@ export class Page {
   #old() {
     const { field } = this, wrong = field.time.isWrong() ? [h("p", { class: "tag", id: "clock" }, say("clock_wrong"))] : [];
     const newer = field.hasNewer() && !field.isOld() ? [h("button", { type: "button", class: "wide", id: "newer", onclick: () => this.load() }, say("newer_plan"))] : [];
-    return [...wrong, ...this.#otherDay(), ...newer];
+    return [...wrong, ...this.#otherDay(), ...newer, ...this.#takenBack()];
+  }
+
+  /** That records count no more, as somebody took them back in the season: which, and what is to come of them. */
+  #takenBack(id = "taken_back") {
+    const n = this.field.takenBack().length;
+    return n ? [h("button", { type: "button", class: "wide bad", id, onclick: () => this.#askTakenBack() }, say("taken_back", { n }))] : [];
+  }
+
+  #askTakenBack() {
+    const { field } = this, { plot } = field, title = say("taken_back", { n: field.takenBack().length });
+    const answer = (name, again) => h("button", { type: "button", class: again ? "wide main" : "wide", id: name, onclick: () => {
+      this.menu.close();
+      this.#act(() => field.answer(again)).then(() => { this.#draw(); this.onTold?.(); });
+    } }, say(name));
+    const which = (one) => h("li", {}, `${say("place", { row: signOf(plot, one.plant), plant: plot.number[one.plant] })}: ${say(one.result)}`);
+    this.#show(h("div", {}, h("h2", {}, title), h("p", {}, say("taken_back_why")), h("ul", {}, ...field.takenBack().map(which)),
+      answer("tell_again", true), answer("let_go", false),
+      h("button", { type: "button", class: "wide", onclick: () => this.menu.close() }, say("close"))), title, "taken_back");
   }
 
   /** Where nobody may be yet, and how many plants are not on the route for it. */
@@ -254,7 +272,7 @@ export class Page {
       h("h1", {}, say("place", values)),
       h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where),
         // what was seen today is no chance
-        !field.done.has(plant) && h("span", {}, say("chance", { n: (field.day.chance[plant] / 10).toFixed(field.day.chance[plant] < 100 ? 1 : 0) })),
+        !field.done.has(plant) && !field.back.has(plant) && h("span", {}, say("chance", { n: (field.day.chance[plant] / 10).toFixed(field.day.chance[plant] < 100 ? 1 : 0) })),
         field.offRoute && h("span", { class: "tag" }, say("off_route"))),
     );
     const closed = field.closedUntil(plant);
@@ -265,7 +283,7 @@ export class Page {
     }
     const contradicting = (field.day.contradicting ?? []).filter((one) => one.plant === plant);
     if (contradicting.length) place.append(h("p", { class: "bad" }, contradicting.map((one) => say("who_says", { who: one.who, result: say(one.result) })).join(", ")));
-    const known = (field.day.today ?? []).filter((one) => one.plant === plant && !contradicting.length);
+    const known = contradicting.length ? [] : field.said(plant);
     if (known.length) place.append(h("p", {}, known.map((one) => say("who_says", { who: one.who, result: say(one.result) })).join(", ")));
   }
 
@@ -324,7 +342,8 @@ export class Page {
     return h("div", { id: "others" }, input,
       draft.plant >= 0 && small("photo", () => input.click(), field.asked(draft.plant).length > 0 && !draft.photos ? { class: "main" } : {}),
       draft.plant >= 0 && small("note_button", () => this.#note(), { "aria-pressed": String(Boolean(draft.notes)) }),
-      last && h("button", { type: "button", id: "undo", onclick: () => this.#act(() => this.field.undo(), 30).then(() => this.onTold?.()) }, `↶ ${say("undo")}`),
+      // beside a find that is not saved yet one would take it for that
+      last && !draft.open && h("button", { type: "button", id: "undo", onclick: () => this.#act(() => this.field.undo(), 30).then(() => this.onTold?.()) }, `↶ ${say("undo")}`),
       offers >= 0 && offers !== draft.plant && small("here", () => this.#act(() => field.goTo(offers))),
       small("other_plant", () => this.#other()),
       field.asked().length > 0 && h("button", { type: "button", id: "asked", onclick: () => this.#asked() }, `▣ ${say("asked", { n: field.asked().length })}`),
@@ -409,8 +428,9 @@ export class Page {
       part && h("p", {}, say("your_rows", { low: part[0], high: part[1] })),
       ...this.#closed(),
       ...this.#leftOut(),
-      // it has not everything where it did not take something
-      !((refused.length || this.stranded.size) && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
+      // it has not everything where it did not take something, or not any more
+      ...this.#takenBack("taken_back_too"),
+      !((refused.length || this.stranded.size || field.takenBack().length) && this.state === "sent") && h("p", { class: this.state === "ended" ? "bad" : "" }, say(`state_${this.state}`)),
       ...[...this.stranded].map(([who, n]) => h("p", { class: "bad" }, say("stranded", { n, who }))),
       refused.length ? h("ul", { class: "bad" }, ...refused) : null,
       field.access && act("load_day", () => this.load()),

@@ -6,13 +6,13 @@ const legsSaid = new WeakMap();
 
 /** Seconds that the plants ahead take from where one stands, the way back included; what the server said of a leg holds. */
 export function secondsAhead(plot, day, at, ahead) {
+  return secondsThrough(plot, day, at, ahead) + (ahead.length ? secondsBack(plot, day, ahead.at(-1)) : 0);
+}
+
+/** Seconds that plants in turn take from where one stands, without the way back. */
+export function secondsThrough(plot, day, at, plants) {
   const leg = legs(plot, day);
-  let total = 0, here = at;
-  for (const plant of ahead) {
-    total += leg(here, plant) + day.robot.visit_s;
-    here = plant;
-  }
-  return total + (ahead.length ? secondsBack(plot, day, here) : 0);
+  return plants.reduce((total, plant, k) => total + leg(k ? plants[k - 1] : at, plant) + day.robot.visit_s, 0);
 }
 
 /** Seconds of the way back from a plant: as the server said of its last one, else to where its line ends, or to the gate. */

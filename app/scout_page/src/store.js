@@ -96,6 +96,18 @@ export class Store {
     }
   }
 
+  /** What the season took back is answered: told again as these records, or let go. All of it, or nothing. */
+  async answer(ids, again = []) {
+    const change = this.db.transaction("records", "readwrite", STRICT), done = change.done;
+    done.catch(() => {}); // said below
+    for (const id of ids) {
+      const one = await change.store.get(id);
+      if (one) change.store.put({ ...one, answered: true });
+    }
+    for (const one of again) change.store.add({ ...one, state: WAITING });
+    await done;
+  }
+
   /** Keep a photo; it waits at once where what it belongs to was told while it was made ready. */
   async addPhoto(photo) {
     const change = this.db.transaction(["records", "photos"], "readwrite", STRICT), done = change.done;

@@ -32,6 +32,48 @@ test("what was tapped comes back after a kill", async () => {
   assert.deepEqual(other.ahead, [1, 2, 10, 11]);
 });
 
+test("what was taken back here is shown no more, though what the season said last still says it", async () => {
+  const { season, field, sync } = await aField();
+  await field.tell("found");
+  await sync.send();
+  season.day = aDay(undefined, { found: [0, 3], today: [{ plant: 0, result: "found", who: "Ann" }, { plant: 3, result: "found", who: "Ben" }] });
+  await field.reread();
+  await field.refresh();
+  assert.deepEqual([field.said(0).length, field.back.size], [1, 0]);
+  await field.undo();
+  assert.deepEqual([field.said(0), field.done.has(0), [...field.back]], [[], false, [0]]);
+  assert.deepEqual([...field.known().found], [3]);
+  await sync.send();
+  await field.reread();
+  season.day = aDay();
+  await field.refresh();
+  assert.equal(field.back.size, 0, "the season says it itself");
+});
+
+test("records that somebody took back in the season are told by name, and told again or let go", async () => {
+  for (const again of [true, false]) {
+    const { season, store, field, sync } = await aField();
+    await field.tell("found");
+    await field.tell("clean");
+    await sync.send();
+    const ids = field.records.map((one) => one.id);
+    season.day = aDay(undefined, { taken_back: ids.slice(0, 1) });
+    await field.reread();
+    await field.refresh();
+    assert.deepEqual(field.takenBack().map((one) => one.plant), [0]);
+    assert.deepEqual([field.kept(), field.done.has(0), field.known().found.has(0), field.lastRecord().plant], [1, false, false, 1]);
+    await field.answer(again);
+    assert.deepEqual([field.takenBack(), field.kept()], [[], again ? 2 : 1]);
+    await sync.send();
+    const sent = [...season.taken.values()].map((one) => [one.plant, one.result, one.at]);
+    assert.deepEqual(sent.slice(2), again ? [sent[0]] : []);
+    assert.equal((await store.left()).records, 0);
+    season.day = aDay(undefined, { taken_back: [] }); // the undo was taken back
+    await field.refresh();
+    assert.equal(field.kept(), 2);
+  }
+});
+
 test("a find brings its neighbours, and undo brings back what was before", async () => {
   const { field, again } = await aField();
   await field.note({ open: true, count: 3, leaves: 5, stage: "egg" });
@@ -457,6 +499,26 @@ test("hours begin at the start, or with the way to a first plant that is more th
     await field.load();
     assert.equal(field.secondsLeft(), 14400);
   }
+});
+
+test("the hours of a day that is over are what its plants cost, whatever the clock says", async () => {
+  const season = new ASeason(aDay([0, 1, 2], { day: "2026-11-01", live: false, past: true }));
+  const { field, sync, again } = await aField(season, { ...ACCESS, on: "2026-11-01" });
+  await field.tell("clean");
+  await field.tell("clean");
+  for (const one of [field, await again()]) {
+    one.clock = () => new Date("2026-11-22T11:00:00Z");
+    assert.equal(one.secondsLeft(), 14400 - 2 * 37);
+  }
+  await field.undo();
+  assert.equal(field.secondsLeft(), 14400 - 37);
+  await sync.send();
+  await field.reread();
+  season.day = { ...season.day, seconds_left: 14000 };
+  await field.refresh();
+  assert.equal(field.secondsLeft(), 14000, "as the season counts them");
+  await field.tell("clean");
+  assert.equal(field.secondsLeft(), 14000 - 37);
 });
 
 test("a day that was over when it was loaded stays the day meant", async () => {

@@ -43,6 +43,20 @@ test("news is asked for each minute, though the clock is set back by an hour", a
   }
 });
 
+test("what was taken back here is asked for as soon as it is sent, not a minute later", async (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout", "Date"], now: 1e12 });
+  let asked = 0;
+  const field = { reread: async () => {}, refresh: async () => { asked += 1; }, day: {}, back: new Set() };
+  const runner = new Runner({ send: async () => {}, stranded: new Map() }, field, () => {});
+  for (const [plants, times] of [[[], 1], [[], 1], [[3], 2]]) {
+    field.back = new Set(plants);
+    runner.afterTap();
+    t.mock.timers.tick(1000);
+    await turns();
+    assert.equal(asked, times);
+  }
+});
+
 test("a network that is lost is tried again by and by, and at once after a tap", async (t) => {
   t.mock.timers.enable({ apis: ["setTimeout", "Date"] });
   let sent = 0;

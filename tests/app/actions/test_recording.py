@@ -37,6 +37,39 @@ def test_one_plant_is_recorded_and_undone(season_app, season):
     press(season_app, "Undo")
     assert metric(go(season_app, "season"), "Found") == "0"
     assert not len(season().history.inspections)
+    go(season_app, "record")
+    press(season_app, "Redo")
+    assert season().history.inspections.plant.tolist() == [plant]
+
+
+@pytest.mark.parametrize(
+    ("who", "later", "why"), [("Dana", 0, "Dana"), ("", 1, "17 Nov, and this page is about")]
+)
+def test_what_is_of_another_person_or_day_is_undone_after_a_question(
+    season_app, season, who, later, why
+):
+    on = date(2026, 11, 16) + timedelta(days=later)
+    season().record(Inspections.of([3, 4], [0, 1], on), "phone", who)
+    go(season_app, "record")
+    press(season_app, "Undo")
+    assert len(season().history.inspections) == 2
+    assert why in season_app.warning[-1].value.replace("\u2068", "").replace("\u2069", "")
+    press(season_app, "Leave it")
+    press(season_app, "Undo")
+    press(season_app, "Take it back")
+    assert not len(season().history.inspections)
+    press(season_app, "Redo")
+    assert len(season().history.inspections) == 2
+
+
+def test_what_was_recorded_long_ago_can_be_shown_and_undone(season_app, season):
+    for k in range(22):
+        season().record(Inspections.of([k], [0], date(2026, 11, 16)), "typed in")
+    go(season_app, "record")
+    assert not [one for one in season_app.button if one.key == "undo 2"]
+    press(season_app, "Show 2 more")
+    season_app.button(key="undo 2").click().run()
+    assert len(season().history.inspections) == 21
 
 
 def test_a_plant_that_was_pulled_out_is_recorded_as_gone(season_app, season):

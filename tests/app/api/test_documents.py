@@ -24,6 +24,7 @@ from fieldmon.monitoring.scouts_out import scouts_out
 from fieldmon.planning.members import team_of
 from fieldmon.planning.skips import left_out_in_words
 from fieldmon.plot.local_clock import local_clock
+from tests.app.chosen import in_season
 from tests.monitoring.phone import NOW, a_finding
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -75,6 +76,19 @@ def test_the_day_is_what_the_season_says(served, scout):
     assert day["past"]
     line = np.array(day["route"]["line"])
     assert np.abs(line - route.line_lonlat()).max() < 1e-7
+
+
+def test_the_app_shows_the_route_and_hours_that_the_phone_gets(served, scout):
+    season, on = served.season, BEGINS + timedelta(days=1)
+    for who, result in (("Ann", 0), ("", 1)):
+        day = json.loads(day_document(season, scout, on))
+        shown = in_season(season, on).plan()
+        assert shown.route.plant.tolist() == day["route"]["plants"]
+        assert shown.scene.seconds_left == day["seconds_left"]
+        done = np.array(day["route"]["plants"][:3], np.int32)
+        season.record(Inspections.of(done, np.array([0, 0, result]), on), "f", who)
+    day = json.loads(day_document(season, scout, on))
+    assert in_season(season, on).plan().route.plant.tolist() == day["route"]["plants"]
 
 
 def test_the_route_says_what_it_was_planned_to_find_until_it_is_planned_anew(served, scout):
@@ -211,14 +225,14 @@ def test_who_is_of_the_team_has_its_route_though_an_older_file_has_rows_for_the_
 
 
 def test_the_hours_of_today_run_by_the_clock_from_when_work_began(served, scout, monkeypatch):
-    season = served.season
-    starts = local_clock(season.plot.field).moment(BEGINS, season.settings.starts)
+    season, on = served.season, BEGINS + timedelta(days=1)  # a day of which nothing is recorded
+    starts = local_clock(season.plot.field).moment(on, season.settings.starts)
 
     def loaded_after(hours):
         now = starts + timedelta(hours=hours)
         for module in ("fieldmon.plot.local_clock", "app.api.documents"):
             monkeypatch.setattr(f"{module}.utc_now", lambda: now)
-        day = json.loads(day_document(season, scout, BEGINS))
+        day = json.loads(day_document(season, scout, on))
         jsonschema.validate(day, description.DAY)
         assert datetime.fromisoformat(day["begins"]) == starts
         return day
@@ -227,15 +241,15 @@ def test_the_hours_of_today_run_by_the_clock_from_when_work_began(served, scout,
     first = loaded_after(0.5)
     assert (first["live"], first["begun"], first["seconds_left"]) == (True, False, 3600 * hours)
     plants = np.array(first["route"]["plants"][:1], np.int32)
-    second = np.array([season.begun_s(BEGINS) + 120])
-    season.record(Inspections.of(plants, np.zeros(1, np.int8), BEGINS, second=second), "f", "Ann")
+    second = np.array([season.begun_s(on) + 120])
+    season.record(Inspections.of(plants, np.zeros(1, np.int8), on, second=second), "f", "Ann")
     late = loaded_after(hours - 0.3)
     assert (late["begun"], late["seconds_left"]) == (True, pytest.approx(0.3 * 3600))
     route, kept = late["route"], first["route"]["plants"][1:]
     assert 0 < len(route["plants"]) < len(kept)
     assert route["plants"] == kept[: len(route["plants"])], "the plan is the one that was given"
     assert late["plan"] == first["plan"]
-    rest = json.loads(rest_document(season, scout, BEGINS, None))
+    rest = json.loads(rest_document(season, scout, on, None))
     assert max(rest["route"]["end_s"], route["end_s"]) <= late["seconds_left"] + 0.1
     assert loaded_after(hours + 1.0)["route"]["plants"] == []
     after = loaded_after(24.0)

@@ -1026,6 +1026,7 @@ def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_m
     rest(page)
     batch.get_by_role("button").scroll_into_view_if_needed()
     batch.get_by_role("button").click()
+    page.locator("[class*=st-key-undo_yes] button").click()  # it is of another day
     said = page.locator(".st-key-panel_notice [data-testid=stAlert]")
     said.wait_for()
     place = said.bounding_box()

@@ -189,7 +189,6 @@ def test_a_season_in_which_nothing_was_inspected_or_traced_teaches_nothing(tmp_p
         lambda season: season.evening(BEGINS),
         lambda season: season.scene(BEGINS).chance,
         lambda season: season.scene(BEGINS).pair_chance,
-        lambda season: season.plan(BEGINS, keep=False).chance,
     ],
 )
 def test_who_changes_chances_that_were_given_changes_nothing_for_others(season, given):
@@ -197,6 +196,11 @@ def test_who_changes_chances_that_were_given_changes_nothing_for_others(season, 
     given(season)[:] = 0.0
     assert season.plan(BEGINS, keep=False).route.plant.tolist() == planned.tolist()
     assert season.evening(BEGINS).max() > 0.0
+
+
+def test_nobody_changes_the_chances_of_a_plan(season):
+    with pytest.raises(ValueError, match="read-only"):
+        season.plan(BEGINS, keep=False).chance[:] = 0.0
 
 
 def test_a_day_is_planned_by_the_map_that_is_told_of_it(season):

@@ -74,7 +74,8 @@ def heavier_than(told: float, found: NDArray[np.bool_], detects: Floats) -> tupl
 def refuted(likely: float, found: NDArray[np.bool_]) -> bool:
     """Tell whether a day's results ``(k,)`` speak against a map by which they were so likely.
 
-    `likely` is a logarithm. A map should do better than one chance for all plants inspected.
+    `likely` is a logarithm. A map should do better than one chance for all plants inspected; few
+    finds speak against none, as they may be of one spot.
 
     Examples
     --------
@@ -84,6 +85,8 @@ def refuted(likely: float, found: NDArray[np.bool_]) -> bool:
     [False, True]
     """
     n, finds = len(found), int(np.count_nonzero(found))
+    if finds < _FEW_FINDS:
+        return False
     each = [k * np.log(k / n) for k in (finds, n - finds) if k]
     return bool(likely < sum(each) - _REFUTED)
 

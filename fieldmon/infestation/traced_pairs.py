@@ -362,12 +362,13 @@ class TracedPairs:
         """Return this map with so much higher odds of the plants that are not `known` ``(n,)``."""
         told = np.clip(odds_times(self.chance, factor), LEAST_CHANCE, _UNKNOWN)
         chance = np.where(known, self.chance, told)
+        of = self.chance if self.others is None else self.at_start
         ancestry = self.ancestry and replace(
             self.ancestry, start=odds_times(self.ancestry.start, factor)
         )
         return replace(
             self, chance=chance, pair_chance=pair_chances(chance, self.grid, CLUSTERING),
-            at_start=self.at_start * float(chance.sum() / self.chance.sum()), ancestry=ancestry,
+            at_start=self.at_start * float(chance.sum() / of.sum()), ancestry=ancestry,
             latency=self.latency and self.latency.levelled(chance),
             likely=likely, is_heavier=True,
         )  # fmt: skip

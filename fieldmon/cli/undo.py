@@ -62,8 +62,7 @@ def undo(
         return
     before = {one.number for one in kept.batches() if one.undone}
     typer.echo(kept.undo(batch, inspection, who))
-    gone = [one for one in kept.batches() if one.undone and one.number not in before]
-    for one in gone:
-        if one.kind != "corrections":
+    for one in kept.batches():
+        if one.can_be_redone and one.number not in before:
             again = shlex.join(["fieldmon", "undo", str(season), "--redo", str(one.number)])
             typer.echo(f"To let it count again: {again}")

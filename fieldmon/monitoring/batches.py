@@ -52,6 +52,11 @@ class Batch:
     rows: int
     undone: bool
 
+    @property
+    def can_be_redone(self) -> bool:
+        """Whether it can count again: it was undone, and is none of corrections."""
+        return self.undone and self.kind != "corrections"
+
     def by(self, said: BatchContents | None) -> str:
         """Return who inspected, as its inspections say, or else who recorded it."""
         named = "" if said is None or self.kind != "findings" else said.who
@@ -275,7 +280,7 @@ def redo(
                 batch=number,
             )
         )
-    if batch.kind == "corrections":
+    if not batch.can_be_redone:
         raise SettingError(
             worded(
                 "Corrections that were undone cannot count again, and batch {batch} is of them. "

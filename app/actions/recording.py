@@ -320,9 +320,7 @@ def _of_days(choices: Choices, results: Inspections) -> Iterator[str]:
         return
     first, last = days.min().item(), days.max().item()
     if {first, last} != {choices.on}:
-        said = "–".join(
-            choices.units.said_day(on, choices.on) for on in dict.fromkeys((first, last))
-        )
+        said = choices.units.said_days(first, last, choices.on)
         day = choices.units.said_day(choices.on)
         yield texts.RECORDED_OF.format(days=said, day=day)
     if ahead := cautions.not_come(choices, last):
@@ -492,7 +490,7 @@ def _show_batch(choices: Choices, batch: Batch, contents: BatchContents | None) 
     # side by side, not in columns: a button takes what its word needs in each language
     with st.container(horizontal=True, vertical_alignment="center", key=f"batch_{n}"):
         st.markdown(said, width="stretch")
-        if batch.undone and batch.kind != "corrections":
+        if batch.can_be_redone:
             st.button(texts.REDO, key=f"redo {n}", on_click=redo, help=said, args=(choices, n))
         elif not batch.undone and not asked:
             st.button(texts.UNDO, key=f"undo {n}", on_click=_ask_undo if why else undo, help=said,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import date, datetime
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 from fieldmon.infestation.inspections import RESULT_NAMES
@@ -47,13 +47,12 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
         parts.append(texts.BATCHES_SAID[batch.kind].format(source=from_, n=batch.rows))
     if batch.kind == "treatment" and said is not None:
         parts.append(texts.PLANTS_COUNTED.format(n=said.n))
-    if batch.kind != "corrections" and said is not None:
-        # results may be brought days later
-        days = [date.fromisoformat(day) for day in dict.fromkeys((said.first, said.last))]
-        if days != [at.date()]:
-            said_days = "–".join(choices.units.said_day(day, choices.on) for day in days)
-            treated = batch.kind == "treatment"
-            parts.append(said_days if treated else texts.BATCH_OF_DAY.format(days=said_days))
+    is_corrected = batch.kind == "corrections"
+    # results may be brought days later
+    if said is not None and not is_corrected and {said.first, said.last} != {str(at.date())}:
+        said_days = choices.units.said_days(said.first, said.last, choices.on)
+        treated = batch.kind == "treatment"
+        parts.append(said_days if treated else texts.BATCH_OF_DAY.format(days=said_days))
     who = batch.by(said)
     parts += [texts.isolated(who) if who else "", texts.UNDONE if batch.undone else ""]
     parts.append(texts.COUNTS_ELSEWHERE if batch.stands_back(said) else "")
@@ -66,8 +65,7 @@ def why_to_ask(choices: Choices, batch: Batch, said: BatchContents | None) -> li
     if who and person_key(who) != person_key(choices.who or ""):
         why.append(texts.UNDO_ASK_WHO.format(who=texts.isolated(who)))
     if said is not None and {said.first, said.last} != {choices.day}:
-        days = [date.fromisoformat(day) for day in dict.fromkeys((said.first, said.last))]
-        named = "–".join(choices.units.said_day(day, choices.on) for day in days)
+        named = choices.units.said_days(said.first, said.last, choices.on)
         here = choices.units.said_day(choices.on)
         why.append(texts.UNDO_ASK_DAY.format(days=named, day=here))
     return why

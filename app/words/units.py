@@ -60,6 +60,15 @@ class UnitsInLanguage(library.Units):
         said = f"{weekday(day, short=True)} {self.short_day(day)}"
         return f"{said} {day.year}" if far else said
 
+    def said_days(self, first: date | str, last: date | str, seen_from: date | None = None) -> str:
+        """Return the days from one to another in the same way: one of them, if they are the same.
+
+        >>> UnitsInLanguage().said_days("2026-11-16", "2026-11-18")
+        'Mon 16 Nov–Wed 18 Nov'
+        """
+        ends = dict.fromkeys((first, last))
+        return "–".join(self.said_day(on, seen_from) for on in ends)
+
     def short_day(self, on: date) -> str:
         """Return a date without its weekday and year, for the axes of charts."""
         return day_and_month(on, month_first=DATES[self.date_like].startswith("%m"))

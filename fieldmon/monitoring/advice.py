@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from fieldmon.compute.arguments import USUAL_RATE_L_HA, must_be_rate
 from fieldmon.compute.kinds import must_hold_kinds
@@ -26,6 +27,7 @@ from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import best_zones, outlines
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.reach import RADIUS
 from fieldmon.io.writers.treatment_map import TreatmentMap
 from fieldmon.samplers.decide import Decide
 
@@ -52,6 +54,8 @@ _MOST_LOOKS = 1000
 _LONG_DAY_S = 1e7
 # zones of so much of a plot are called the plot
 _WHOLE = 0.995
+# plants out of reach of all inspections are said from this share on
+_FEW = 0.1
 # from here on a sum is said without its hundredths
 _ROUND_FROM = 100.0
 
@@ -179,6 +183,50 @@ class InspectAgain:
         )
 
 
+@dataclass(frozen=True)
+class NotReached:
+    """Plants of which no inspection says anything, as all were too far away.
+
+    Parameters
+    ----------
+    share
+        So many of all plants.
+    reach_m
+        Farther from any inspected plant than this.
+    """
+
+    share: float
+    reach_m: float
+
+    @classmethod
+    def of(cls, grid: PlantGrid, inspected: NDArray[np.integer]) -> NotReached:
+        """Return them where these plants were inspected in the season, some perhaps often.
+
+        An inspection reaches as far as insects are thought to jump otherwise than anywhere.
+        """
+        reach_m = RADIUS * float(np.sqrt(grid.row_spacing_m * grid.plant_spacing_m))
+        if not len(inspected):
+            return cls(1.0, reach_m)
+        near = cKDTree(grid.xy_m[np.unique(inspected)])
+        away_m, _ = near.query(grid.xy_m, distance_upper_bound=reach_m)
+        return cls(float(np.mean(np.isinf(away_m))), reach_m)
+
+    def sentences(self, units: Units | None = None) -> list[str]:
+        """Return it in words; nothing where few are meant."""
+        if self.share < _FEW:
+            return []
+        if self.share == 1.0:
+            return [worded("Nobody has inspected yet: the answer rests on what was told before.")]
+        return [
+            worded(
+                "{share:.0%} of the plants are more than {reach} from any inspection of the "
+                "season: of them the answer rests on what was told before. Inspect there before "
+                "you rely on it.",
+                share=self.share, reach=(units or Units()).metres(self.reach_m),
+            )
+        ]  # fmt: skip
+
+
 def _money(value: float) -> str:
     return figure(value, ",.0f" if abs(value) >= _ROUND_FROM else ",.2f")
 
@@ -205,6 +253,8 @@ class Advice:
         What was treated that day: its plants are in no zone.
     again
         When to inspect again; None: the plot is not below the threshold.
+    not_reached
+        Plants too far from any inspection; None as above.
     """
 
     grid: PlantGrid
@@ -215,6 +265,7 @@ class Advice:
     more: MoreInspections | None = None
     done: tuple[Treatment, ...] = ()
     again: InspectAgain | None = None
+    not_reached: NotReached | None = None
 
     def __repr__(self) -> str:
         return f"<Advice: {self.verdict}, {counted(len(self.zones), 'zone')}>"
@@ -322,7 +373,8 @@ class Advice:
     def reasons(self, units: Units | None = None) -> list[str]:
         """Return what the answer rests on, how long it holds, and what would end it sooner."""
         again = [] if self.again is None else [self.again.sentence(units)]
-        return [self.plot.believed(), *self._done_said(), *again, *self._sooner_said()]
+        away = [] if self.not_reached is None else self.not_reached.sentences(units)
+        return [self.plot.believed(), *away, *self._done_said(), *again, *self._sooner_said()]
 
     def _done_said(self) -> list[str]:
         if not self.done:

@@ -15,7 +15,7 @@ from fieldmon.infestation.earlier_season import EarlierSeason
 from fieldmon.infestation.inspections import SKIPPED
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import day_figures
-from fieldmon.monitoring.advice import AdviceSettings, InspectAgain, advice
+from fieldmon.monitoring.advice import AdviceSettings, InspectAgain, NotReached, advice
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import in_sight
 from fieldmon.monitoring.mornings import rules
@@ -127,7 +127,13 @@ class SeasonEstimates(OpenSeason):
         if made.verdict != LEAVE:
             return made
         ahead = history.forecast(morning, day)  # others may plan meanwhile
-        return replace(made, again=InspectAgain.of(ahead, on, asked.level * len(history.grid)))
+        done_until = history.until(day)
+        inspected = done_until.plant[done_until.result != SKIPPED]
+        return replace(
+            made,
+            again=InspectAgain.of(ahead, on, asked.level * len(history.grid)),
+            not_reached=NotReached.of(history.grid, inspected),
+        )
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""

@@ -71,6 +71,27 @@ def test_a_plot_that_is_left_is_inspected_again_before_it_may_be_above_the_thres
     assert season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)).again is None
 
 
+def test_a_plot_that_is_left_says_where_nobody_has_inspected(tmp_path):
+    made = a_season(tmp_path / "season.gpkg")
+    asked = AdviceSettings(0.5, costs=CHEAP)
+    said = "Nobody has inspected yet: the answer rests on what was told before."
+    assert said in made.advice(BEGINS, asked).reasons()
+    grid = made.plot.grid
+    made.record(Inspections.of([0, 1, 2], [0, 0, 2], np.datetime64(BEGINS)), "day")
+    advice = made.advice(BEGINS, asked)
+    reach_m = 12 * np.sqrt(grid.row_spacing_m * grid.plant_spacing_m)
+    away = np.hypot(*(grid.xy_m[:, None] - grid.xy_m[:2]).T).min(axis=0) > reach_m
+    assert advice.not_reached.share == np.mean(away) > 0.1
+    assert f"{100 * np.mean(away):.0f} % of the plants are more than" in advice.reasons()[1]
+    assert made.advice(BEGINS, AdviceSettings(0.0001, costs=CHEAP)).not_reached is None
+
+
+def test_of_few_plants_out_of_reach_nothing_is_said(season):
+    advice = season.advice(BEGINS, AdviceSettings(0.9, costs=CHEAP))
+    assert advice.not_reached.share == 0.0
+    assert not any("from any inspection" in one for one in advice.reasons())
+
+
 def test_when_nobody_can_say_it_tells_how_many_looks_decide(season):
     level = float(season.evening(BEGINS).mean())
     advice = season.advice(BEGINS, AdviceSettings(level, costs=CHEAP))

@@ -1,4 +1,4 @@
-"""How wide the robot is, and which times are charged: boxes beside its hours."""
+"""How wide the robot is, how it turns and which times are charged: boxes beside its hours."""
 
 from __future__ import annotations
 
@@ -19,32 +19,42 @@ if TYPE_CHECKING:
 
 #: times that a command has set, which no preset has
 _OWN = "own"
+_WIDTHS_M, _RADII_M = (0.1, 10.0), (0.1, 20.0)
 
 
 def of_files(robot: Robot) -> Robot:
     """Show the boxes of a plot that no season keeps; return the robot that they say."""
     unit = texts.UNITS[units().length]
-    shown = widget_memory.show(
-        st.number_input, texts.ROBOT_WIDTH.format(unit=unit), *units().limits(0.1, 10.0),
+    width = widget_memory.show(
+        st.number_input, texts.ROBOT_WIDTH.format(unit=unit), *units().limits(*_WIDTHS_M),
         step=0.05, key="robot_width", help=texts.ROBOT_WIDTH_HELP,
+    )  # fmt: skip
+    radius = widget_memory.show(
+        st.number_input, texts.ROBOT_TURNS.format(unit=unit), *units().limits(*_RADII_M),
+        step=0.1, key="robot_turns", disabled=width is None, help=texts.ROBOT_TURNS_HELP,
     )  # fmt: skip
     times = widget_memory.show(
         st.selectbox, texts.ROBOT_TIMES_LABEL, list(ROBOT_TIMES), key="robot_times",
         default=robot.times, filter_mode=None, format_func=lambda name: _times_name(robot, name),
         help=texts.ROBOT_TIMES_HELP,
     )  # fmt: skip
-    return _with_width(robot.with_times(times or USUAL_TIMES), shown)
+    return _with_size(robot.with_times(times or USUAL_TIMES), width, radius)
 
 
 def of_season(robot: Robot, key: str) -> Robot:
     """Show the boxes of a season's robot; return the robot that they say."""
-    now, key = units(), f"{key} {robot.width_m} {robot.times} {units().length}"
-    width_m, limits = robot.width_m, units().limits(0.1, 10.0)
-    was = None if width_m is None else min(max(now.shown(width_m), limits[0]), limits[1])
-    unit = texts.UNITS[now.length]
-    shown = widget_memory.anew(
-        st.number_input, texts.ROBOT_WIDTH.format(unit=unit), *limits, value=was, step=0.05,
-        key=f"robot_width {key}", help=texts.ROBOT_WIDTH_HELP,
+    size = f"{robot.width_m} {robot.turning_radius_m}"
+    now, key = units(), f"{key} {size} {robot.times} {units().length}"
+    unit, was = texts.UNITS[now.length], (_shown(robot.width_m, _WIDTHS_M),
+                                          _shown(robot.turning_radius_m, _RADII_M))  # fmt: skip
+    width = widget_memory.anew(
+        st.number_input, texts.ROBOT_WIDTH.format(unit=unit), *now.limits(*_WIDTHS_M),
+        value=was[0], step=0.05, key=f"robot_width {key}", help=texts.ROBOT_WIDTH_HELP,
+    )  # fmt: skip
+    radius = widget_memory.anew(
+        st.number_input, texts.ROBOT_TURNS.format(unit=unit), *now.limits(*_RADII_M),
+        value=was[1], step=0.1, key=f"robot_turns {key}", disabled=width is None,
+        help=texts.ROBOT_TURNS_HELP,
     )  # fmt: skip
     names = [*ROBOT_TIMES, *([_OWN] if robot.times is None else [])]
     times = st.selectbox(texts.ROBOT_TIMES_LABEL, names, names.index(robot.times or _OWN),
@@ -52,13 +62,26 @@ def of_season(robot: Robot, key: str) -> Robot:
                          format_func=lambda name: _times_name(robot, name))  # fmt: skip
     charged = robot if times == _OWN else robot.with_times(times)
     # what is shown is rounded: what nobody changed stays as it was
-    return charged if shown == was else _with_width(charged, shown)
+    return charged if (width, radius) == was else _with_size(charged, width, radius)
 
 
-def _with_width(robot: Robot, shown: float | None) -> Robot:
-    """Return a robot of another width; a length that a command said stays, if it has a width."""
-    width_m = None if shown is None else units().in_metres(shown)
-    return replace(robot, width_m=width_m, length_m=None if width_m is None else robot.length_m)
+def _shown(metres: float | None, limits_m: tuple[float, float]) -> float | None:
+    """Return a length as its box shows it."""
+    if metres is None:
+        return None
+    low, high = units().limits(*limits_m)
+    return min(max(units().shown(metres), low), high)
+
+
+def _with_size(robot: Robot, width: float | None, radius: float | None) -> Robot:
+    """Return a robot of another width and turning radius, as their boxes show them.
+
+    A length that a command said stays, if it has a width.
+    """
+    if width is None:
+        return replace(robot, width_m=None, length_m=None, turning_radius_m=None)
+    turns_m = None if radius is None else units().in_metres(radius)
+    return replace(robot, width_m=units().in_metres(width), turning_radius_m=turns_m)
 
 
 def _times_name(robot: Robot, name: str) -> str:

@@ -93,7 +93,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
     ahead = DayAhead.of(season, on)
     settings, plan, member = ahead.settings, ahead.plan_of(part), ahead.member(part)
     heard.note(season.path, scout.name, on, plan if has is None else has)
-    robot = settings.robot if member is None else member.robot
+    robot = season.plot.aisles.worked_by(settings.robot if member is None else member.robot)
     hours = work_hours(season, on, part)
     known = shown_states(history, settings.day(on))
     return {

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 #: what is asked of a decision: boxes of lengths, and of what an area costs or is given
 DECIDE_LENGTHS, DECIDE_BY_AREA = ("decide on", "decide off"), ("decide rate", "decide per_ha")
-_LENGTHS = (*LENGTHS, *BLOCK_LENGTHS, "robot_width", *DECIDE_LENGTHS)
+_LENGTHS = (*LENGTHS, *BLOCK_LENGTHS, "robot_width", "robot_turns", *DECIDE_LENGTHS)
 
 
 def carry_over(before: UnitsInLanguage) -> None:

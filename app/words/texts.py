@@ -87,6 +87,11 @@ ROBOT_WIDTH_HELP = (
     "Ways keep half of it off the canopies of plants, and aisles that are too narrow are not "
     "entered. Left empty, the robot is a point."
 )
+ROBOT_TURNS = "Turning radius, if it cannot turn on the spot ({unit})"
+ROBOT_TURNS_HELP = (
+    "Of its sharpest turn. Row ends without room for it are left out, and row changes are charged "
+    "what they take there. Needs a width."
+)
 ROBOT_TIMES_LABEL = "Time for row changes and stops"
 ROBOT_TIMES_HELP = "Measured in simulated drives, or as the thesis has them."
 ROBOT_TIMES_NAMES = {

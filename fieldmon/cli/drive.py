@@ -203,6 +203,10 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     from fieldmon.plot.local_clock import local_clock
 
     worker = options.worker.robot()
+    if options.steering == "ackermann":
+        from fieldmon.drive.robot_body import with_turning_radius
+
+        worker = with_turning_radius(worker)
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
     plot, on = known.plot, day_on(known.plot.field, day(options.on))
     aisles, prior = plot.aisles.for_robot(worker), PriorSettings()

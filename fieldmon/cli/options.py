@@ -216,6 +216,14 @@ Length = Annotated[
         callback=of_robot("length_m"),
     ),
 ]
+TurningRadius = Annotated[
+    float | None,
+    typer.Option(
+        help="Radius of the sharpest turn, metres, of a robot that cannot turn on the spot: row "
+        "ends without room for it are left out, and row changes take longer. Needs --width.",
+        callback=of_robot("turning_radius_m"),
+    ),
+]
 RobotTimesName = Annotated[
     str | None,
     typer.Option(
@@ -311,6 +319,7 @@ class WorkerOptions:
     rover: Rover = False
     width: Width = None
     length: Length = None
+    turning_radius: TurningRadius = None
     robot_times: RobotTimesName = None
 
     def given(self) -> dict[str, float]:
@@ -323,6 +332,7 @@ class WorkerOptions:
             "turn_180_s": self.turn,
             "width_m": self.width,
             "length_m": self.length,
+            "turning_radius_m": self.turning_radius,
         }
         return {name: value for name, value in said.items() if value is not None}
 

@@ -139,7 +139,7 @@ def drive_day(
     (True, frozenset())
     """
     robot, driver = who
-    clock = robot_clock(robot, robot.day_s)
+    clock = robot_clock(aisles.worked_by(robot), robot.day_s)
     driven = DrivenDay()
     driver.begin(aisles, place_m(aisles, day.at), day.gone_s)
     while (stop := day.ask()) is not None:

@@ -10,13 +10,14 @@ import shapely
 
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.pursuit import Pace, Pursuit
-from fieldmon.drive.robot_body import RobotBody
+from fieldmon.drive.robot_body import RobotBody, sharpest_of
 from fieldmon.drive.steered_pursuit import SteeredPursuit
 from fieldmon.drive.track import Track
-from fieldmon.drive.turning_circle import TurningRoom, way_of
 from fieldmon.drive.world import lay_ground, world_xml
 from fieldmon.errors import SettingError
 from fieldmon.plot.clearance import STRAY_M, half_canopy_m
+from fieldmon.plot.steered_way import way_of
+from fieldmon.plot.turning import TurningRoom
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -94,6 +95,7 @@ class MujocoRobot:
         """Stand at a place of a plot; where to point is chosen on the first way."""
         mujoco = _mujoco()
         grid = aisles.grid
+        self._stop_s = aisles.worked_by(self._robot).stop_s
         self._ground = self._physics.ground
         world = mujoco.MjSpec.from_string(world_xml(grid, _STEP_S, self._ground))
         self._body.put_into(world, mujoco)
@@ -125,10 +127,30 @@ class MujocoRobot:
         corners = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]],
                             [low[0], high[1]]])  # fmt: skip
         corners[:, 0] -= self._wheels.axle_m
+        turning_m = self._turning_m(self._wheels.turning_m)
         apart_m = half_canopy_m(aisles.grid) + STRAY_M / 2
         area = shapely.buffer(aisles.grid.drivable_m, _BEYOND_M)
         shapely.prepare(area)
-        return TurningRoom(self._wheels.turning_m, corners, aisles.grid.tree, apart_m, area)
+        return TurningRoom(turning_m, corners, aisles.grid.tree, apart_m, area)
+
+    def _turning_m(self, least_m: float) -> float:
+        """Return the radius that it turns by, 0: on the spot; raise `SettingError` if unplanned.
+
+        `least_m` is what its wheels can.
+        """
+        said_m = self._robot.turning_radius_m
+        if said_m is not None and not least_m:
+            raise SettingError(
+                "A robot with a turning radius must steer, but the simulated one turns on the "
+                "spot. Give --steering ackermann, or no --turning-radius."
+            )
+        if self._robot.width_m is not None and least_m > (said_m or 0.0) + _MEASURED_M:
+            planned = "one that turns on the spot" if said_m is None else f"{said_m:g} m"
+            raise SettingError(
+                f"The turning radius of the simulated robot is {least_m:.2f} m, but the day was "
+                f"planned for {planned}. Plan for it: --turning-radius {least_m + 0.005:.2f}"
+            )
+        return max(least_m, said_m or 0.0)
 
     def visit(self, errand: Errand) -> Visit:
         """Drive to a plant and look at it."""
@@ -137,7 +159,7 @@ class MujocoRobot:
             return driven._replace(there=False)
         self._note()
         # it stands still: no physics needed
-        self._data.time += max(errand.stop.inspect_s - self._robot.stop_s, 0.0)
+        self._data.time += max(errand.stop.inspect_s - self._stop_s, 0.0)
         self._note()
         found = self._look(errand.stop)
         return driven._replace(found=found, done_s=float(self._data.time))
@@ -189,7 +211,7 @@ class MujocoRobot:
                 f"There is no room to turn at {x:.1f}, {y:.1f} m of the plot's frame for a robot "
                 f"with a turning circle of {2 * radius_m:.1f} m."
             )
-        return SteeredPursuit(pieces, self._pace, self._wheels.sharpest), said
+        return SteeredPursuit(pieces, self._pace, sharpest_of(radius_m)), said
 
     @property
     def pose(self) -> tuple[float, float, float]:

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
+
+from fieldmon.plot.steered_way import GATHERS_M_S2, at_length, stretches
+from fieldmon.plot.turning import turn_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Float = NDArray[np.float64]
 
-# sharper corners are turned on the spot
-_HARD_RAD = math.radians(20.0)
 _AIMED_RAD = 0.02
 _LOOK_AHEAD_M = 0.6
 #: how near the end of a stretch counts as there
@@ -37,7 +37,7 @@ class Pace(NamedTuple):
 
     speed_m_s: float
     turn_rad_s: float = 1.2
-    gathers_m_s2: float = 0.5
+    gathers_m_s2: float = GATHERS_M_S2
 
 
 class Pursuit:
@@ -172,31 +172,3 @@ class LineToFollow:
     def aim(self, gone_m: float) -> tuple[float, float]:
         """Return the point so far along it, or beyond its end."""
         return at_length(self._aims, gone_m)
-
-
-def stretches(line_m: Float) -> list[Float]:
-    """Return a line cut at its hard corners; points of no way are left out."""
-    line = np.asarray(line_m, float)
-    line = line[np.append(True, np.hypot(*np.diff(line, axis=0).T) > 1e-3)]
-    if len(line) < 2:
-        return []
-    step = np.diff(line, axis=0)
-    heading = np.arctan2(step[:, 1], step[:, 0])
-    turn = np.abs((np.diff(heading) + np.pi) % (2 * np.pi) - np.pi)
-    cuts = [0, *(np.flatnonzero(turn > _HARD_RAD) + 1).tolist(), len(line) - 1]
-    return [line[a : b + 1] for a, b in pairwise(cuts)]
-
-
-def at_length(line: Float, gone_m: float) -> tuple[float, float]:
-    """Return a point so far along a line, or straight on beyond its end."""
-    step = np.diff(line, axis=0)
-    length = np.hypot(step[:, 0], step[:, 1])
-    before = np.append(0.0, np.cumsum(length))
-    i = int(np.clip(np.searchsorted(before, gone_m, "right") - 1, 0, len(length) - 1))
-    x, y = line[i] + step[i] / length[i] * (gone_m - before[i])
-    return float(x), float(y)
-
-
-def turn_of(angle: float) -> float:
-    """Return an angle as a turn of half a circle at most."""
-    return math.atan2(math.sin(angle), math.cos(angle))

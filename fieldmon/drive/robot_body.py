@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fieldmon.drive.robot_models import ackermann_xml, differential_xml
+from fieldmon.drive.robot_models import ackermann_sizes, ackermann_xml, differential_xml
 from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
@@ -62,12 +62,12 @@ class Wheels(NamedTuple):
         """Return the least radius of a turn, at the middle of the driven axle; 0: on the spot."""
         if not self.base_m:
             return 0.0
-        return _SPARE * (self.base_m / math.tan(self.steers_rad) + self.track_m / 2)
+        return _least_radius_m(self.base_m, self.track_m, self.steers_rad)
 
     @property
     def sharpest(self) -> float:
         """Return the bend of the sharpest turn, 1/m; 0: on the spot."""
-        return _SPARE / self.turning_m if self.base_m else 0.0
+        return sharpest_of(self.turning_m) if self.base_m else 0.0
 
     def commands(self, speed_m_s: float, turn: float) -> list[float]:
         """Return the commands of its actuators.
@@ -86,6 +86,28 @@ class Wheels(NamedTuple):
         driven = [speed_m_s * (1 + side * turn * half) / self.radius_m for side in (-1, 1)]
         steered = [math.atan2(self.base_m * turn, 1 + side * turn * half) for side in (-1, 1)]
         return driven + steered
+
+
+def sharpest_of(radius_m: float) -> float:
+    """Return the bend, 1/m, up to which a robot steers whose turns have such a radius."""
+    return _SPARE / radius_m
+
+
+def with_turning_radius(robot: Robot) -> Robot:
+    """Return a robot that turns as our steered one of its size, unless more was said of it.
+
+    Without a width nothing is planned by its size.
+    """
+    if robot.width_m is None or robot.turning_radius_m is not None:
+        return robot
+    base_m, track_m = ackermann_sizes(robot.width_m, robot.length_m or robot.width_m)
+    # to a centimetre, and never less than its wheels can
+    radius_m = math.ceil(100 * _least_radius_m(base_m, track_m, _STEERS_RAD)) / 100
+    return replace(robot, turning_radius_m=radius_m)
+
+
+def _least_radius_m(base_m: float, track_m: float, steers_rad: float) -> float:
+    return _SPARE * (base_m / math.tan(steers_rad) + track_m / 2)
 
 
 @dataclass(frozen=True)

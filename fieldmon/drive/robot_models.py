@@ -30,7 +30,8 @@ def ackermann_xml(width_m: float, length_m: float) -> str:
     apart, and its steered ones turn by 40 degrees. The steered axle swings, so that all four
     wheels stand on uneven ground.
     """
-    base, side = max(length_m - 2.2 * _WHEEL_M, 0.2), (width_m - _WIDE_M) / 2
+    base, track = ackermann_sizes(width_m, length_m)
+    side = track / 2
     return f"""<mujoco model="ackermann">{_DEFAULTS}<worldbody><body name="base">
  {_hull(base / 2, length_m / 2, width_m)}
  {_wheel("left", 0.0, side)}{_wheel("right", 0.0, -side)}
@@ -38,6 +39,11 @@ def ackermann_xml(width_m: float, length_m: float) -> str:
  <geom type="sphere" size=".03" mass="2" contype="0" conaffinity="0"/>
  {_steered("left", side)}{_steered("right", -side)}</body>
 </body></worldbody></mujoco>"""
+
+
+def ackermann_sizes(width_m: float, length_m: float) -> tuple[float, float]:
+    """Return how far apart its axles are, and the wheels of one."""
+    return max(length_m - 2.2 * _WHEEL_M, 0.2), width_m - _WIDE_M
 
 
 def _hull(middle_m: float, half_l: float, width_m: float) -> str:

@@ -9,17 +9,16 @@ import numpy as np
 import shapely
 from shapely import MultiLineString
 
-from fieldmon.drive.pursuit import REACH_M, LineToFollow, turn_of
+from fieldmon.drive.pursuit import REACH_M, LineToFollow
+from fieldmon.plot.steered_way import IN_BENDS, STEERS_S, is_straight
+from fieldmon.plot.turning import turn_of
 
 if TYPE_CHECKING:
     from fieldmon.drive.pursuit import Pace
-    from fieldmon.drive.turning_circle import Piece
+    from fieldmon.plot.turning import Piece
 
-_LOOK_AHEAD_M = 0.5
-# a bend of the way is driven at so much of the speed
-_IN_BENDS = 0.6
-# before it sets out it turns its wheels for so long
-_STEERS_S = 0.5
+# a piece with a bend is followed more closely than a straight one, which is driven more calmly
+_LOOK_AHEAD_M, _STRAIGHT_M = 0.5, 0.6
 _SLOWEST_M_S = 0.03
 
 
@@ -40,6 +39,7 @@ class SteeredPursuit:
         self._pieces, self._pace, self._sharpest = pieces, pace, sharpest
         self._lines = [LineToFollow(one.line_m, one.on_m) for one in pieces]
         self._whole = MultiLineString([one.line_m for one in pieces]) if pieces else None
+        self._ahead_m = [_STRAIGHT_M if is_straight(one) else _LOOK_AHEAD_M for one in pieces]
         self._k, self._stood_s = 0, 0.0
 
     @property
@@ -62,12 +62,12 @@ class SteeredPursuit:
         if left_m < REACH_M:
             self._k, self._stood_s = self._k + 1, 0.0
             return 0.0, 0.0
-        aim = np.subtract(line.aim(gone_m + _LOOK_AHEAD_M), xy_m)
+        aim = np.subtract(line.aim(gone_m + self._ahead_m[self._k]), xy_m)
         heading = yaw if piece.forward else yaw + math.pi
         alpha = turn_of(math.atan2(aim[1], aim[0]) - heading)
         bend = gear * 2.0 * math.sin(alpha) / max(float(np.hypot(*aim)), 0.1)
         bend = max(-self._sharpest, min(self._sharpest, bend))
-        if self._stood_s < _STEERS_S:
+        if self._stood_s < STEERS_S:
             self._stood_s += dt
             return 0.0, piece.bend or bend
         return gear * self._speed(abs(v), bend, left_m, dt), bend
@@ -79,7 +79,9 @@ class SteeredPursuit:
         return float(shapely.distance(self._whole, shapely.points(xy_m)))
 
     def _speed(self, v: float, bend: float, left_m: float, dt: float) -> float:
-        share = 1.0 - (1.0 - _IN_BENDS) * min(1.0, 2.0 * abs(bend) / self._sharpest)
+        # what only corrects noise is no bend
+        sharp = min(max(4.0 * abs(bend) / self._sharpest - 1.0, 0.0), 1.0)
+        share = 1.0 - (1.0 - IN_BENDS) * sharp
         limit = math.sqrt(2.0 * self._pace.gathers_m_s2 * max(left_m - REACH_M / 2, 0.0))
         faster = v + self._pace.gathers_m_s2 * dt
         speed = min(self._pace.speed_m_s * share, limit, faster)

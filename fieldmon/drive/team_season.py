@@ -215,7 +215,8 @@ class MemberDay(AskedDay):
         return free
 
     def _fits(self, plant: int) -> bool:
-        robot, travel, clock = self._member.robot, self.aisles.travel, self._today.scene.clock
+        scene = self._today.scene
+        robot, travel, clock = scene.robot, self.aisles.travel, scene.clock
         home_s = travel_s(travel, clock, plant, GATE) if robot.returns else 0.0
         return self._arrive_s(plant) + robot.visit_s + home_s <= robot.day_s
 

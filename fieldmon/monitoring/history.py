@@ -789,7 +789,7 @@ def _begun_s(shift: Shift, today: Inspections, resting: int) -> float:
 
 def _charged_s(shift: Shift, plants: NDArray[np.int32], resting: int) -> float:
     """Return what driving to plants in turn and inspecting them costs."""
-    robot = shift.robot
+    robot = shift.aisles.worked_by(shift.robot)
     clock = robot_clock(robot, robot.day_s)
     travel = shift.aisles.for_robot(robot).travel
     drive_s = driven_s(travel, clock, np.append(np.int64(resting), plants))

@@ -238,7 +238,7 @@ def settings_from(chosen: dict[str, Any]) -> MonitoringSettings:
 def as_json(settings: MonitoringSettings) -> dict[str, str]:
     """Return each part of the settings as JSON, by its name in season files."""
     plain: dict[str, Any] = {
-        "robot": asdict(settings.robot),
+        "robot": _plain_robot(settings.robot),
         "prior": asdict(settings.prior),
         "beliefs": asdict(settings.belief),
     }
@@ -255,7 +255,7 @@ def as_json(settings: MonitoringSettings) -> dict[str, str]:
         plain["season"]["harvest"] = settings.harvest.isoformat()
     if settings.language:
         plain["season"]["language"] = settings.language
-    members = [asdict(member) for member in settings.team]
+    members = [asdict(each) | {"robot": _plain_robot(each.robot)} for each in settings.team]
     together = {"teamwork": asdict(settings.teamwork)} if members else {}
     plain["team"] = {"members": members, **together}
     if settings.pest is not None:
@@ -307,6 +307,14 @@ def from_json(parts: dict[str, str]) -> MonitoringSettings:
 
 # what a robot was charged while seasons did not yet keep all of its times
 _TIMES_OF_OLD = ROBOT_TIMES["thesis"]._asdict()
+
+
+def _plain_robot(robot: Robot) -> dict[str, Any]:
+    """Return a robot as JSON has it; what turns on the spot says nothing of a turning radius."""
+    plain = asdict(robot)
+    if robot.turning_radius_m is None:
+        del plain["turning_radius_m"]
+    return plain
 
 
 def _robot(plain: dict[str, Any]) -> Robot:

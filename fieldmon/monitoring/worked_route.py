@@ -63,6 +63,7 @@ def worked_route(season: Season, on: date, who: str | None = None) -> Route:
         last_inspected=np.full(len(aisles.grid), NEVER, np.int32),
     )  # fmt: skip
     n, drive_s = len(done), _drive_s(scene, done.plant)
+    robot = scene.robot
     # a find is noted while standing there: the time of arrival is not known, and not needed
     leave_s, stop_s = np.maximum(done.second - begun_s, 0.0), np.zeros(n)
     if not np.isfinite(leave_s).all():

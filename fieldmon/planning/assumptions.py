@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.plot.assumed import Assumed
-from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
+from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M, robot_on
 from fieldmon.plot.robot import USUAL_TIMES, Robot, scout
 
 if TYPE_CHECKING:
@@ -41,9 +41,10 @@ def assumed_by(
     if robot.speed_m_s in {one.speed_m_s for one in usual}:
         made.append(Assumed("speed_m_s", robot.speed_m_s))
     if robot.times == USUAL_TIMES:
+        charged = robot if grid is None else robot_on(grid, robot)
         if grid is None or grid.in_rows:
-            made.append(Assumed("row_change_s", robot.row_change_s))
-        made.append(Assumed("stop_s", robot.stop_s))
+            made.append(Assumed("row_change_s", charged.row_change_s))
+        made.append(Assumed("stop_s", charged.stop_s))
     if robot.detection is None and robot.viewpoints == Robot().viewpoints:
         made.append(Assumed("detects", robot.detects))
     if robot.width_m is not None and (grid is None or grid.half_canopy_m is None):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import ceil, floor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,6 +11,9 @@ import shapely
 
 from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import PlotError
+from fieldmon.plot.end_turns import TurningCircle, end_turns, lane_ends
+from fieldmon.plot.robot import USUAL_TIMES
+from fieldmon.plot.steered_way import STEERS_S
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,10 +40,13 @@ class Clearance(NamedTuple):
         Where it drives on.
     turn_m
         Where it turns on the spot, as at row ends.
+    circle
+        What it needs to turn if it cannot turn on the spot; None: it can.
     """
 
     way_m: float
     turn_m: float
+    circle: TurningCircle | None = None
 
     @classmethod
     def of(cls, robot: Robot, grid: PlantGrid) -> Clearance | None:
@@ -47,7 +54,11 @@ class Clearance(NamedTuple):
         if robot.width_m is None or robot.turning_m is None:
             return None
         beside_m = half_canopy_m(grid) + STRAY_M
-        return cls(robot.width_m / 2 + beside_m, robot.turning_m / 2 + beside_m)
+        way_m = robot.width_m / 2 + beside_m
+        if robot.turning_radius_m is None:
+            return cls(way_m, robot.turning_m / 2 + beside_m)
+        size = robot.width_m, robot.length_m or robot.width_m
+        return cls(way_m, way_m, TurningCircle(robot.turning_radius_m, *size, beside_m))
 
     def too_narrow(self, grid: PlantGrid) -> Mask:
         """Tell of each row ``(r,)`` whether it cannot be inspected: its aisle is too narrow.
@@ -61,6 +72,16 @@ class Clearance(NamedTuple):
         corridors[grid.corridor[alone]] = True
         rows: Mask = corridors[grid.corridor]
         if rows.all() and (room_m >= self.way_m).any():
+            if self.circle is not None:
+                raise PlotError(
+                    worded(
+                        "A robot must have room to turn at the ends of rows, but with a turning "
+                        "radius of {radius_m:g} m it has none at any row of this plot. Take a "
+                        "robot that turns sharper or is smaller, or say how much headland there "
+                        "is.",
+                        radius_m=self.circle.radius_m,
+                    )
+                )
             raise PlotError(
                 worded(
                     "A robot must have room to turn at the ends of rows: {need_m:.2f} m around it, "
@@ -83,16 +104,41 @@ class Clearance(NamedTuple):
         return rows
 
     def tight_ends(self, grid: PlantGrid) -> Mask:
-        """Tell of each lane end ``(r, 2)`` whether there is no room to turn on the spot."""
-        tight: Mask = self.end_room_m(grid) < self.turn_m
+        """Tell of each lane end ``(r, 2)`` whether there is no room to turn."""
+        tight: Mask = ~np.asarray(self.turn_room(grid).any(axis=2))
         return tight
+
+    def turn_room(self, grid: PlantGrid) -> Mask:
+        """Tell of each lane end whether there is room to turn right and left, ``(r, 2, 2)``.
+
+        As the lane runs to its high end; on the spot it is as much to both sides.
+        """
+        if self.circle is not None:
+            return end_turns(grid, self.circle).room
+        room: Mask = np.repeat((self.end_room_m(grid) >= self.turn_m)[..., None], 2, axis=2)
+        return room
 
     @staticmethod
     def end_room_m(grid: PlantGrid) -> Float:
         """Return how near each lane end is to the middle of any plant, ``(r, 2)`` metres."""
-        ends_m = np.stack([_lane_points(grid, end) for end in range(2)], axis=1)
-        room: Float = grid.tree.query(ends_m)[0]
+        room: Float = grid.tree.query(lane_ends(grid)[0])[0]
         return room
+
+
+def robot_on(grid: PlantGrid, robot: Robot) -> Robot:
+    """Return a robot as it is charged on a plot.
+
+    Where plants stand in no rows, it changes none. One that cannot turn on the spot is charged what
+    a change to the next aisle takes it at the row ends of this plot, and that it steers before it
+    sets out from a stop, unless other times than the usual were chosen for it.
+    """
+    if not grid.in_rows:
+        return replace(robot, row_change_s=0.0) if robot.row_change_s else robot
+    needs = Clearance.of(robot, grid)
+    if needs is None or needs.circle is None or robot.times != USUAL_TIMES:
+        return robot
+    change_s = end_turns(grid, needs.circle).row_change_s(robot.speed_m_s)
+    return replace(robot, row_change_s=round(max(change_s, 0.0), 1), stop_s=robot.stop_s + STEERS_S)
 
 
 def half_canopy_m(grid: PlantGrid) -> float:
@@ -125,7 +171,18 @@ def narrow_sentence(rows: Mask, grid: PlantGrid, needs: Clearance) -> str:
                 **_counted(narrow, grid),
             )
         )
-    if (tight := rows & ~in_aisle).any():
+    tight = rows & ~in_aisle
+    if tight.any() and needs.circle is not None:
+        said.append(
+            worded(
+                "{rows} of {all} cannot be inspected: with a turning radius of {radius_m:g} m the "
+                "robot has no room to turn at either end of their aisles. Their {plants} are not "
+                "visited.",
+                radius_m=needs.circle.radius_m,
+                **_counted(tight, grid),
+            )
+        )
+    elif tight.any():
         said.append(
             worded(
                 "{rows} of {all} cannot be inspected: to turn at an end of their aisles the robot "
@@ -156,13 +213,6 @@ def _up(metres: float) -> float:
 def _down(metres: float) -> float:
     """Return a length in whole centimetres, never more."""
     return floor(round(100 * metres, 6)) / 100
-
-
-def _lane_points(grid: PlantGrid, end: int) -> Float:
-    """Return the low or the high end of the lane of each row, ``(r, 2)``."""
-    if grid.aisles_m is None or grid.aisle is None:
-        return np.stack([grid.lane_x_m[:, end], grid.lane_y_m], axis=1)
-    return grid.aisles_m.points(grid.aisle, grid.lane_x_m[:, end])
 
 
 def _lanes(grid: PlantGrid) -> Shapes:

@@ -13,6 +13,7 @@ from fieldmon.compute.arrays import runs
 from fieldmon.compute.wording import counted
 from fieldmon.plot.adjacency import delaunay_sides
 from fieldmon.plot.bent_ways import Bends, bends_of, row_end_places
+from fieldmon.plot.end_turns import lane_ends
 from fieldmon.plot.obstacles import SAME_M, Obstacles, end_plants
 from fieldmon.plot.way_joining import (
     NEAREST,
@@ -99,7 +100,7 @@ def find_roads(
     turns = np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)
     trusted = np.concatenate([beside[~narrow.rows], turns[narrow.passed.ravel()]])
     tried = np.concatenate([_along_aisles(grid, xy_m, place), _nearest(xy_m), _jumps(grid, place)])
-    tried = each_once(tried[~np.isin(tried, beside[narrow.tight]).any(axis=1)])
+    tried = each_once(tried[narrow.can_turn(grid, xy_m, tried, beside)])
     good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
     net = Net(xy_m, np.concatenate([trusted, tried[good]]))
     gate = int(beside[np.argmin(narrow.rows), 0])
@@ -107,7 +108,10 @@ def find_roads(
         gate = len(net.xy_m)
         net = with_gate(net, np.array([gate_xy_m]), obstacles, grid)
     needed = np.append(beside[~narrow.rows].ravel(), gate)
-    net = without_repeats(joined_inside(net, needed, obstacles))
+    net = joined_inside(net, needed, obstacles)
+    if not narrow.one_sided:
+        # where one may turn to one side only, what passes straight by must stay a way of its own
+        net = without_repeats(net)
     net = joined_outside(net, needed, obstacles)
     return _sorted(net, beside, gate)
 
@@ -135,21 +139,48 @@ class _Narrow(NamedTuple):
     """What is too narrow for a robot's size.
 
     Rows that cannot be inspected ``(r,)``, lane ends with no room to turn, and row ends that are
-    passed clear of their plants, ``(r, 2)``.
+    passed clear of their plants, ``(r, 2)``; where there is room to turn right and left,
+    ``(r, 2, 2)``, as the lane runs.
     """
 
     rows: Mask
     tight: Mask
     passed: Mask
+    room: Mask
 
     @classmethod
     def of(cls, grid: PlantGrid, clearance: Clearance | None) -> _Narrow:
         none = np.zeros((grid.n_rows, 2), np.bool_)
         if clearance is None:
-            return cls(none[:, 0], none, ~none)
+            return cls(none[:, 0], none, ~none, np.ones((grid.n_rows, 2, 2), np.bool_))
         beyond_m = np.abs(grid.lane_x_m - grid.along_m[end_plants(grid)])
-        tight = clearance.tight_ends(grid)
-        return cls(clearance.too_narrow(grid), tight, (beyond_m >= clearance.way_m) & ~tight)
+        room = clearance.turn_room(grid)
+        to_row = room[np.arange(grid.n_rows), :, (grid.side > 0).astype(np.intp)]
+        passed = (beyond_m >= clearance.way_m) & to_row
+        return cls(clearance.too_narrow(grid), clearance.tight_ends(grid), passed, room)
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether there is room to turn to one side only at a lane end."""
+        return bool((self.room[..., 0] != self.room[..., 1]).any())
+
+    def can_turn(self, grid: PlantGrid, xy_m: Float, pairs: Index, beside: Index) -> Mask:
+        """Tell of pairs of nodes ``(k, 2)`` whether a robot can turn at them where lanes end."""
+        good: Mask = ~np.asarray(np.isin(pairs, beside[self.tight]).any(axis=1))
+        if self.room.all():
+            return good
+        _, ahead = lane_ends(grid)
+        lane = np.full((len(xy_m), 2), 0.0)
+        blocked = np.zeros((len(xy_m), 2), np.bool_)
+        lane[beside.ravel()], blocked[beside.ravel()] = (
+            ahead.reshape(-1, 2), ~self.room.reshape(-1, 2)
+        )  # fmt: skip
+        for here, there in (pairs.T, pairs.T[::-1]):
+            way, along = xy_m[there] - xy_m[here], lane[here]
+            to_left = along[:, 0] * way[:, 1] - along[:, 1] * way[:, 0]
+            good &= ~(blocked[here, 0] & (to_left < -SAME_M))
+            good &= ~(blocked[here, 1] & (to_left > SAME_M))
+        return good
 
 
 def _find_bent(
@@ -174,7 +205,7 @@ def _find_bent(
     trusted = turns[narrow.passed.ravel()]
     tried = [across[:, :2], across[:, 1:], _nearest(xy_m), _jumps(grid, place)]
     pairs = np.concatenate(tried)
-    pairs = each_once(pairs[~np.isin(pairs, beside[narrow.tight]).any(axis=1)])
+    pairs = each_once(pairs[narrow.can_turn(grid, xy_m, pairs, beside)])
     good = obstacles.clear(xy_m[pairs[:, 0]], xy_m[pairs[:, 1]])
     net = Net(xy_m, np.concatenate([trusted, bends.pair, pairs[good]]))
     if gate_xy_m is not None and lane is None:

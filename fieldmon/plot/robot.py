@@ -34,6 +34,7 @@ _ALLOWED = {
     "detection": CHANCE,
     "width_m": _SIZE,
     "length_m": _SIZE,
+    "turning_radius_m": AllowedRange(0.1, 20.0, said=worded("0.1 to 20 metres")),
 }
 #: at 30 m/s (108 km/h) nobody drives along plants
 _DRIVEN_MOST = {"speed_m_s": 30.0}
@@ -149,6 +150,11 @@ class Robot:
         aisles and row ends that are too narrow are not driven; see `Aisles.for_robot`. Without
         one, as in the thesis, ways keep 0.3 m off the middle of plants. A length of None is as
         long as wide.
+    turning_radius_m
+        Of its least turn, at the middle of its rear axle, if it cannot turn on the spot. Row ends
+        without room for its arcs and shunts are not driven, and a row change is charged what they
+        take on the plot, unless its seconds are said; see `Aisles.worked_by`. None: it turns on
+        the spot. Needs a width.
 
     Examples
     --------
@@ -169,6 +175,7 @@ class Robot:
     returns: bool = True
     width_m: float | None = None
     length_m: float | None = None
+    turning_radius_m: float | None = None
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "The robot's")
@@ -179,6 +186,10 @@ class Robot:
         if self.length_m is not None and self.width_m is None:
             raise SettingError(
                 worded("A robot whose length is known must have a width too. Give both.")
+            )
+        if self.turning_radius_m is not None and self.width_m is None:
+            raise SettingError(
+                worded("A robot whose turning radius is known must have a width too. Give both.")
             )
 
     @property

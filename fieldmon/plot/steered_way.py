@@ -3,115 +3,26 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 
-from fieldmon.drive.pursuit import at_length, stretches, turn_of
+from fieldmon.plot.turning import Piece, TurningRoom, best_turn, length_m, turn_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-    from scipy.spatial import cKDTree
-    from shapely.geometry.base import BaseGeometry
 
     Float = NDArray[np.float64]
 
 # a corner softer than this is driven without a turn of its own
 _SOFT_RAD = math.radians(20.0)
-_MOST_ARCS = 9
-# a change of gear costs as much as so many metres
-_SHUNT_M = 1.5
-_STEP_M = 0.05
-# a robot's outline is looked at so often on its way to a turn and from it
-_LOOKS_M = 0.2
 _NO_WAY_M = 0.02
-# an arc is known so far beyond its end
-_BEYOND_M = 1.0
-
-
-class Piece(NamedTuple):
-    """A part of a way that is driven in one gear.
-
-    Parameters
-    ----------
-    line_m
-        ``(k, 2)`` of the middle of the driven axle.
-    forward
-        Whether it is driven ahead.
-    bend
-        How its wheels stand where it begins: 1 over the radius, 1/m, to the left above 0.
-    on_m
-        ``(j, 2)`` how it would go on beyond its end, to be aimed at; None: straight on.
-    """
-
-    line_m: Float
-    forward: bool
-    bend: float = 0.0
-    on_m: Float | None = None
-
-    def __repr__(self) -> str:
-        return f"<Piece {'ahead' if self.forward else 'back'}, {_length(self.line_m):.2f} m>"
-
-
-class TurningRoom(NamedTuple):
-    """What a robot needs to turn, and what stands in its way.
-
-    Parameters
-    ----------
-    radius_m
-        Of its least turn, at the middle of the driven axle.
-    corners_m
-        ``(4, 2)`` of its outline, as it stands at the origin and heads along x.
-    plants
-        Where plants stand, as a tree.
-    apart_m
-        How far its outline must keep off the middle of plants.
-    area
-        In which the middle of its driven axle stays when it turns; None: anywhere.
-    """
-
-    radius_m: float
-    corners_m: Float
-    plants: cKDTree
-    apart_m: float
-    area: BaseGeometry | None = None
-
-    def __repr__(self) -> str:
-        return f"<TurningRoom of {2 * self.radius_m:.1f} m>"
-
-    def holds(self, line_m: Float) -> bool:
-        """Tell whether places ``(k, 2)`` lie in its area, or their first already does not."""
-        if self.area is None:
-            return True
-        inside = shapely.intersects_xy(self.area, line_m[:, 0], line_m[:, 1])
-        return bool(inside.all() or not inside[0])
-
-    def allows(self, line_m: Float, yaw: Float) -> bool:
-        """Tell whether a robot that stands at places ``(k, 2)``, heading so, touches nothing."""
-        near = self.plants.query_ball_point(
-            line_m.mean(axis=0), float(np.ptp(line_m, axis=0).max()) + 4.0 + self.apart_m
-        )
-        if not near:
-            return True
-        cos, sin = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
-        x, y = self.corners_m.T
-        outline = np.stack(
-            [line_m[:, :1] + cos * x - sin * y, line_m[:, 1:] + sin * x + cos * y], axis=2
-        )
-        swept = shapely.union_all(shapely.polygons(outline))
-        posts = shapely.multipoints(self.plants.data[near])
-        return bool(shapely.distance(swept, posts) >= self.apart_m)
-
-
-class _Turn(NamedTuple):
-    """A turn at a corner: where it begins and ends, metres along its axes from the corner."""
-
-    begins_m: float
-    ends_m: float
-    arcs: list[Piece]
-    yaw: float
-    cost_m: float
+#: bends are driven at so much of the speed, before a robot sets out it steers for so long, and so
+#: much speed it gains or loses in a second
+IN_BENDS, STEERS_S, GATHERS_M_S2 = 0.6, 0.5, 0.5
+#: and each corner takes so much more, as it straightens up (simulated drives, see docs/drive)
+CORNER_S = 0.3
 
 
 def way_of(line_m: Float, yaw: float, room: TurningRoom) -> tuple[list[Piece], Float | None]:
@@ -125,7 +36,8 @@ def way_of(line_m: Float, yaw: float, room: TurningRoom) -> tuple[list[Piece], F
     --------
     >>> import numpy as np
     >>> from scipy.spatial import cKDTree
-    >>> from fieldmon.drive.turning_circle import TurningRoom, way_of
+    >>> from fieldmon.plot.steered_way import way_of
+    >>> from fieldmon.plot.turning import TurningRoom
     >>> box = np.array([[-0.2, -0.3], [0.6, -0.3], [0.6, 0.3], [-0.2, 0.3]])
     >>> room = TurningRoom(1.0, box, cKDTree(np.array([[9.0, 9.0]])), 0.3)
     >>> way_of(np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 5.0]]), 0.0, room)
@@ -137,6 +49,38 @@ def way_of(line_m: Float, yaw: float, room: TurningRoom) -> tuple[list[Piece], F
             return merged(way.pieces), stretch[0]
     way.end(0.0)
     return merged(way.pieces), None
+
+
+def driven_s(pieces: list[Piece], room: TurningRoom, speed_m_s: float) -> float:
+    """Return the seconds that pieces take a simulated robot: bends are slower, gears cost stops.
+
+    Parameters
+    ----------
+    pieces
+        As `way_of` has them.
+    room
+        Of the robot.
+    speed_m_s
+        How fast it drives straight on.
+    """
+    bends_m = straight_m = 0.0
+    for one in pieces:
+        bend_m = room.radius_m * _bends_rad(one)
+        bends_m += bend_m
+        straight_m += length_m(one.line_m) - bend_m
+    stop_s = STEERS_S + IN_BENDS * speed_m_s / GATHERS_M_S2
+    return (bends_m / IN_BENDS + straight_m) / speed_m_s + (len(pieces) - 1) * stop_s
+
+
+def is_straight(piece: Piece) -> bool:
+    """Tell whether a piece has no bend to speak of."""
+    return _bends_rad(piece) < _SOFT_RAD
+
+
+def _bends_rad(piece: Piece) -> float:
+    """Return by how much a piece bends in all, to either side."""
+    heading = np.unwrap(np.arctan2(*np.diff(piece.line_m, axis=0).T[::-1]))
+    return float(np.abs(np.diff(heading)).sum())
 
 
 def merged(pieces: list[Piece]) -> list[Piece]:
@@ -164,7 +108,7 @@ class _Way:
         """Turn into a stretch, and go on along it; False: there is no room to turn."""
         error, begins_m = turn_of(_heading(stretch[:2]) - self._yaw), 0.0
         if min(abs(error), math.pi - abs(error)) > _SOFT_RAD:
-            turn = _best_turn(stretch[0], self._yaw, error, self._room)
+            turn = best_turn(stretch[0], self._yaw, error, self._room, ahead=self._forward)
             if turn is None:
                 self.end(0.0)
                 return False
@@ -187,7 +131,7 @@ class _Way:
         if self._line is None:
             return
         line = self._line
-        ends_m = _length(line) + (beyond_m if self._forward else -beyond_m)
+        ends_m = length_m(line) + (beyond_m if self._forward else -beyond_m)
         if abs(ends_m - self._from_m) < _NO_WAY_M:
             return
         low, high = sorted((self._from_m, ends_m))
@@ -198,72 +142,29 @@ class _Way:
         self.pieces.append(Piece(part if along else part[::-1], self._forward == along))
 
 
-def _best_turn(corner: Float, yaw: float, error: float, room: TurningRoom) -> _Turn | None:
-    """Return the cheapest turn at a corner that has room; None: no turn has."""
-    ways = [
-        _turn(corner, yaw, total, (arcs, first), room.radius_m)
-        for total in (error, turn_of(error + math.pi))
-        for arcs in range(1, _MOST_ARCS + 1)
-        for first in (1, -1)
-    ]
-    for way in sorted(ways, key=lambda one: one.cost_m):
-        if _fits(corner, yaw, way, room):
-            return way
-    return None
-
-
-def _turn(
-    corner: Float, yaw: float, total: float, shunts: tuple[int, int], radius_m: float
-) -> _Turn:
-    """Return a turn by an angle in so many arcs, the first in a gear, each the other way back."""
-    arcs, first = shunts
-    bend, each = math.copysign(1.0, total), total / arcs
-    at, heading, gear, pieces = np.zeros(2), yaw, first, []
-    for _ in range(arcs):
-        n = max(2, math.ceil(abs(each) * radius_m / (_STEP_M * max(1.0, radius_m))))
-        beyond = n + math.ceil(n * _BEYOND_M / (abs(each) * radius_m))
-        angles = heading + each * np.arange(beyond + 1) / n
-        side = bend * gear * radius_m
-        places = at + side * (_left(np.array([heading])) - _left(angles))
-        line = places[: n + 1]
-        pieces.append(Piece(line, gear > 0, side / radius_m**2, places[n + 1 :]))
-        at, heading, gear = line[-1], heading + each, -gear
-    # it begins on the axis it comes by and ends on the one it leaves by
-    come, leave = (np.array([math.cos(a), math.sin(a)]) for a in (yaw, yaw + total))
-    begins_m, ends_m = np.linalg.solve(np.stack([come, -leave], axis=1), -at).tolist()
-    by = corner + begins_m * come
-    moved = [one._replace(line_m=one.line_m + by, on_m=one.on_m + by) for one in pieces]
-    cost = abs(total) * radius_m + max(begins_m, 0.0) * 2 + max(-ends_m, 0.0) * 2
-    return _Turn(begins_m, ends_m, moved, turn_of(yaw + total), cost + _SHUNT_M * (arcs - 1))
-
-
-def _fits(corner: Float, yaw: float, turn: _Turn, room: TurningRoom) -> bool:
-    """Tell whether a turn touches no plant, the ways from the corner and to it included."""
-    come, leave = (np.array([math.cos(a), math.sin(a)]) for a in (yaw, turn.yaw))
-    lines, yaws = [], []
-    for far_m, axis, heads in ((turn.begins_m, come, yaw), (turn.ends_m, leave, turn.yaw)):
-        along = np.linspace(0.0, far_m, 2 + int(abs(far_m) / _LOOKS_M))
-        lines.append(corner + along[:, None] * axis)
-        yaws.append(np.full(len(along), heads))
-    heading = yaw
-    for arc in turn.arcs:
-        turned = arc.bend * _length(arc.line_m) * (1.0 if arc.forward else -1.0)
-        lines.append(arc.line_m)
-        yaws.append(heading + turned * np.linspace(0.0, 1.0, len(arc.line_m)))
-        heading += turned
-    line = np.concatenate(lines)
-    return room.holds(line) and room.allows(line, np.concatenate(yaws))
-
-
-def _left(angle: Float) -> Float:
-    """Return the unit vectors ``(k, 2)`` to the left of headings."""
-    return np.stack([-np.sin(angle), np.cos(angle)], axis=1)
-
-
 def _heading(step_m: Float) -> float:
     (a, b), (c, d) = step_m.tolist()
     return math.atan2(d - b, c - a)
 
 
-def _length(line_m: Float) -> float:
-    return float(np.hypot(*np.diff(line_m, axis=0).T).sum())
+def stretches(line_m: Float) -> list[Float]:
+    """Return a line cut at its hard corners; points of no way are left out."""
+    line = np.asarray(line_m, float)
+    line = line[np.append(True, np.hypot(*np.diff(line, axis=0).T) > 1e-3)]
+    if len(line) < 2:
+        return []
+    step = np.diff(line, axis=0)
+    heading = np.arctan2(step[:, 1], step[:, 0])
+    turn = np.abs((np.diff(heading) + np.pi) % (2 * np.pi) - np.pi)
+    cuts = [0, *(np.flatnonzero(turn > _SOFT_RAD) + 1).tolist(), len(line) - 1]
+    return [line[a : b + 1] for a, b in pairwise(cuts)]
+
+
+def at_length(line: Float, gone_m: float) -> tuple[float, float]:
+    """Return a point so far along a line, or straight on beyond its end."""
+    step = np.diff(line, axis=0)
+    length = np.hypot(step[:, 0], step[:, 1])
+    before = np.append(0.0, np.cumsum(length))
+    i = int(np.clip(np.searchsorted(before, gone_m, "right") - 1, 0, len(length) - 1))
+    x, y = line[i] + step[i] / length[i] * (gone_m - before[i])
+    return float(x), float(y)

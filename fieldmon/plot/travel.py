@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from numbers import Integral
 from typing import TYPE_CHECKING, NamedTuple
@@ -14,7 +14,7 @@ from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
-from fieldmon.plot.clearance import Clearance, narrow_sentence
+from fieldmon.plot.clearance import Clearance, narrow_sentence, robot_on
 from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
 from fieldmon.plot.road_network import RoadNetwork, find_roads
 from fieldmon.plot.travel_table import TravelTable
@@ -144,10 +144,17 @@ class Aisles:
         return f"<Aisles: {self.grid.counts}, {counted(len(self.roads.xy_m), 'node')}>"
 
     def worked_by(self, robot: Robot) -> Robot:
-        """Return a robot as it works here: where plants stand in no rows, it changes none."""
-        if self.grid.in_rows or not robot.row_change_s:
-            return robot
-        return replace(robot, row_change_s=0.0)
+        """Return a robot as it is charged here, see `robot_on`.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
+        >>> tractor = fm.Robot(width_m=1.1, length_m=1.6, turning_radius_m=1.5)
+        >>> plot.aisles.worked_by(tractor).row_change_s
+        14.2
+        """
+        return robot_on(self.grid, robot)
 
     @property
     def gate_m(self) -> Float:

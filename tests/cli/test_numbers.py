@@ -127,6 +127,7 @@ _MADE_OF = {
     "--speed": lambda v: WorkerOptions(speed=v).robot(),
     "--turn": lambda v: Robot(turn_180_s=v),
     "--width": lambda v: Robot(width_m=v),
+    "--turning-radius": lambda v: Robot(width_m=1.0, turning_radius_m=v),
     "--bearing": lambda v: Planting(row_bearing_deg=v),
     "--row-spacing": lambda v: Planting(row_spacing_m=v),
     "--headland": lambda v: Planting(headland_m=v),

@@ -9,10 +9,15 @@ import pytest
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.ground import rough_ground
 from fieldmon.drive.mujoco_robot import MujocoRobot, Physics
-from fieldmon.drive.robot_body import RobotBody
+from fieldmon.drive.robot_body import RobotBody, with_turning_radius
 from fieldmon.drive.track import Track
 from fieldmon.errors import SettingError
 from fieldmon.plot.clearance import STRAY_M
+from fieldmon.plot.layout import rectangle
+from fieldmon.plot.planting import Planting
+from fieldmon.plot.plot import Plot
+from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
 from tests.drive.models import TRACTOR, urdf
 
 
@@ -64,22 +69,54 @@ def test_a_robot_too_wide_for_its_way_touches_plants_and_is_stuck(plot, robot):
     assert done.stops[-1].visit.found is None
 
 
-def a_short_day(plot, robot, body, ground=None):
+def a_short_day(plot, robot, body, ground=None, planned=None):
     from fieldmon.monitoring.monitor import Monitor
 
     robot = replace(robot, hours=0.12, turn_180_s=0.0, look_s=20.0)
+    planned = robot if planned is None else replace(planned, hours=0.12)
     chance = np.random.default_rng(3).uniform(0.005, 0.3, len(plot.grid))
     driver = MujocoRobot(robot, lambda stop: stop.plant == -1, Physics(body, 0.02, 1, ground))
-    with Monitor(plot, robot=robot, chance=chance).day() as day:
-        return drive_day(day, plot.aisles.for_robot(robot), (robot, driver))
+    with Monitor(plot, robot=planned, chance=chance).day() as day:
+        return drive_day(day, plot.aisles.for_robot(planned), (planned, driver))
 
 
-def test_a_steered_robot_shunts_and_touches_no_plant_on_rough_ground(plot, robot):
+def test_a_steered_robot_touches_no_plant_on_rough_ground(plot, robot):
+    robot = with_turning_radius(robot)
     day = a_short_day(plot, robot, RobotBody.of(robot, "ackermann"), rough_ground(plot.grid, 0.02))
     assert len(day.stops) > 5
     assert not day.touched
     assert not day.stuck
     assert day.strayed_m < STRAY_M
+
+
+def test_a_steered_robot_takes_what_its_turns_are_charged():
+    """Every plant in another aisle: two turns a stop, some of them with shunts."""
+    grid = rectangle(10, 6, Planting(row_spacing_m=2.0, plant_spacing_m=1.5, headland_m=4.0))
+    robot = with_turning_radius(Robot(width_m=0.7, length_m=1.3, look_s=5.0))
+    aisles = Aisles.of(grid)
+    ways, worked = aisles.for_robot(robot), aisles.worked_by(robot)
+    driver = MujocoRobot(robot, lambda stop: False, Physics(RobotBody.of(robot, "ackermann")))  # noqa: ARG005
+    driver.begin(ways, ways.gate_m, 0.0)
+    driver.home(ways.path(-1, 3))
+    since_s = driver.home(ways.path(3, 3 + 6)).done_s
+    for row in range(1, 9):
+        done = driver.home(ways.path(6 * row + 3, 6 * (row + 1) + 3))
+        assert not done.touched
+        assert not done.stuck
+    way_m = sum(float(ways.distance_m(6 * row + 3, 6 * row + 9)) for row in range(1, 9))
+    took_s = (done.done_s - since_s - way_m / robot.speed_m_s) / 8 - worked.stop_s
+    assert worked.row_change_s > 5.0
+    assert took_s == pytest.approx(worked.row_change_s, rel=0.1)
+
+
+def test_a_robot_that_turns_wider_than_planned_for_is_refused(plot, robot):
+    steered = RobotBody.of(robot, "ackermann")
+    with pytest.raises(SettingError, match=r"planned for one that turns on the spot.* 0\.90"):
+        a_short_day(plot, robot, steered)
+    with pytest.raises(SettingError, match=r"is 0\.89 m, but the day was planned for 0\.5 m"):
+        a_short_day(plot, replace(robot, turning_radius_m=0.5), steered)
+    with pytest.raises(SettingError, match="must steer, but the simulated one turns on the spot"):
+        a_short_day(plot, replace(robot, turning_radius_m=0.9), RobotBody.of(robot))
 
 
 def test_the_robot_of_a_file_drives_and_one_wider_than_planned_for_is_refused(
@@ -96,10 +133,13 @@ def test_the_robot_of_a_file_drives_and_one_wider_than_planned_for_is_refused(
 
 
 def test_where_a_steered_robot_has_no_room_to_turn_the_day_ends_and_says_so(plot, robot, tmp_path):
-    """A tractor that hardly steers: no shunt is short enough."""
-    (tmp_path / "long.xml").write_text(TRACTOR.replace('range="-.6 .6"', 'range="-.02 .02"'))
-    wide = replace(robot, width_m=0.65, length_m=1.1)
-    day = a_short_day(plot, wide, RobotBody.of(wide, model=tmp_path / "long.xml"))
+    """A tractor that hardly steers, in narrow headlands: no shunt is short enough."""
+    grid = rectangle(8, 12, Planting(row_spacing_m=2.0, plant_spacing_m=1.5, headland_m=1.6))
+    plot = Plot(plot.field, Aisles.of(grid))
+    (tmp_path / "long.xml").write_text(TRACTOR.replace('range="-.6 .6"', 'range="-.034 .034"'))
+    wide = replace(robot, width_m=0.65, length_m=1.1, turning_radius_m=19.9)
+    body = RobotBody.of(wide, model=tmp_path / "long.xml")
+    day = a_short_day(plot, wide, body, planned=replace(wide, turning_radius_m=None))
     assert "no room to turn" in day.stuck[0]
     assert "turning circle of" in day.stuck[0]
 

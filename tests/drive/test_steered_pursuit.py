@@ -8,7 +8,8 @@ from scipy.spatial import cKDTree
 
 from fieldmon.drive.pursuit import REACH_M, Pace
 from fieldmon.drive.steered_pursuit import SteeredPursuit
-from fieldmon.drive.turning_circle import TurningRoom, way_of
+from fieldmon.plot.steered_way import way_of
+from fieldmon.plot.turning import TurningRoom
 
 BOX = np.array([[-0.2, -0.3], [0.6, -0.3], [0.6, 0.3], [-0.2, 0.3]])
 SHARPEST = 1.1

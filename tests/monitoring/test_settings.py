@@ -115,6 +115,12 @@ def test_a_season_begun_before_finds_were_traced_goes_on_as_it_did():
     assert not from_json(before).belief.traces
 
 
+def test_a_robot_that_turns_on_the_spot_is_kept_as_it_always_was():
+    settings = MonitoringSettings(BEGINS, team=(TeamMember("a"), TeamMember("b")))
+    parts = as_json(settings)
+    assert "turning_radius_m" not in parts["robot"] + parts["team"]
+
+
 def test_a_season_that_kept_no_time_of_a_stop_is_charged_as_it_was():
     parts = as_json(MonitoringSettings(BEGINS))
     thesis = Robot().with_times("thesis")
@@ -160,6 +166,7 @@ robots = st.builds(
     returns=st.booleans(),
     width_m=st.just(1.0),
     length_m=st.none() | st.floats(1.0, 3.0),
+    turning_radius_m=st.none() | st.floats(0.5, 5.0),
 )
 
 

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from fieldmon.drive.turning_circle import TurningRoom, way_of
+from fieldmon.plot.steered_way import way_of
+from fieldmon.plot.turning import TurningRoom
 
 BOX = np.array([[-0.2, -0.3], [0.6, -0.3], [0.6, 0.3], [-0.2, 0.3]])
 NOTHING = cKDTree(np.array([[99.0, 99.0]]))

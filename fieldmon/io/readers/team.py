@@ -23,13 +23,17 @@ SETTINGS = {
     "detection": ("detection", 1.0, ""),
     "width_m": ("width_m", 1.0, "m"),
     "length_m": ("length_m", 1.0, "m"),
+    "turning_radius_m": ("turning_radius_m", 1.0, "m"),
     "row_change_s": ("row_change_s", 1.0, "s"),
     "turn_180_s": ("turn_180_s", 1.0, "s"),
     "stop_s": ("stop_s", 1.0, "s"),
 }
 COLUMNS = ("name", "who", *SETTINGS, "start", "lon", "lat")
 #: columns that hold no thousands
-_MOST = {"hours": 24.0, "lon": 180.0, "lat": 90.0, "width_m": 10.0, "length_m": 10.0}
+_MOST = {
+    "hours": 24.0, "lon": 180.0, "lat": 90.0,
+    "width_m": 10.0, "length_m": 10.0, "turning_radius_m": 20.0,
+}  # fmt: skip
 
 
 class StatedMember(NamedTuple):

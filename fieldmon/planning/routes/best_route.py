@@ -265,8 +265,8 @@ def _posed(
     plot: Plot | Aisles, reward: ArrayLike, robot: Robot | None, seconds: float | None
 ) -> _Posed:
     """Check a problem, and leave out what no day reaches."""
-    robot = robot or Robot()
-    aisles = (plot if isinstance(plot, Aisles) else plot.aisles).for_robot(robot)
+    ways = plot if isinstance(plot, Aisles) else plot.aisles
+    aisles, robot = ways.for_robot(robot or Robot()), ways.worked_by(robot or Robot())
     time_s = robot.day_s if seconds is None else float(seconds)
     values = _checked(reward, len(aisles.grid), time_s)
     clock = robot_clock(robot, time_s)

@@ -23,6 +23,16 @@ def test_a_robot_too_wide_for_the_aisles_is_said_and_a_narrow_one_planned(app):
     assert "wide as it is" in app.error[0].value
 
 
+def test_a_robot_that_cannot_turn_on_the_spot_is_charged_its_turns(app):
+    assert app.number_input(key="robot_turns").disabled
+    app.number_input(key="robot_width").set_value(0.6).run()
+    app.number_input(key="robot_turns").set_value(4.5).run()
+    assert not app.exception
+    said = [one.value for one in app.caption if "a row change takes" in one.value]
+    assert said
+    assert "a row change takes 9 s" not in said[0]
+
+
 def test_the_thesis_s_times_inspect_other_plants_than_those_of_simulated_drives(app):
     def stops():
         return next(one.value for one in app.metric if one.label.startswith("Plants to inspect"))

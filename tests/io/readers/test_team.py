@@ -31,11 +31,12 @@ def test_degrees_and_hours_are_no_thousands(tmp_path):
 
 def test_a_robot_has_a_size_and_times_of_its_own(tmp_path):
     (tmp_path / "t.csv").write_text(
-        "name,width_m,length_m,row_change_s,turn_180_s,stop_s\nr,0.58,0.8,25,0,1.13\n"
+        "name,width_m,length_m,turning_radius_m,row_change_s,turn_180_s,stop_s\n"
+        "r,0.58,0.8,1.2,25,0,1.13\n"
     )
     (one,) = read_team(tmp_path / "t.csv")
     told = {"width_m": 0.58, "length_m": 0.8, "row_change_s": 25.0, "turn_180_s": 0.0}
-    assert one.settings == told | {"stop_s": 1.13}
+    assert one.settings == told | {"stop_s": 1.13, "turning_radius_m": 1.2}
 
 
 def test_a_file_that_is_no_text_is_refused(tmp_path):

@@ -414,5 +414,6 @@ def must_be_plot(given: object) -> None:
     """Raise `SettingError` unless this is a `Plot`: plants alone have no ways between them."""
     must_be(
         "A plot must be what read_plot or Plot.from_geopandas returns", given, Plot,
-        "Give the plot itself; its plants are plot.grid.",
+        "Give the plot itself; its plants are plot.grid. Of outlines (read_plots) read one: "
+        "read_plot(source, feature=NAME).",
     )  # fmt: skip

@@ -206,6 +206,7 @@ MAP_WORDS = {
     "lasso_hint": "Draw round the plants; with Shift, to those selected before.",
     "select_rows": "Select rows", "rows_hint": "Tap plants or row numbers: a whole row each.",
     "too_many": "At most {most} plants can be selected at once.",
+    "plots_here": "Plots here: {n}",
     "keys": "Map. Arrow keys move it, plus and minus zoom, Enter opens what is under the cross, "
             "Escape leaves.", "corners": "Points: {n}",
     "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",

@@ -1070,6 +1070,27 @@ def test_no_plot_lies_behind_the_legend_of_the_map_of_all(page, address, served_
             file.unlink()
 
 
+def test_plots_under_one_dot_are_counted_on_it_and_each_can_be_opened(
+    page, address, served_seasons
+):
+    area = shapely.MultiPolygon([box(36.0, 31.0, 36.0005, 31.0005)])
+    files = [served_seasons / f"{name}.gpkg" for name in ("Last year", "This year")]
+    for file in files:
+        Season.create(file, Plot.of(Field("East", area)), begins=date(2026, 11, 16))
+    try:
+        page.goto(f"{address}/plots")
+        rest(page)
+        page.locator(f"{MAP} .label.plots", has_text="2").wait_for()
+        (place,) = pixels(view(page), [[36.00025, 31.00025]])
+        click(page, place)
+        page.locator(f"{MAP} .choice button", has_text="This year").click()
+        box_of_plots = page.locator(".st-key-season input")
+        until(lambda: box_of_plots.count() and box_of_plots.input_value() == "This year", 60.0)
+    finally:
+        for file in files:
+            file.unlink()
+
+
 @pytest.fixture(scope="module")
 def on_a_phone(new_tab, address):
     """Load the app's first screen once on a phone, for all who leave it as it was."""

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 SOURCE = "scout mode"
+_TAPS = "scout taps"
 
 
 def _second(choices: Choices) -> float:
@@ -47,10 +48,27 @@ def _tap(choices: Choices, plant: int, result: int) -> str:
     return ""
 
 
-def tap(choices: Choices, plant: int, result: int) -> None:
-    """Record a tap at once."""
+def taps() -> int:
+    """Return how many taps were answered so far: by this the browser knows what a tap is of."""
+    n: int = st.session_state.setdefault(_TAPS, 0)
+    return n
+
+
+def tap(choices: Choices, plant: int, result: int, drawn: int) -> None:
+    """Record a tap at once; a second one of what was drawn after as many taps says nothing."""
+    if drawn != taps():
+        return
+    st.session_state[_TAPS] += 1
     _tap(choices, plant, result)
     st.session_state["scout_count"] = None
+
+
+def undo(choices: Choices, batch: int, drawn: int) -> None:
+    """Take a tap back; a second press of the same button takes no other one back."""
+    if drawn != taps():
+        return
+    st.session_state[_TAPS] += 1
+    recording.undo(choices, batch)
 
 
 def last_tap(choices: Choices) -> tuple[int, str] | None:

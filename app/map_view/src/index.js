@@ -25,6 +25,7 @@ import { ofRuns, runsOf, withRow } from "./select.js";
 import { covered, keepShape, listed } from "./shape.js";
 import * as store from "./store.js";
 import style from "./style.css";
+import { oneTapEach } from "./taps.js";
 import { waitForBoxes } from "./turning.js";
 import { keepUnfinished } from "./unfinished.js";
 import { besideBox, fitted, metresPerPixel } from "./view.js";
@@ -49,6 +50,7 @@ class MapPage {
     letNoticesGo();
     waitForBoxes();
     keepUnfinished();
+    oneTapEach();
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(style);
     const root = parent.getRootNode();

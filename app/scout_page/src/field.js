@@ -228,6 +228,12 @@ export class Field {
     await this.#keep("day", "begun", ...(this.ahead === ahead ? [] : ["ahead"]), ...(this.draft === draft ? [] : ["draft"]));
   }
 
+  /** Whether what was found or taken back here changes what the season says, which it did not say yet. */
+  changedHere() {
+    const { heard = 0, day } = this.day ?? {}, gone = this.#gone();
+    return this.back.size > 0 || this.records.some((one) => one.day === day && one.result === "found" && one.state === "kept" && one.order > heard && !gone.has(one.id));
+  }
+
   /** Whether another plan was given out since, as when somebody else's rows are to be done, too. */
   hasNewer() {
     const { plan, newest = plan } = this.day ?? {};

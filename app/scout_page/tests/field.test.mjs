@@ -50,6 +50,20 @@ test("what was taken back here is shown no more, though what the season said las
   assert.equal(field.back.size, 0, "the season says it itself");
 });
 
+test("a find changes what the season says, until it said so; what is clean does not", async () => {
+  const { field, sync } = await aField();
+  const heard = async () => { await sync.send(); await field.reread(); return field.changedHere(); };
+  await field.tell("clean");
+  assert.equal(await heard(), false);
+  await field.tell("found");
+  assert.equal(field.changedHere(), false, "it is not sent yet");
+  assert.equal(await heard(), true);
+  await field.refresh();
+  assert.equal(field.changedHere(), false);
+  await field.undo();
+  assert.equal(field.changedHere(), true);
+});
+
 test("records that somebody took back in the season are told by name, and told again or let go", async () => {
   for (const again of [true, false]) {
     const { season, store, field, sync } = await aField();

@@ -1186,6 +1186,7 @@ SCOUT_PAGE = {
     "not_loaded": "{season}: nothing is loaded yet. A network is needed once.",
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
     "taken_back": "Records of yours that count no more: {n}",
+    "taken_back_before": "Records of yours of {day} that count no more: {n}",
     "taken_back_why": "Somebody took them back in the season.",
     "tell_again": "Send them again", "let_go": "Let them go",
     "newer_plan": "There is a newer plan: load it",

@@ -226,7 +226,15 @@ export class Page {
   #old() {
     const { field } = this, wrong = field.time.isWrong() ? [h("p", { class: "tag", id: "clock" }, say("clock_wrong"))] : [];
     const newer = field.hasNewer() && !field.isOld() ? [h("button", { type: "button", class: "wide", id: "newer", onclick: () => this.load() }, say("newer_plan"))] : [];
-    return [...wrong, ...this.#otherDay(), ...newer, ...this.#takenBack()];
+    return [...wrong, ...this.#otherDay(), ...newer, ...this.#takenBack(), ...this.#takenBackBefore()];
+  }
+
+  /** The same of days before, once: the phone has these records no more. */
+  #takenBackBefore() {
+    const days = this.field.takenBackBefore().map(({ day, n }) => h("p", { class: "bad" }, say("taken_back_before", { day: dayOf(day), n })));
+    if (!days.length) return [];
+    const read = () => this.#act(() => this.field.readTakenBack());
+    return [h("div", { id: "taken_back_before" }, ...days, h("p", {}, say("taken_back_why")), h("button", { type: "button", class: "wide", id: "read", onclick: read }, say("ok")))];
   }
 
   /** That records count no more, as somebody took them back in the season: which, and what is to come of them. */

@@ -88,6 +88,26 @@ test("records that somebody took back in the season are told by name, and told a
   }
 });
 
+test("what was taken back of a day before is said once, and not where it was answered on its day", async () => {
+  const { season, field, sync, again } = await aField();
+  for (const result of ["found", "clean"]) await field.tell(result);
+  await sync.send();
+  const [first, second] = field.records.map((one) => one.id);
+  season.day = aDay(undefined, { taken_back: [first] });
+  await field.reread();
+  await field.refresh();
+  await field.answer(false);
+  season.day = aDay(undefined, { day: "2026-11-23", live: false, past: false, taken_back_before: { "2026-11-22": [first, second] } });
+  await field.load();
+  assert.deepEqual(field.takenBackBefore(), [{ day: "2026-11-22", n: 1 }]);
+  assert.deepEqual((await again()).takenBackBefore(), [{ day: "2026-11-22", n: 1 }], "until it was read");
+  await field.readTakenBack();
+  assert.deepEqual([field.takenBackBefore(), (await again()).takenBackBefore()], [[], []]);
+  season.day = { ...season.day, taken_back_before: { "2026-11-21": ["old"], "2026-11-22": [first, second] } };
+  await field.load();
+  assert.deepEqual(field.takenBackBefore(), [{ day: "2026-11-21", n: 1 }]);
+});
+
 test("a find brings its neighbours, and undo brings back what was before", async () => {
   const { field, again } = await aField();
   await field.note({ open: true, count: 3, leaves: 5, stage: "egg" });

@@ -18,6 +18,8 @@ from ..words.language import number
 from . import handing_out, recording
 
 if TYPE_CHECKING:
+    from streamlit.delta_generator import DeltaGenerator
+
     from fieldmon.monitoring import MonitoringSettings
     from fieldmon.planning.members import TeamMember
 
@@ -54,18 +56,23 @@ def taps() -> int:
     return n
 
 
-def tap(choices: Choices, plant: int, result: int, drawn: int) -> None:
+def drawn() -> DeltaGenerator:
+    """Return what says how many taps what stands above it was drawn after: see `taps.js`."""
+    return st.container(key=f"scout_after_{taps()}")
+
+
+def tap(choices: Choices, plant: int, result: int, after: int) -> None:
     """Record a tap at once; a second one of what was drawn after as many taps says nothing."""
-    if drawn != taps():
+    if after != taps():
         return
     st.session_state[_TAPS] += 1
     _tap(choices, plant, result)
     st.session_state["scout_count"] = None
 
 
-def undo(choices: Choices, batch: int, drawn: int) -> None:
+def undo(choices: Choices, batch: int, after: int) -> None:
     """Take a tap back; a second press of the same button takes no other one back."""
-    if drawn != taps():
+    if after != taps():
         return
     st.session_state[_TAPS] += 1
     recording.undo(choices, batch)

@@ -2,7 +2,7 @@
 // their number on it, so that each of them can be reached.
 
 export const MARKS = "plot marks";
-// a dot is so large; plots nearer to each other than this share one
+// a dot is so large; small plots nearer to each other than this share one, and any plots that lie on each other
 const ALONE_PX = 6, SHARED_PX = 10, APART_PX = 20;
 // a name stands so far below its plot's dot
 const BELOW = 1e-4, GAP_PX = 2 * ALONE_PX;
@@ -15,9 +15,10 @@ function dotsOf(plots, viewport) {
   plots.forEach(({ p, around: [west, south, east, north] }, k) => {
     const [x, y] = viewport.project(p), [left, bottom] = viewport.project([west, south]), [right, top] = viewport.project([east, north]);
     const near = [-1, 0, 1].flatMap((i) => [-1, 0, 1].flatMap((j) => cells.get(`${cellOf(x) + i} ${cellOf(y) + j}`) ?? []));
-    const far = (dot) => Math.hypot(dot.x - x, dot.y - y), [nearest] = near.toSorted((a, b) => far(a) - far(b));
-    const small = Math.max(right - left, bottom - top) < 2 * ALONE_PX;
-    if (nearest && far(nearest) < APART_PX) {
+    const small = Math.max(right - left, bottom - top) < 2 * ALONE_PX, far = (dot) => Math.hypot(dot.x - x, dot.y - y);
+    const shares = (dot) => far(dot) < (small && dot.small ? APART_PX : ALONE_PX);
+    const [nearest] = near.filter(shares).toSorted((a, b) => far(a) - far(b));
+    if (nearest) {
       nearest.of.push(k);
       nearest.small ||= small;
     } else {

@@ -31,6 +31,11 @@ test("two seasons of one plot share a dot however near they are seen", () => {
   assert.deepEqual(shown(layer(...both)).map(({ of }) => of), [[0, 1]]);
 });
 
+test("plots whose areas can be told apart share no dot, however near their middles are", () => {
+  assert.deepEqual(shown(layer(plot(100, 100, 16), plot(117, 100, 16))), []);
+  assert.deepEqual(shown(layer(plot(100, 100, 300), plot(112, 100), plot(116, 104))).map(({ of }) => of), [[1, 2]]);
+});
+
 test("every plot is under a dot or large, dots are apart, and coming closer parts them", () => {
   const next = random(5), plots = Array.from({ length: 300 }, () => plot(300 * next(), 300 * next()));
   const dots = shown(layer(...plots));

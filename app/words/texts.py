@@ -211,6 +211,7 @@ MAP_WORDS = {
     "lasso_hint": "Draw round the plants; with Shift, to those selected before.",
     "select_rows": "Select rows", "rows_hint": "Tap plants or row numbers: a whole row each.",
     "too_many": "At most {most} plants can be selected at once.",
+    "plots_here": "Plots here: {n}",
     "keys": "Map. Arrow keys move it, plus and minus zoom, Enter opens what is under the cross, "
             "Escape leaves.", "corners": "Points: {n}",
     "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",
@@ -919,6 +920,7 @@ COUNTS_ELSEWHERE = "counts in another recording"
 BATCHES_MORE = "Show {n} more"
 REDO, REDONE_BEFORE = "Redo", "This counts again already. Nothing changed."
 UNDO_ASK = "Take this back? It can be redone here."
+UNDO_ASK_FOR_GOOD = "Take these corrections back? That cannot be redone: they are made anew."
 UNDO_ASK_WHO = "{who} recorded it; a phone that has it is told so."
 UNDO_ASK_DAY = "It is of {days}, and this page is about {day}."
 UNDO_YES, UNDO_NO = "Take it back", "Leave it"
@@ -1189,6 +1191,7 @@ SCOUT_PAGE = {
     "not_loaded": "{season}: nothing is loaded yet. A network is needed once.",
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
     "taken_back": "Records of yours that count no more: {n}",
+    "taken_back_before": "Records of yours of {day} that count no more: {n}",
     "taken_back_why": "Somebody took them back in the season.",
     "tell_again": "Send them again", "let_go": "Let them go",
     "newer_plan": "There is a newer plan: load it",

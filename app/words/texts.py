@@ -543,14 +543,6 @@ TODAY_DONE = Plural(
     by="inspected",
 )
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
-#: as `fieldmon.io.writers.handoff` says them, which takes long to load
-READERS = {
-    "gpx": "GPS handhelds and hiking apps", "kml": "Google Earth, map apps on phones",
-    "sheet": "a printer: a scout without a phone", "csv": "spreadsheets",
-    "geojson": "QGIS, phones, web maps", "gpkg": "QGIS, QField, ArcGIS",
-    "shapefile": "older map programs and consoles", "waypoints": "robots of any kind",
-    "nav2": "robots with Nav2 (ROS 2)", "nav2-pauses": "robots with Nav2 and a plugin for pauses",
-}  # fmt: skip
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
 

@@ -11,8 +11,7 @@ import pytest
 
 import fieldmon
 from app.state import chosen_language
-from app.words import language, texts
-from fieldmon.io.writers import FORMATS
+from app.words import language
 from tests.app.driving import PAGES, go, map_of, opened, texts_of
 from tests.app.words.known_texts import catalogue, entries
 
@@ -90,13 +89,6 @@ def test_a_catalogue_says_who_made_it_and_holds_the_words_of_the_field(code):
     head = catalogue(code).header_comment
     assert "MADE BY A MACHINE" in head
     assert "hot spot = " in head
-
-
-# -- texts
-
-
-def test_who_reads_a_format_is_said_as_the_library_says_it():
-    assert {name: one.reader for name, one in FORMATS.items()} == texts.READERS
 
 
 # -- the library's sentences

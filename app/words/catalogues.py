@@ -18,6 +18,7 @@ from babel.messages.pofile import read_po, write_po
 import fieldmon
 from fieldmon.compute.units import IN_UNIT
 from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.io.readers.pest_file import shipped_words
 from fieldmon.reports import words as report_words
 from fieldmon.samplers import of_equal_times
 
@@ -86,9 +87,10 @@ def of_library() -> list[TextEntry]:
 
 
 def _of_reports() -> Iterator[TextEntry]:
-    """Yield what reports write without wording it: headings, units, names of samplers."""
+    """Yield what reports write without wording it: headings, units, names."""
     titles = [kind.title for kind in of_equal_times().values()]
-    for value in (*report_words.TEXTS.values(), *IN_UNIT.values(), *titles, *RESULT_NAMES.values()):
+    named = (*IN_UNIT.values(), *titles, *RESULT_NAMES.values(), *shipped_words())
+    for value in (*report_words.TEXTS.values(), *named):
         for entry in _within(LIBRARY, value):
             if entry.words not in _SAME_ON_PAPER and _has_letters(entry.words):
                 yield TextEntry(LIBRARY, entry.words)

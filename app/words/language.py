@@ -40,8 +40,6 @@ FOLDER = Path(__file__).with_name("languages")
 LIBRARY = "fieldmon"
 # so many things, as `counted` says them
 _COUNTED = re.compile(r"([\d,]*\d) ([a-z][a-z ]*)")
-# how the contexts of the names of shipped pests begin
-_PEST_TITLES = "PEST_TITLES."
 #: names, signs and files, which are the same in every language
 SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_name"})
 
@@ -220,13 +218,6 @@ class _Catalogue(gettext.GNUTranslations):
         keys = (key for key in texts_ if isinstance(key, str))
         return [key.removeprefix(before) for key in keys if key.startswith(before)]
 
-    @cache  # noqa: B019 - there are three, for good
-    def pest_titles(self) -> dict[str, str]:
-        """Return the names of shipped pests by their English ones: the library names them so."""
-        texts_: dict[object, str] = self._catalog  # type: ignore[attr-defined]
-        keys = (key for key in texts_ if isinstance(key, str) and key.startswith(_PEST_TITLES))
-        return {key.partition("\x04")[2]: texts_[key] for key in keys}
-
 
 class _Unknown(gettext.NullTranslations):
     """Says nothing of what a catalogue has no words for."""
@@ -344,7 +335,6 @@ def _said(sentence: object, language: str) -> str | None:
         form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.number)
     else:
         form = found.pgettext(LIBRARY, sentence.words)
-        form = form or found.pest_titles().get(sentence.words, "")
     if not form and _is_wordless(sentence.words):
         apart = language in _SHARE_APART
         form = sentence.words if apart else sentence.words.replace(" %", "%")

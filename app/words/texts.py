@@ -244,22 +244,6 @@ PEST_CHANGED = "The season's nights are believed by these from the first on."
 PEST_KEPT = "Pest of this season: {pest}."
 WEATHER_KEPT = "Its weather: {first} to {last}."
 WEATHER_NEEDS_PEST = "Weather goes with a pest, which says what warmth does: choose one."
-PEST_TITLES = {
-    "thesis": "Two-spotted spider mite, the thesis's rule",
-    "spider-mite": "Two-spotted spider mite, by degree-days",
-    "green-peach-aphid": "Green peach aphid",
-    "plum-pox-virus": "Plum pox virus (sharka), carried by aphids",
-    "strawberry-anthracnose": "Strawberry anthracnose, carried by rain splash",
-    "western-flower-thrips": "Western flower thrips",
-    "whitefly": "Tobacco whitefly",
-}
-PEST_STAGES = {
-    "egg": "egg", "larva": "larva", "protonymph": "protonymph", "deutonymph": "deutonymph",
-    "egg to adult": "egg to adult", "adult before eggs": "adult before eggs",
-    "first instar": "first instar", "second instar": "second instar",
-    "third instar": "third instar", "fourth instar": "fourth instar",
-    "adult before young": "adult before young",
-}  # fmt: skip
 PEST_PARTS = {
     "stages": "Stages", "generation": "A generation", "increase": "Rate of increase",
     "movement": "How it moves", "entry": "How it enters", "detection": "How it is seen",

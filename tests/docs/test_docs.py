@@ -13,6 +13,7 @@ import yaml
 
 import fieldmon
 from fieldmon.cli.main import app
+from fieldmon.io.packaged import pest_names
 from fieldmon.io.writers.handoff import FORMATS
 from fieldmon.samplers import SAMPLERS
 from tests.docs.pages import DOCS, INLINE, PAGES, README, fences, prose
@@ -130,6 +131,11 @@ def test_every_name_of_the_library_is_on_its_page():
     page = PAGES["docs/api.md"]
     told = set(re.findall(r"^ {3}(\w+)$", page, re.MULTILINE)) | set(INLINE.findall(page))
     assert set(fieldmon.__all__) - {"__version__"} <= told
+
+
+def test_every_pest_that_comes_along_has_its_line():
+    table = PAGES["docs/pests.md"].partition("\n## Included pests\n")[2].partition("\n## ")[0]
+    assert sorted(re.findall(r"^\| `([\w-]+)` \|", table, re.MULTILINE)) == sorted(pest_names())
 
 
 def test_every_sampler_and_every_route_format_has_its_line():

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, cast
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import Upload, source_name
-from fieldmon.io.packaged import packaged_names, packaged_text
+from fieldmon.io.packaged import PESTS, packaged_text, pest_names
 from fieldmon.pests.pest import Citation, Entry, Increase, Movement, Pest, Stage
 from fieldmon.plot.robot import Viewpoints
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from fieldmon.io.options import Source
 
-_FOLDER = "fieldmon/pests"
 _WORDS = ("name", "title", "species", "cutoff", "count_means", "not_found")
 _COURSE = ("latency_days", "hidden_days", "mortality_per_day")
 _DETECTION = ("viewpoints", "longer", "chance")
@@ -60,14 +59,14 @@ def pest_of(said: str) -> Pest:
     >>> pest_of("spider-mite").generation.degree_days
     146.48
     """
-    if said in shipped_names():
+    if said in pest_names():
         return shipped_pest(said)
     path = Path(said)
     if not path.is_file():
         raise FileProblem(
             worded(
                 "A pest must be a file, or one of {names}; but it is {said!r}.",
-                names=", ".join(shipped_names()),
+                names=", ".join(pest_names()),
                 said=said,
             )
         )
@@ -75,16 +74,17 @@ def pest_of(said: str) -> Pest:
 
 
 @cache
-def shipped_names() -> tuple[str, ...]:
-    """Return the names of the pests that come with fieldmon, the thesis's first."""
-    names = [name.removesuffix(".toml") for name in packaged_names(_FOLDER, ".toml")]
-    return tuple(sorted(names, key=lambda name: (name != "thesis", name != "spider-mite", name)))
+def shipped_pest(name: str) -> Pest:
+    """Return a pest that comes with fieldmon."""
+    return pest_from_text(packaged_text(f"{PESTS}/{name}.toml"), f"{name}.toml")
 
 
 @cache
-def shipped_pest(name: str) -> Pest:
-    """Return a pest that comes with fieldmon."""
-    return pest_from_text(packaged_text(f"{_FOLDER}/{name}.toml"), f"{name}.toml")
+def shipped_words() -> tuple[str, ...]:
+    """Return what those pests and their stages are called, each once: all is translated."""
+    pests = [shipped_pest(name) for name in pest_names()]
+    stages = [stage.name for pest in pests for stage in pest.stages]
+    return tuple(dict.fromkeys([*(pest.title for pest in pests), *stages]))
 
 
 def read_pest(source: Source) -> Pest:

@@ -159,6 +159,8 @@ def test_no_page_names_what_is_gone(name):
 
 def test_the_readme_is_short_and_says_how_to_test():
     assert len(README.split()) < 900
+    # before the first command that needs it
+    assert README.find("`. .venv/bin/activate`") in range(1, README.index("\nfieldmon "))
     command = README.partition("<!-- test command -->\n```sh\n")[2].partition("\n```\n")[0]
     assert len(command.splitlines()) == 1
     for part in (

@@ -27,12 +27,13 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
-from fieldmon.cli.sampler_names import USUAL_SAMPLER, SamplerName
+from fieldmon.cli.sampler_names import known
 from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, PAIRED
 from fieldmon.errors import SettingError
+from fieldmon.samplers import USUAL, kind_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -64,10 +65,11 @@ class CompareOptions:
         ),
     ] = None
     sampler: Annotated[
-        list[SamplerName] | None,
+        list[str] | None,
         typer.Option(
             help="What chooses the plants; repeat to compare numbers of robots with each. Default: "
-            "adaptive."
+            f"{USUAL}.",
+            callback=known,
         ),
     ] = None
     sections: Annotated[
@@ -133,7 +135,7 @@ def compare(options: CompareOptions) -> None:
     write_all(options.output, {"robots.md": table(made), "robots.html": report_html(made)})
 
 
-def _tell_compared(sizes: list[int], samplers: list[SamplerName]) -> None:
+def _tell_compared(sizes: list[int], samplers: list[str]) -> None:
     """Print what is compared with what: people expect samplers, too, where there are several."""
     typer.echo(f"Numbers of robots compared: {', '.join(map(str, sizes))}", err=True)
     if len(samplers) > 1:
@@ -219,20 +221,14 @@ def _settings(
     together = Teamwork(True, 60.0 * options.contact, options.least_gain, passing_m)
     apart = Teamwork(together=False, passing_m=passing_m)
     made = []
-    for name in options.sampler or [SamplerName(USUAL_SAMPLER)]:
-        reads = _reads_chance(name)
+    for name in options.sampler or [USUAL]:
+        reads = kind_of(name).reads_chance
         ways = [*([together] if reads else []), *([apart] if options.sections or not reads else [])]
         for k in sizes:
             # alone there is one way to work
             own = ways[:1] if k == 1 else ways
-            made += [TeamSetting(scenario, name.value, Team(k, way)) for way in own]
+            made += [TeamSetting(scenario, name, Team(k, way)) for way in own]
     return made
-
-
-def _reads_chance(name: SamplerName) -> bool:
-    from fieldmon.samplers import kind_of
-
-    return kind_of(name.value).reads_chance
 
 
 def _outcomes(settings: list[TeamSetting], options: CompareOptions) -> list[TeamOutcome]:

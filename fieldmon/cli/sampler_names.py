@@ -1,14 +1,38 @@
-"""The names of the samplers as values of an option."""
+"""Samplers as values of options: by name, or one of a person's own."""
 
 from __future__ import annotations
 
-from enum import StrEnum
+from typing import Annotated
 
-from fieldmon.samplers import COMPARED, SAMPLERS, USUAL
+import typer
 
-SamplerName = StrEnum(  # type: ignore[misc] # mypy wants to read the names here
-    "SamplerName", {name.upper().replace("-", "_"): name for name in SAMPLERS}
-)
-SamplerName.__doc__ = "Who decides which plants come next."
-USUAL_SAMPLER = SamplerName(USUAL)
-COMPARED_SAMPLERS = tuple(SamplerName(name) for name in COMPARED)
+from fieldmon.samplers import SAMPLERS, kind_of
+from fieldmon.samplers.own import is_own
+
+_NAMES = ", ".join(SAMPLERS)
+#: how a sampler of one's own is named, for the help of an option
+OWN = "one of your own: my_sampler.py:Mine (docs: own_sampler)"
+
+
+def known(value: str | list[str] | None) -> str | list[str] | None:
+    """Return the names of samplers that come with fieldmon; refuse any other."""
+    for name in [value] if isinstance(value, str) else value or ():
+        kind_of(name)
+    return value
+
+
+def known_or_own(value: str | list[str] | None) -> str | list[str] | None:
+    """Return names of samplers, also of a person's own; refuse what is neither."""
+    for name in [value] if isinstance(value, str) else value or ():
+        if not is_own(name):
+            kind_of(name)
+    return value
+
+
+OneSampler = Annotated[
+    str, typer.Option(help=f"What chooses the plants: {_NAMES}.", callback=known)
+]
+OneSamplerOrOwn = Annotated[
+    str,
+    typer.Option(help=f"What chooses the plants: {_NAMES}, or {OWN}.", callback=known_or_own),
+]

@@ -23,7 +23,7 @@ from fieldmon.reports import words as report_words
 from fieldmon.samplers import of_equal_times
 
 from . import texts
-from .language import ENGLISH, FOLDER, LANGUAGES, LIBRARY, SAME, Plural
+from .language import DRAFTS, ENGLISH, FOLDER, LANGUAGES, LIBRARY, SAME, Plural
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -180,7 +180,7 @@ def update(language: str) -> list[TextEntry]:
 
 def main() -> None:
     """Bring all files up to date with the texts."""
-    for language in LANGUAGES:
+    for language in LANGUAGES | DRAFTS:
         if language != ENGLISH:
             missing = update(language)
             print(f"{path_of(language).name}: {len(missing)} to translate")  # noqa: T201 - a command

@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 ENGLISH = "en"
 #: each by its own name
 LANGUAGES = wording.LANGUAGES
+#: languages whose file is not whole yet, by their own names: only an address (?lang=) asks for
+#: them, and what has no words is English
+DRAFTS: dict[str, str] = {}
 RIGHT_TO_LEFT = frozenset({"he", "ar"})
 # languages that set the sign of a share apart from its number
 _SHARE_APART = frozenset({ENGLISH, "es"})
@@ -83,6 +86,16 @@ def current() -> str:
     if said is None:
         said = _ASKED[0]() if _ASKED else ENGLISH
     return said
+
+
+def is_spoken(code: str | None) -> bool:
+    """Return whether an address may ask for a language: also for one that is a draft."""
+    return code in LANGUAGES or code in DRAFTS
+
+
+def for_seasons() -> str:
+    """Return the language that a season keeps, for its reports: none is a draft."""
+    return current() if current() in LANGUAGES else ENGLISH
 
 
 def is_right_to_left() -> bool:
@@ -137,10 +150,11 @@ class Plural(Text):
     def form(self, count: object) -> str:
         """Return the words for so many."""
         number = int(count)  # type: ignore[call-overload]
+        english = self.one if number == 1 else str(self)
         if self.language == ENGLISH:
-            return self.one if number == 1 else str(self)
+            return english
         found = _catalogue(self.language)
-        return found.npgettext(self.context, self.one, str(self), number) or str(self)
+        return found.npgettext(self.context, self.one, str(self), number) or english
 
 
 class Late(str):  # noqa: SLOT000 - it has one attribute

@@ -361,6 +361,7 @@ UNDO_CHANGE, UNDO_NO_CHANGE = "Take back: {what}", "Take the last change back"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
 LANGUAGE = "Language"
 #: said in the other languages only: see `language.is_machine_made`
+DRAFT = "A draft: what nobody has translated yet stands in English."
 MACHINE_MADE = "Translated by a machine; no native speaker has read it yet."
 UNITS = {"m": "m", "km": "km", "ft": "ft", "mi": "mi", "ha": "ha", "dunam": "dunam",
          "acre": "acre"}  # fmt: skip

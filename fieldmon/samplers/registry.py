@@ -124,11 +124,14 @@ def check_every(every: int) -> None:
         raise SettingError(f"'every' must be {rule}, but it is {shown(every)}.")
 
 
-def kind_of(name: str) -> SamplerKind:
-    """Return what is known of a sampler; raise `SettingError` if there is none of that name."""
+def kind_of(name: str, what: str = "A sampler") -> SamplerKind:
+    """Return what is known of a sampler; raise `SettingError` if there is none of that name.
+
+    `what` was given, in the sentence.
+    """
     if name in SAMPLERS:
         return SAMPLERS[name]
-    sentence = f"A sampler must be one of {', '.join(SAMPLERS)}, but it is {name!r}."
+    sentence = f"{what} must be one of {', '.join(SAMPLERS)}, but it is {name!r}."
     if is_own(name):
         sentence += (
             " One of your own works in fieldmon plan and simulate, on a plot, and in fieldmon "

@@ -1,5 +1,7 @@
 """Samplers are named on the command line; one of a person's own works on a plot."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from fieldmon.cli.sampler_names import known, known_or_own
@@ -20,11 +22,16 @@ def mine(tmp_path):
 
 
 def test_every_sampler_of_the_program_is_known_and_no_other():
-    assert known(list(SAMPLERS)) == known_or_own(list(SAMPLERS)) == list(SAMPLERS)
-    assert known_or_own(MINE) == MINE
+    option = SimpleNamespace(opts=["--sampler"])
+    every = list(SAMPLERS)
+    assert known(option, every) == known_or_own(option, every) == every
+    assert known_or_own(option, MINE) == MINE
+    assert known(option, None) is None
     for refused, name in ((known, "best"), (known_or_own, "best"), (known, MINE)):
-        with pytest.raises(SettingError, match=f"must be one of naive, .*but it is '{name}'"):
-            refused(name)
+        with pytest.raises(
+            SettingError, match=f"^--sampler must be one of naive, .*but it is '{name}'"
+        ):
+            refused(option, name)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_unusable
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
@@ -26,7 +25,7 @@ from fieldmon.cli.options import (
     WorkerOptions,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
-from fieldmon.cli.preparing import prepared
+from fieldmon.cli.preparing import believed, prepared
 from fieldmon.cli.sampler_names import known
 from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.times import day, day_on
@@ -193,20 +192,12 @@ def _own(
     options: CompareOptions,
 ) -> tuple[tuple[Plot, NDArray[np.float64]], PestInWeather | None]:
     """Return the plot of the command's files with what is believed of it, and its pest."""
-    import numpy as np
-
-    from fieldmon.infestation.prior import prior_chance
-
     told = day(options.on)
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
-    plot = known.plot
-    begins = day_on(plot.field, told)
-    on = np.datetime64(begins, "D")
-    pest_in_weather = options.pest_options.in_weather(plot.field, begins)
-    prior = prior_of(pest_in_weather, begins)
-    tell_unusable(known.records, on, prior)
-    chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
-    return (plot, chance), pest_in_weather
+    begins = day_on(known.plot.field, told)
+    pest_in_weather = options.pest_options.in_weather(known.plot.field, begins)
+    chance = believed(known, begins, prior_of(pest_in_weather, begins))
+    return (known.plot, chance), pest_in_weather
 
 
 def _settings(

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_unusable
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
@@ -25,7 +24,7 @@ from fieldmon.cli.options import (
     refuse_idle_every,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
-from fieldmon.cli.preparing import prepared
+from fieldmon.cli.preparing import believed, prepared
 from fieldmon.cli.sampler_names import OWN, known_or_own
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED, SHARE
@@ -126,10 +125,7 @@ def simulate(options: SimulateOptions) -> None:
     Example: fieldmon simulate vines.zip --feature 3 --visit-every 7 --hours 12
     Example: fieldmon simulate vines.zip --feature 3 --sampler naive --sampler dynamic --days 10
     """
-    import numpy as np
-
     from fieldmon.compute.random_streams import RandomStreams
-    from fieldmon.infestation.prior import prior_chance
     from fieldmon.simulation.start import season_start
 
     names = options.sampler or COMPARED
@@ -138,12 +134,9 @@ def simulate(options: SimulateOptions) -> None:
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
     begins = day_on(known.plot.field, told)
-    on = np.datetime64(begins, "D")
     pest_in_weather = options.pest_options.in_weather(known.plot.field, begins)
-    season, prior = options.season(pest_in_weather), prior_of(pest_in_weather, begins)
-    tell_unusable(known.records, on, prior)
-    plot, records = known.plot, known.records
-    chance = prior_chance(plot.grid, plot.field, records, on, prior, known.risk)
+    season, plot = options.season(pest_in_weather), known.plot
+    chance = believed(known, begins, prior_of(pest_in_weather, begins))
     streams = RandomStreams(options.seed)
     begin = season_start(plot.grid, chance, options.infested, streams)
     rows = []

@@ -28,6 +28,7 @@ from fieldmon.infestation.level_range import first_level_range
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_lines, read_plots, read_records
+from fieldmon.io.writers import FORMATS
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
@@ -785,7 +786,7 @@ def route_of(page):
     page.get_by_role("button", name=texts.STEP_BUTTONS["send"]).click()
     page.get_by_role("dialog").get_by_role("combobox").click()
     page.get_by_role("option", name="geojson").click()
-    button = page.get_by_role("button", name=texts.READERS["geojson"])
+    button = page.get_by_role("button", name=FORMATS["geojson"].reader)
     button.wait_for()
     # until the page is at rest, the button may be drawn again under the press
     rest(page)

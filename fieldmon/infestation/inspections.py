@@ -47,9 +47,13 @@ _GIVEN = {
 
 def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to its kind here
     """Return a column as it is kept, a view: the caller's own array stays as it is."""
+    # of columns that were held to their kind before, as mostly, there is nothing to find out
+    if type(given) is np.ndarray and given.ndim == 1 and given.dtype == _TYPES[name]:
+        return given.view()
     letters, words = _GIVEN[name]
     try:
-        values = np.atleast_1d(days_of(given) if name == "date" else given)
+        held: Any = days_of(given) if name == "date" else given
+        values = np.atleast_1d(held)
         if values.ndim != 1:
             raise ObservationError(
                 f"The {name} of inspections must be {words} in a row, one an inspection, but they "

@@ -265,7 +265,18 @@ class SeasonRecords(OpenSeason):
     def take_back(
         self, batch: int | None = None, inspection: int | None = None, who: str = ""
     ) -> Undone:
-        """Do what `undo` does; return also which batch `redo` then lets count again."""
+        """Do what `undo` does; return also which batch `redo` then lets count again.
+
+        Parameters
+        ----------
+        batch, inspection, who
+            As `undo` has them.
+
+        Raises
+        ------
+        SettingError
+            As `undo` has it.
+        """
         if batch is not None and inspection is not None:
             raise SettingError(
                 worded(

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.decisions.labels import plain_name
 from fieldmon.errors import FileProblem
+from fieldmon.infestation import inspection_columns
 from fieldmon.monitoring import (
     phone_tables,
     replaced,
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Iterator
 
     from fieldmon.compute.wording import Worded
+    from fieldmon.infestation.inspection_columns import InspectionColumn
     from fieldmon.monitoring.geopackage import GeoPackageTable
     from fieldmon.monitoring.treatments import Row
 
@@ -52,15 +54,18 @@ TAKEN = (
     *(schema.BATCHES, schema.INSPECTIONS, schema.TREATMENTS, schema.SETTINGS),
     *(schema.ROUTES, schema.STOPS, schema.IMPORTS, schema.OUTSIDE_CHANGES, schema.LABELS),
 )
-_SAID = (
-    "SELECT digest, undone, who, notes, coalesce(detects, '') FROM inspections WHERE batch = ? "
-    "ORDER BY fid"
+#: what rows of the same inspections say, beside what makes them the same; numbers may be none
+_BESIDE = tuple(
+    one.kept if one.is_text and not one.since else f"coalesce({one.kept}, '')"
+    for one in inspection_columns.BESIDE
 )
+_SAYS = "digest", "undone", *_BESIDE
+_SAID = f"SELECT {', '.join(_SAYS)} FROM inspections WHERE batch = ? ORDER BY fid"  # noqa: S608 - ours
 # the same in one row: whichever way SQLite finds those of a batch, it is in the order of their fid
 _TOGETHER = (
-    "SELECT count(digest), count(undone), count(who), count(notes), group_concat(digest), "
-    "group_concat(undone), group_concat(who), group_concat(notes), "
-    "group_concat(coalesce(detects, '')) FROM inspections WHERE batch = ?"
+    "SELECT "  # noqa: S608 - names of ours
+    + ", ".join([*map("count({})".format, _SAYS), *map("group_concat({})".format, _SAYS)])
+    + " FROM inspections WHERE batch = ?"
 )
 
 
@@ -461,7 +466,7 @@ def _is_same_batch(
 ) -> bool:
     """Tell whether so many inspections of a batch say the same in both, each something else."""
     one, other = (db.execute(_TOGETHER, (number,)).fetchone() for db in both)
-    there, said = {*one[:4]}, one[4:]
+    there, said = {*one[: len(_SAYS)]}, one[len(_SAYS) :]
     # where something holds a comma, or nothing, is looked at row by row
     if there == {count} and one == other and {one.count(",") for one in said} == {count - 1}:
         return len({*said[0].split(",")}) == count
@@ -500,12 +505,9 @@ def _merged_findings(
             known = found.setdefault(key, row)
             known["undone"] = _undone_in_either(known["undone"] or 0, row["undone"] or 0)
             known["fid"] = min(known["fid"], row["fid"])
-            for free in ("notes", "who"):  # what is no part of what makes it the same
-                if free in row:
-                    known[free] = max(known[free] or "", row[free] or "")
-            if "detects" in row:  # as above
-                told = [one for one in (known["detects"], row["detects"]) if one is not None]
-                known["detects"] = max(told, default=None)
+            for one in inspection_columns.BESIDE:  # what is no part of what makes it the same
+                if one.kept in row:
+                    known[one.kept] = _in_either(one, known[one.kept], row[one.kept])
     drafts_last = max((now for batch_of in numbers for now in batch_of.values()), default=0) + 1
     rows = sorted(
         found.values(), key=lambda r: (r["batch"] or drafts_last, r["fid"], repr(r["digest"]))
@@ -517,6 +519,13 @@ def _merged_findings(
             row["undone"] = STANDS_BACK if row["digest"] in counting else COUNTS
             counting.add(row["digest"])
     return rows
+
+
+def _in_either(of: InspectionColumn, one: Any, other: Any) -> Any:  # noqa: ANN401 - text or number
+    """Return what is said in a column in either copy of a row."""
+    if of.is_text:
+        return max(one or "", other or "")
+    return max((value for value in (one, other) if value is not None), default=None)
 
 
 def _undone_in_either(one: int, other: int) -> int:

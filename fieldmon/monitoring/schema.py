@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.infestation import inspection_columns
 from fieldmon.monitoring import phone_tables
 from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, found
 from fieldmon.monitoring.qgis_styles import add_asked_styles, add_photo_styles, add_styles
@@ -107,25 +108,17 @@ OBSERVATIONS = GeoPackageTable(
     "POINT",
     "Pest records from before the season: 1 present, 0 looked and saw nothing, -1 undecided.",
 )
-#: of an inspection, since version 13: the chance to see what is there that was said with it
-DETECTS = "detects REAL"
+#: of an inspection's columns, those that a file of an earlier version lacks
+LATER = tuple(column for column in inspection_columns.COLUMNS if column.since)
+_PLANT, *_FIRST = (one.sql for one in inspection_columns.COLUMNS if one not in LATER)
 INSPECTIONS = GeoPackageTable(
     "inspections",
     (
-        "plant INTEGER",
-        "line INTEGER",
-        "number INTEGER",
-        "day INTEGER",
-        "date DATE",
-        "time TEXT",
-        "result TEXT",
-        "count REAL",
-        "who TEXT",
-        "notes TEXT",
-        "batch INTEGER",
-        "digest TEXT",
-        "undone INTEGER DEFAULT 0",
-        DETECTS,
+        _PLANT,
+        *("line INTEGER", "number INTEGER", "day INTEGER"),
+        *_FIRST,
+        *("batch INTEGER", "digest TEXT", "undone INTEGER DEFAULT 0"),
+        *(column.sql for column in LATER),
     ),
     "POINT",
     "What was found at which plant: clean, found or skipped.",
@@ -314,7 +307,10 @@ INSPECTED = (
 #: layers that nobody may change unnoticed: what is shown or known of each row, and those of its
 #: columns that make no difference
 _WATCHED: dict[str, tuple[str, tuple[str, ...]]] = {
-    "inspections": (INSPECTED, ("notes",)),
+    "inspections": (
+        INSPECTED,
+        tuple(column.kept for column in inspection_columns.COLUMNS if not column.watched),
+    ),
     "treatments": ("coalesce(old.product, '') || ' on ' || coalesce(old.date, '')", ()),
     "settings": ("old.name || ' = ' || old.value", ()),
     "batches": ("coalesce(old.source, '')", ()),

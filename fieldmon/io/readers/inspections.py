@@ -24,6 +24,7 @@ import numpy as np
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import first_few, worded
+from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
@@ -359,16 +360,14 @@ def _inspections(
     count[count == 0] = np.nan
     when, date = rows.when[records], rows.day[records]
     since_midnight = when - when.astype("datetime64[D]")
-    detects = np.full(len(records), np.nan) if rows.detects is None else rows.detects[records]
+    beside = {one.name: getattr(rows, one.name) for one in BESIDE}
     return Inspections.of(
         plant[records],
         result,
         date,
         second=since_midnight / np.timedelta64(1, "s"),
         count=count,
-        who=rows.who[records],
-        notes=rows.notes[records],
-        detects=detects,
+        **{name: column[records] for name, column in beside.items() if column is not None},
     )
 
 

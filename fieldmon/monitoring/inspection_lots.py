@@ -17,7 +17,7 @@ import numpy as np
 from fieldmon.compute.digest import digest
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
-from fieldmon.monitoring import schema
+from fieldmon.monitoring import said_beside, schema
 from fieldmon.monitoring.geopackage import insert, unpacked
 
 if TYPE_CHECKING:
@@ -59,9 +59,9 @@ def load(db: sqlite3.Connection, begins: date) -> Inspections:
             left -= len(data)
             if (columns := _columns(data)) is not None:
                 kept[lot] = columns
-    pieces = []
+    pieces, others = [], said_beside.of_others(db)
     for rows, lot in _between(kept):
-        pieces.append(_read(db, rows))
+        pieces.append(_read(db, rows, others))
         if lot is not None:
             pieces.append(kept[lot])
     every = {name: np.concatenate([piece[name] for piece in pieces]) for name in _DTYPES}
@@ -74,11 +74,12 @@ def keep(db: sqlite3.Connection) -> None:
     """Keep lots that are full and not kept yet, within the transaction that changes the file."""
     (last,) = db.execute("SELECT max(fid) FROM inspections").fetchone()
     kept = [lot for (lot,) in db.execute("SELECT lot FROM inspection_lots ORDER BY lot")]
+    others = said_beside.of_others(db)
     there = "SELECT DISTINCT fid >> ? FROM inspections WHERE fid >= ? AND fid <= ?"
     for rows, _ in [*_between(kept)]:
         for (lot,) in db.execute(there, (schema.LOT_BITS, *rows)).fetchall():
             first, end = _rows_of(lot)
-            packed = _packed(_read(db, (first, end))) if end <= last else None
+            packed = _packed(_read(db, (first, end), others)) if end <= last else None
             if packed is not None:
                 insert(db, schema.INSPECTION_LOTS, [(lot, digest(packed), packed)])
 
@@ -98,15 +99,26 @@ def _between(kept: Iterable[int]) -> Iterator[tuple[tuple[int, int], int | None]
     yield (first, _MOST), None
 
 
-def _read(db: sqlite3.Connection, rows: tuple[int, int]) -> Columns:
-    """Return the inspections among some row numbers that count, as columns."""
+def _read(
+    db: sqlite3.Connection, rows: tuple[int, int], others: dict[str, list[said_beside.Beside]]
+) -> Columns:
+    """Return the inspections among some row numbers that count, as columns.
+
+    `others` is what is said beside them in other rows, see `said_beside.of_others`.
+    """
     found = db.execute(
-        f"SELECT {', '.join(_FROM.values())} FROM inspections "  # noqa: S608 - names of ours
+        f"SELECT digest, {', '.join(_FROM.values())} FROM inspections "  # noqa: S608 - names of ours
         "WHERE fid >= ? AND fid <= ? AND undone = 0 AND digest IS NOT NULL ORDER BY fid",
         rows,
     ).fetchall()
-    values = zip(*found, strict=True) if found else ((),) * len(_FROM)
+    marks, *values = zip(*found, strict=True) if found else ((),) * (len(_FROM) + 1)
     said: dict[str, list[Any]] = {one: [*column] for one, column in zip(_FROM, values, strict=True)}
+    for k, mark in enumerate(marks) if others else ():
+        if mark in others:
+            own = {one.kept: said[one.name][k] for one in BESIDE}
+            whole = said_beside.together(own, others[mark])
+            for one in BESIDE:
+                said[one.name][k] = whole[one.kept]
     said["result"] = [_CODES[name] for name in said["result"]]
     said["second"] = [second_of(text) for text in said["second"]]
     for one in (COUNT, *BESIDE):

@@ -54,7 +54,8 @@ def rows(
 
     `batch` is its number and whose inspections these are where they do not say. Who inspected,
     what was noted and what it finds of what is there is no part of what makes one the same as
-    another: a file that comes back from somebody else, or with more notes, brings nothing new.
+    another: a file that comes back from somebody else, or with more notes, brings nothing new, but
+    may say more beside what is known (`said_beside`).
     """
     _check(inspections, grid)
     plants, dates = inspections.plant, inspections.date.tolist()
@@ -164,6 +165,24 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
                 found=inspections.second[late[0]],
             )
         )
+
+
+def identity(inspections: Inspections, k: int) -> tuple[object, ...]:
+    """Return what makes an inspection the same as another, as the season's file has it."""
+    count = inspections.count[[k]]
+    said = {
+        "plant": int(inspections.plant[k]),
+        "date": str(inspections.date[k]),
+        "time": time_text(float(inspections.second[k])),
+        "result": RESULT_NAMES[int(inspections.result[k])],
+        "count": COUNT.to_file(count)[0],
+    }
+    return tuple(said[name] for name in IDENTIFIED_BY)
+
+
+def mark_of(said: tuple[object, ...]) -> str:
+    """Return the digest of what makes an inspection the same as another."""
+    return _digest(*said)
 
 
 def _digest(*parts: object) -> str:

@@ -25,12 +25,13 @@ from fieldmon.infestation import inspection_columns
 from fieldmon.monitoring import (
     phone_tables,
     replaced,
+    said_beside,
     schema,
     season_log,
     settings_log,
     treatments,
 )
-from fieldmon.monitoring.batches import close_if_empty
+from fieldmon.monitoring.batches import close_if_empty, more_in_words
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
 from fieldmon.planning.members import person_key
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable, Iterator
 
     from fieldmon.compute.wording import Worded
-    from fieldmon.infestation.inspection_columns import InspectionColumn
     from fieldmon.monitoring.geopackage import GeoPackageTable
     from fieldmon.monitoring.treatments import Row
 
@@ -93,6 +93,8 @@ class Merged:
         A sentence for each two codes whose rows overlap.
     chosen
         Settings that were otherwise before, each from what to what, and the table of labels.
+    noted
+        Inspections known before that have more notes now.
     """
 
     new: int
@@ -103,6 +105,12 @@ class Merged:
     codes: tuple[str, ...] = ()
     overlaps: tuple[str, ...] = ()
     chosen: tuple[str, ...] = ()
+    noted: int = 0
+
+    @property
+    def more(self) -> str:
+        """What was added to inspections known before, in words; empty: nothing."""
+        return more_in_words(self.noted)
 
 
 class MergedCopy(NamedTuple):
@@ -126,6 +134,8 @@ class MergedCopy(NamedTuple):
         As `Merged` has it.
     alike
         Numbers of each two treatments that count, one of each copy alone, of one day and product.
+    noted
+        As `Merged` has it.
     """
 
     new: int
@@ -137,6 +147,7 @@ class MergedCopy(NamedTuple):
     gone: tuple[set[int], set[int], set[int]]
     chosen: tuple[str, ...]
     alike: tuple[tuple[int, int], ...]
+    noted: int
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -155,7 +166,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         for copied in copies
     ]
     stay = _n_staying((db, other), numbers)
-    before, keys = _counting(db, stay), _keys(db)
+    before, keys, noted = _counting(db, stay), _keys(db), said_beside.notes(db, stay)
     unnamed = (*_of_no_pest(db, other), *_of_no_pest(other, db))
     applied = [treatments.counting_of(copied["treatments"]) for copied in copies]
     changes = _merged_changes(copies, batches)
@@ -185,6 +196,8 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         close_if_empty(db, batch)
     after = _counting(db, stay)
     new, taken_back = len(after - before), len(before - after)
+    now = said_beside.notes(db, stay)
+    n_noted = said_beside.n_noted(noted, now, {*now} - after)
     codes = tuple(sorted(name for key, name in _keys(db).items() if key not in keys))
     n_treated, undone = _changed_treatments(db, applied)
     held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
@@ -196,7 +209,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     anew = {old: number for old, number in numbers[0].items() if old != number}
     return MergedCopy(
         new, taken_back, said, n_treated, codes, anew, undone, tuple(taken_over),
-        tuple(_of_one_product(treated, held)),
+        tuple(_of_one_product(treated, held)), n_noted,
     )  # fmt: skip
 
 
@@ -507,7 +520,7 @@ def _merged_findings(
             known["fid"] = min(known["fid"], row["fid"])
             for one in inspection_columns.BESIDE:  # what is no part of what makes it the same
                 if one.kept in row:
-                    known[one.kept] = _in_either(one, known[one.kept], row[one.kept])
+                    known[one.kept] = said_beside.either(one, known[one.kept], row[one.kept])
     drafts_last = max((now for batch_of in numbers for now in batch_of.values()), default=0) + 1
     rows = sorted(
         found.values(), key=lambda r: (r["batch"] or drafts_last, r["fid"], repr(r["digest"]))
@@ -519,13 +532,6 @@ def _merged_findings(
             row["undone"] = STANDS_BACK if row["digest"] in counting else COUNTS
             counting.add(row["digest"])
     return rows
-
-
-def _in_either(of: InspectionColumn, one: Any, other: Any) -> Any:  # noqa: ANN401 - text or number
-    """Return what is said in a column in either copy of a row."""
-    if of.is_text:
-        return max(one or "", other or "")
-    return max((value for value in (one, other) if value is not None), default=None)
 
 
 def _undone_in_either(one: int, other: int) -> int:

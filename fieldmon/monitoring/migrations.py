@@ -92,6 +92,12 @@ def _columns_of_inspections_come(db: sqlite3.Connection) -> None:
     db.execute("DELETE FROM inspection_lots")
 
 
+def _others_are_read_too(db: sqlite3.Connection) -> None:
+    """Version 14 read of an inspection what one recording says, whatever others of it say."""
+    schema.add_index(db, "inspections_beside")
+    db.execute("DELETE FROM inspection_lots")
+
+
 #: what makes a file of version k one of version k + 1; `watch` follows the last
 MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     1: _treatments_come,
@@ -107,4 +113,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     11: _applications_say_all,
     12: _inspections_say_what_they_find,
     13: _undone_changes_are_named,
+    14: _others_are_read_too,
 }

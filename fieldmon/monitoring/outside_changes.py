@@ -20,6 +20,7 @@ from fieldmon.monitoring import (
     inspection_lots,
     inspection_table,
     replaced,
+    said_beside,
     season_log,
     treatments,
 )
@@ -272,6 +273,9 @@ def take_row(
         ) from error
     values = dict(zip(INSPECTIONS.names, made, strict=True))
     del values["undone"]
+    was = replaced.as_it_was(change.before)["digest"] if change.before else None
+    if was != values["digest"]:  # others stay with what it was: what they say goes along
+        values |= said_beside.with_others(db, was, values)
     twice = db.execute(
         "SELECT fid FROM inspections WHERE digest = ? AND undone = 0 AND fid <> ?",
         (values["digest"], change.row),

@@ -12,7 +12,7 @@ from fieldmon.monitoring.qgis_styles import add_asked_styles, add_photo_styles, 
 if TYPE_CHECKING:
     import sqlite3
 
-VERSION = 14
+VERSION = 15
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
@@ -347,6 +347,7 @@ INDEXES = {
     "routes_revision": "UNIQUE INDEX {} ON routes (day, who, revision)",
     "stops_route": "INDEX {} ON stops (route, stop)",
     "inspections_batch": "INDEX {} ON inspections (batch)",
+    "inspections_beside": "INDEX {} ON inspections (digest) WHERE undone = 2",
 }
 
 
@@ -368,8 +369,8 @@ def lay_out(db: sqlite3.Connection) -> None:
 
 
 def add_index(db: sqlite3.Connection, name: str) -> None:
-    """Add one of the `INDEXES`."""
-    db.execute(f"CREATE {INDEXES[name].format(name)}")
+    """Add one of the `INDEXES`, where it is not there."""
+    db.execute(f"CREATE {INDEXES[name].format(f'IF NOT EXISTS {name}')}")
 
 
 def add_phones(db: sqlite3.Connection) -> None:

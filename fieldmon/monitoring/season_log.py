@@ -54,8 +54,8 @@ class LogEntry:
     at
         When it was written, UTC.
     kind
-        ``"begins"``, ``"seen"``, ``"planned"``, ``"advised"``, ``"treated"``, ``"undone"``,
-        ``"corrected"``, ``"changed"``, ``"labels"``, ``"merged"`` or ``"saved"``.
+        ``"begins"``, ``"seen"``, ``"noted"``, ``"planned"``, ``"advised"``, ``"treated"``,
+        ``"undone"``, ``"corrected"``, ``"changed"``, ``"labels"``, ``"merged"`` or ``"saved"``.
     who
         Whose doing; empty: nobody said.
     what
@@ -92,6 +92,8 @@ class LogEntry:
         said = filled(_SAID[kind], what) + chosen + undone + anew
         for old, now in self.numbers.items():
             said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
+        if self.kind in ("seen", "merged") and (added := what.get("more")):
+            said += f"; {added}"
         if detects := what.get("detects"):
             said += f"; told to find {', '.join(map(_percent, detects))} of what is there"
         return said
@@ -119,6 +121,7 @@ _SAID = {
     "begins": "the log begins: {why}",
     "seen": "{source}: {found} found, {clean} clean, {skipped} could not be inspected, "
     "batch {batch}",
+    "noted": "{source}: {more} to what was known, batch {batch}",
     "planned": "{date}: {stops} {stops:stop|stops} by {sampler}, "
     "about {expected} of them visibly infested",
     "advised": "{date}: {said}",

@@ -47,7 +47,9 @@ SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_n
 
 # signs that embed, override or isolate a direction, and their ends (Unicode Standard Annex 9)
 # what Markdown formats by, inside a line
-_FORMATS = re.compile(r"[\\`*_$\[\]<>~:#|&]")
+_FORMATS = re.compile(r"[\\`*_$\[\]<>~#|&]")
+# and what the page makes pictures of by name, escaped or not
+_PICTURES = re.compile(r":(?=[a-z+-])", re.IGNORECASE)
 _TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
 _LEADING = re.compile(r"\](?=[\[(:])|!(?=\[)|:(?=//)|www(?=\.)|(?<=\S)@(?=\S)", re.IGNORECASE)
 
@@ -311,7 +313,7 @@ def unformatted(text: str) -> str:
     >>> print(unformatted("*webs* at $5"))
     \*webs\* at \$5
     """
-    return _FORMATS.sub(r"\\\g<0>", text)
+    return _FORMATS.sub(r"\\\g<0>", _PICTURES.sub("\\g<0>\u2060", text))
 
 
 def listed(parts: Iterable[str]) -> str:

@@ -205,7 +205,7 @@ def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_its_plant
 def test_what_was_counted_and_noted_and_by_whom_stands_with_each_inspection(said, season, tmp_path):
     copy = Season(shutil.copy(season.path, tmp_path))
     day = np.datetime64(BEGINS)
-    for who, note in (("Ada", "webs"), ("נועה", "two\n**lines** of <b>https://x.y</b>")):
+    for who, note in (("Ada", "webs"), ("נועה", "two\n**lines** of <b>https://x.y</b> :home:")):
         copy.record(
             Inspections.of(
                 np.array([PLANT]), np.array([FOUND]), day + 4, count=np.array([3.0]),
@@ -215,8 +215,8 @@ def test_what_was_counted_and_noted_and_by_whom_stands_with_each_inspection(said
     choices = in_season(copy, BEGINS)
     tap(choices, PLANT)
     plant_history.show(choices)
-    note = r"webs; two \*\*lines\*\* of \<b\>https\:\u2060//x.y\</b\> (נועה)".replace(
-        r"\u2060", "\u2060"
+    note = r"webs; two \*\*lines\*\* of \<b\>https:|//x.y\</b\> :|home: (נועה)".replace(
+        "|", "\u2060"
     )
     assert said[-1].splitlines()[-1] == (
         f"- Fri 10 Apr: **found, count 3** · \u2068{note}\u2069 · \u2068Ada\u2069"

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.geopackage import GeoPackageTable
+    from fieldmon.monitoring.replaced import Corrected
     from fieldmon.monitoring.treatments import Row
 
 #: what the batches of a copy are numbered now, by their numbers in it
@@ -174,7 +175,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     gone = replaced.corrected([row for row in changes if row["batch"] is not None])
     _merge_inspections((db, other), numbers, gone, stay)
     own = [copied["treatments"] for copied in copies]
-    treated = _merged_findings(own, numbers, set(), set())
+    treated = _merged_findings(own, numbers, set(), {})
     treatments.settle(treated)
     _write(db, schema.TREATMENTS, treated)
     _count(db, batches)
@@ -428,7 +429,7 @@ def _number(
 def _merge_inspections(
     both: tuple[sqlite3.Connection, sqlite3.Connection],
     numbers: list[Numbers],
-    gone: set[str],
+    gone: Corrected,
     stay: int,
 ) -> None:
     """Let the first of both have the inspections of both, of which so many `stay`.
@@ -499,7 +500,7 @@ def _spans(db: sqlite3.Connection) -> dict[int, tuple[int, int, int]]:
 
 
 def _merged_findings(
-    copies: list[list[Row]], numbers: list[Numbers], counting: set[str], gone: set[str]
+    copies: list[list[Row]], numbers: list[Numbers], counting: set[str], gone: Corrected
 ) -> list[Row]:
     """Return inspections or treatments of both copies, once each, in the order of their batches.
 
@@ -526,7 +527,8 @@ def _merged_findings(
         found.values(), key=lambda r: (r["batch"] or drafts_last, r["fid"], repr(r["digest"]))
     )
     for row in rows:
-        if row["undone"] == STANDS_BACK and row["digest"] in gone:
+        stands_back = row["undone"] == STANDS_BACK
+        if stands_back and not replaced.may_count(gone, row["digest"], row["batch"]):
             continue
         if row["digest"] is not None and row["undone"] != TAKEN_BACK:
             row["undone"] = STANDS_BACK if row["digest"] in counting else COUNTS

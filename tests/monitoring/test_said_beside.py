@@ -241,3 +241,22 @@ def test_two_lines_of_one_file_that_differ_in_their_notes_are_both_kept(season):
     lines = f"row,number,date,result,notes\n1,6,{BEGINS},found,webs\n1,6,{BEGINS},found,eggs\n"
     read = read_inspections(Upload("two.csv", lines.encode()), season.plot.grid).value
     assert read.notes.tolist() == ["webs; eggs"]
+
+
+def test_who_inspected_corrected_twice_is_who_it_was_before_where_the_last_is_undone(
+    season, tmp_path
+):
+    season.record(find("webs", "Ada"))
+    for who in ("Bob", "Cid"):
+        with closing(sqlite3.connect(season.path)) as db:
+            db.execute("UPDATE inspections SET who = ? WHERE undone = 0", (who,))
+            db.commit()
+        season.correct("Dan")
+    other = Season(shutil.copy(season.path, tmp_path / "other.gpkg"))
+    assert beside(season) == ("Cid", "webs")
+    season.undo()
+    assert beside(season) == ("Bob", "webs")
+    other.merge(season)
+    assert beside(other) == ("Bob", "webs")
+    season.undo()
+    assert beside(season) == ("Ada", "webs")

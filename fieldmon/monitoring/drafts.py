@@ -15,7 +15,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
-from fieldmon.monitoring import inspection_lots, inspection_table
+from fieldmon.monitoring import inspection_lots, inspection_table, said_beside
 from fieldmon.monitoring.geopackage import geometry, touch
 from fieldmon.monitoring.recorded_before import contradictions, said_before
 from fieldmon.monitoring.schema import INSPECTIONS
@@ -43,11 +43,17 @@ class Draft(NamedTuple):
         What it says, or None.
     why
         Why it does not count; "" where it does.
+    known
+        The inspection that is held already, beside which it says more; None: it is new.
+    is_note
+        Whether that is a note.
     """
 
     row: int
     inspection: Inspections | None
     why: str = ""
+    known: Inspections | None = None
+    is_note: bool = False
 
     @property
     def sentence(self) -> str:
@@ -72,7 +78,7 @@ def read(
     settings: MonitoringSettings,
     held: Inspections,
 ) -> list[Draft]:
-    """Return the drafts of a season, besides those that say what it holds already.
+    """Return the drafts of a season, besides those that say no more than it holds already.
 
     `held` are the inspections that count. Of two drafts that contradict, the first counts.
     """
@@ -85,6 +91,9 @@ def read(
             one = _inspection(dict(zip(names, values, strict=True)), plot[0])
             inspection_table.rows(one, *plot, settings, (0, ""))  # whether it fits the season
             if said_before(one, held).any():
+                for more in said_beside.additions(one, held):
+                    known = held.take(np.array([more.held]))
+                    drafts.append(Draft(row, one, "", known, more.is_note))
                 continue
             contradictions(one, held).refuse(plot[0])
         except (FieldmonError, ValueError, TypeError) as error:
@@ -102,13 +111,17 @@ def keep(
     settings: MonitoringSettings,
     batch: int,
 ) -> Inspections:
-    """Let drafts count, each in its own row; return what they say."""
+    """Let drafts count, each in its own row; return what is new of them."""
     news = Inspections.none()
-    for draft in taken:
+    # first those beside which others may say more
+    for draft in sorted(taken, key=lambda one: one.known is not None):
         assert draft.inspection is not None  # noqa: S101 - these count
-        news = news.and_those(draft.inspection)
         (made,) = inspection_table.rows(draft.inspection, *plot, settings, (batch, ""))
         values = dict(zip(INSPECTIONS.names, made, strict=True))
+        if draft.known is None:
+            news = news.and_those(draft.inspection)
+        else:
+            values = said_beside.standing_back(db, draft.known, 0, made)
         names = ", ".join(f"{name} = ?" for name in values)
         db.execute(
             f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours

@@ -126,13 +126,15 @@ def keep(db: sqlite3.Connection, held: Inspections, made: Iterable[tuple[int, Ro
 
     What it left open of when and how many is as it is held.
     """
-    rows = []
-    for k, row in made:
-        values = dict(zip(INSPECTIONS.names, row, strict=True))
-        kept = _row(db, held, k) | {name: values[name] for name in (*_NAMES, "batch")}
-        kept["undone"] = STANDS_BACK
-        rows.append(tuple(kept[name] for name in INSPECTIONS.names))
-    insert(db, INSPECTIONS, rows)
+    rows = [standing_back(db, held, k, row) for k, row in made]
+    insert(db, INSPECTIONS, [tuple(row[name] for name in INSPECTIONS.names) for row in rows])
+
+
+def standing_back(db: sqlite3.Connection, held: Inspections, k: int, made: Row) -> dict[str, Any]:
+    """Return the row of what was brought of an inspection held, as `keep` keeps it."""
+    told = dict(zip(INSPECTIONS.names, made, strict=True))
+    own = {name: told[name] for name in (*_NAMES, "batch")}
+    return _row(db, held, k) | own | {"undone": STANDS_BACK}
 
 
 def _beside(inspections: Inspections) -> list[Beside]:
@@ -147,7 +149,8 @@ def _same(brought: Inspections, held: Inspections) -> list[tuple[int, list[int]]
     Where no time is said, or no count, it is any of that plant, day and result.
     """
     where: dict[tuple[int, ...], list[int]] = {}
-    at = np.flatnonzero(np.isin(held.plant, brought.plant))
+    near = np.isin(held.plant, brought.plant) & np.isin(held.date, brought.date)
+    at = np.flatnonzero(near)
     for j, key in zip(at.tolist(), _keys(held.take(at)), strict=True):
         where.setdefault(key, []).append(j)
     found = []

@@ -260,24 +260,23 @@ class SeasonRecords(OpenSeason):
             batch if len(news) or more else None, len(news), len(inspections) - len(news),
             noted=n_notes, filled=len(more) - n_notes,
         )  # fmt: skip
-        if len(news):
-            self._log_seen(db, news, (batch, source, by), who, done)
-        elif more:
-            season_log.append(
-                db, "noted", by, states=season_log.states(db, [batch]),
-                batch=batch, source=source, more=done.more,
-            )  # fmt: skip
+        self._log_seen(db, news, (source, by), done, who)
         return done, news
 
     def _log_seen(
-        self, db: sqlite3.Connection, news: Inspections, said: tuple[int, str, str], who: str = "",
-        done: Recorded | None = None,
+        self, db: sqlite3.Connection, news: Inspections, said: tuple[str, str], done: Recorded,
+        who: str = "",
     ) -> None:  # fmt: skip
-        batch, source, by = said
-        more = {"more": done.more} if done is not None and done.more else {}
+        """Log what is new of a batch, and what was added to what was known."""
+        if done.batch is None:
+            return
+        source, by = said
+        what: dict[str, object] = {"more": str(done.more)} if done.more else {}
+        if len(news):
+            what |= inspection_table.in_words(news, said_now(db, news, who))
         season_log.append(
-            db, "seen", by, states=season_log.states(db, [batch]), batch=batch, source=source,
-            **inspection_table.in_words(news, said_now(db, news, who)), **more,
+            db, "seen" if len(news) else "noted", by,
+            states=season_log.states(db, [done.batch]), batch=done.batch, source=source, **what,
         )  # fmt: skip
 
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
@@ -384,9 +383,13 @@ class SeasonRecords(OpenSeason):
         said = (self.plot.grid, self.label), settings, batch
         news = drafts.keep(db, taken, *said)
         batches.end(db, batch, len(taken))
-        self._log_seen(db, news, (batch, drafts.SOURCE, ""))
+        known = [one for one in taken if one.known is not None]
+        n_notes = sum(one.is_note for one in known)
+        done = Recorded(batch, len(news), len(known), noted=n_notes, filled=len(known) - n_notes)
+        self._log_seen(db, news, (drafts.SOURCE, ""), done)
         # there are as many rows as before: all is read again
-        self._refresh(db, settings.day(news.date.min().item()))
+        days = [one.inspection.date[0].item() for one in taken if one.inspection is not None]
+        self._refresh(db, settings.day(min(days)))
 
     def is_copy(self, file: Path) -> bool:
         """Return whether a file is this season or a copy of it, however far they went apart.

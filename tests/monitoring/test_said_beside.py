@@ -260,3 +260,24 @@ def test_who_inspected_corrected_twice_is_who_it_was_before_where_the_last_is_un
     assert beside(other) == ("Bob", "webs")
     season.undo()
     assert beside(season) == ("Ada", "webs")
+
+
+def test_a_note_that_another_program_adds_as_a_finding_of_its_own_comes_to_what_is_known(season):
+    season.record(find("webs", "Ada"))
+    with closing(sqlite3.connect(season.path)) as db:
+        for plant in (5, 5, 6):
+            db.execute(
+                "INSERT INTO inspections (plant, date, result, who, notes) "
+                "VALUES (?, ?, 'found', 'Bob', 'eggs')",
+                (plant, str(BEGINS)),
+            )
+        db.commit()
+    opened = Season(season.path)
+    assert opened.drafts == ()
+    assert sorted(opened.inspections.plant.tolist()) == [5, 6]
+    assert beside(opened) == ("Ada", "webs; eggs (Bob)")
+    assert opened.log()[-1].kind == "seen"
+    assert "note" in opened.log()[-1].sentence()
+    opened.undo()
+    assert beside(opened) == ("Ada", "webs")
+    assert opened.inspections.plant.tolist() == [5]

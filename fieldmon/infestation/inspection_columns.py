@@ -63,6 +63,10 @@ class InspectionColumn:
         """Whether it holds texts."""
         return self.dtype is object
 
+    def says(self, values: Any) -> Any:  # noqa: ANN401 - an array of any of them
+        """Return ``(k,)`` where anything is said; texts or numbers."""
+        return values != "" if self.is_text else ~np.isnan(values)
+
     def to_file(self, values: Any) -> list[Any]:  # noqa: ANN401 - an array of any of them
         """Return texts or numbers ``(k,)`` as the season's file keeps them."""
         if self.is_text:

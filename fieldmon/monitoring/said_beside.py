@@ -8,6 +8,7 @@ is taken back takes its notes with it.
 
 from __future__ import annotations
 
+from math import isnan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.io.parse.noted import in_both, note_of, parts
 from fieldmon.io.parse.result_words import GONE
 from fieldmon.monitoring.geopackage import insert
-from fieldmon.monitoring.inspection_table import IDENTIFIED_BY, identity, mark_of
+from fieldmon.monitoring.inspection_table import IDENTIFIED_BY, identity, mark_of, time_text
 from fieldmon.monitoring.replaced import STANDS_BACK, as_it_was
 from fieldmon.monitoring.schema import INSPECTIONS
 from fieldmon.planning.members import person_key
@@ -24,6 +25,8 @@ from fieldmon.planning.members import person_key
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterable, Iterator
+
+    from numpy.typing import NDArray
 
     from fieldmon.infestation.inspection_columns import InspectionColumn
     from fieldmon.infestation.inspections import Inspections
@@ -110,15 +113,27 @@ class Addition(NamedTuple):
 
 def additions(brought: Inspections, held: Inspections) -> list[Addition]:
     """Return what inspections that are known say beside what is held of them."""
+    near = np.flatnonzero(np.isin(held.plant, brought.plant) & np.isin(held.date, brought.date))
+    may = np.flatnonzero(_may_add(brought, held.take(near)))
+    brought, held = brought.take(may), held.take(near)
     same, told = _same(brought, held), _beside(brought)
-    which = sorted({j for _, candidates in same for j in candidates})
+    which = sorted({j for candidates in same for j in candidates})
     known = dict(zip(which, _beside(held.take(np.array(which, np.intp))), strict=True))
     found = []
-    for k, candidates in same:
+    for k, candidates in enumerate(same):
         more = [_adds(told[k], known[j]) for j in candidates]
         if more and (False, False) not in more:
-            found.append(Addition(k, candidates[0], more[0][0]))
+            found.append(Addition(int(may[k]), int(near[candidates[0]]), more[0][0]))
     return found
+
+
+def _may_add(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
+    """Return ``(k,)`` which note anything, or say what is left open of any of those held."""
+    may = np.zeros(len(brought), np.bool_)
+    for one in BESIDE:
+        if one.role == "noted" or not one.says(getattr(held, one.name)).all():
+            may |= one.says(getattr(brought, one.name)).astype(np.bool_)
+    return may
 
 
 def keep(db: sqlite3.Connection, held: Inspections, made: Iterable[tuple[int, Row]]) -> None:
@@ -143,23 +158,29 @@ def _beside(inspections: Inspections) -> list[Beside]:
     return [dict(zip(_NAMES, values, strict=True)) for values in zip(*columns, strict=True)]
 
 
-def _same(brought: Inspections, held: Inspections) -> list[tuple[int, list[int]]]:
-    """Return the number of each inspection that is brought, and of those held that are the same.
+def _same(brought: Inspections, held: Inspections) -> list[list[int]]:
+    """Return of each inspection that is brought the numbers of those held that are the same.
 
     Where no time is said, or no count, it is any of that plant, day and result.
     """
     where: dict[tuple[int, ...], list[int]] = {}
-    near = np.isin(held.plant, brought.plant) & np.isin(held.date, brought.date)
-    at = np.flatnonzero(near)
-    for j, key in zip(at.tolist(), _keys(held.take(at)), strict=True):
+    for j, key in enumerate(_keys(held)):
         where.setdefault(key, []).append(j)
-    found = []
-    for k, key in enumerate(_keys(brought)):
+    times, counts, found = _times(held), held.count.tolist(), []
+    told = zip(_keys(brought), _times(brought), brought.count.tolist(), strict=True)
+    for key, time, count in told:
         same = where.get(key, [])
-        for told, of in ((brought.second[k], held.second), (brought.count[k], held.count)):
-            same = [j for j in same if np.isnan(told) or told == 0 or of[j] == told]
-        found.append((k, same))
+        if time is not None:
+            same = [j for j in same if times[j] == time]
+        if not isnan(count) and count != 0:
+            same = [j for j in same if counts[j] == count]
+        found.append(same)
     return found
+
+
+def _times(inspections: Inspections) -> list[str | None]:
+    """Return the time of each as files have it."""
+    return [*map(time_text, inspections.second.tolist())]
 
 
 def _keys(inspections: Inspections) -> Iterator[tuple[int, ...]]:

@@ -107,8 +107,11 @@ def test_a_note_comes_beside_new_findings_and_in_their_batch(season):
 
 
 def test_a_file_without_times_notes_what_was_tapped(season):
-    season.record(find(second=3600.0))
+    season.record(find(second=3600.4))  # kept to the second
     assert season.record(find("webs", count=np.nan)).noted == 1
+    assert season.record(find("webs", second=3600.4)).noted == 0
+    assert season.record(find("webs; eggs", second=3600.4)).noted == 1
+    season.undo()
     assert beside(season) == ("", "webs")
     told = season.inspections
     assert (told.second.tolist(), told.count.tolist()) == ([3600.0], [3.0])

@@ -307,7 +307,9 @@ def said_of(choices: Choices, done: Recorded | None, results: Inspections | None
         return ""
     corrected = [texts.CORRECTED.format(n=done.corrected)] if done.corrected else []
     if done.new or done.known or not corrected:
-        corrected.append(texts.RECORDED.format(new=done.new, known=done.known))
+        said = [texts.RECORDED.format(new=done.new, known=done.known)]
+        more = (texts.NOTED, done.noted), (texts.COMPLETED, done.filled)
+        corrected.append(" ".join([*said, *(text.format(n=n) for text, n in more if n)]))
     if results is not None:
         corrected += _of_days(choices, results)
     return "\n\n".join(corrected)

@@ -20,6 +20,7 @@ from fieldmon.plot.named_rows import plant_meant
 
 from ..state import chosen_day, widget_memory
 from ..words import texts
+from ..words.language import number
 from . import field_map
 from .map_view import MapAnswers
 from .maps import plant_layers
@@ -189,7 +190,10 @@ def _events(choices: Choices, plant: int) -> list[str]:
         result = texts.HISTORY_RESULTS[int(done.result[k])]
         if gone[k]:
             result = texts.RESULTS_OF[3]
-        lines.append(_line(choices, days[k], second, result))
+        if not np.isnan(done.count[k]):
+            result = texts.RESULT_COUNTED.format(result=result, n=number(done.count[k], ",g"))
+        beside = [texts.written(said) for said in (done.notes[k], done.who[k]) if said]
+        lines.append(" · ".join([_line(choices, days[k], second, result), *beside]))
     treated = [one for one in season.treatments() if one.place.plants[plant]]
     for one in reversed(treated):  # those behind first: places before them stay what they are
         product, over_s = one.application.product, one.application.over_s

@@ -47,6 +47,10 @@ _COUNTED = re.compile(r"([\d,]*\d) ([a-z][a-z ]*)")
 SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_name"})
 
 # signs that embed, override or isolate a direction, and their ends (Unicode Standard Annex 9)
+# what Markdown formats by, inside a line
+_FORMATS = re.compile(r"[\\`*_$\[\]<>~#|&]")
+# and what the page makes pictures of by name, escaped or not
+_PICTURES = re.compile(r":(?=[a-z+-])", re.IGNORECASE)
 _TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
 _LEADING = re.compile(r"\](?=[\[(:])|!(?=\[)|:(?=//)|www(?=\.)|(?<=\S)@(?=\S)", re.IGNORECASE)
 
@@ -304,6 +308,17 @@ def leading_nowhere(text: str, *, turning: bool = True) -> str:
     """
     text = text if turning else _TURNING.sub("", text)
     return _LEADING.sub("\\g<0>\u2060", text)
+
+
+def unformatted(text: str) -> str:
+    r"""Return a text as Markdown that shows each of its signs.
+
+    Examples
+    --------
+    >>> print(unformatted("*webs* at $5"))
+    \*webs\* at \$5
+    """
+    return _FORMATS.sub(r"\\\g<0>", _PICTURES.sub("\\g<0>\u2060", text))
 
 
 def listed(parts: Iterable[str]) -> str:

@@ -22,6 +22,11 @@ def isolated(name: str) -> str:
     return f"\u2068{language.leading_nowhere(name, turning=False)}\u2069"
 
 
+def written(said: str) -> str:
+    """Return what somebody wrote, in one line of a page and word for word: no sign formats it."""
+    return isolated(language.unformatted(" ".join(said.split())))
+
+
 TITLE = "fieldmon"
 # rooms, and the parts of each
 ROOMS = {"plots": "Plots", "today": "Today", "season": "Season", "ahead": "Plan ahead",
@@ -852,6 +857,8 @@ RESULT, COUNT, RESULTS_OF = "Result", "Count", {
     0: "clean", 1: "found", 2: "could not inspect", 3: "gone (pulled out)",
 }  # fmt: skip
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
+NOTED = Plural("{n} note added to what was known.", "{n} notes added to what was known.")
+COMPLETED = Plural("{n} known inspection was completed.", "{n} known inspections were completed.")
 RECORDED_OF = "Recorded for {days}, not for {day}."
 RECORD_REST = (
     "Say how many stops were done, from the first: they are recorded as clean, unless marked as "

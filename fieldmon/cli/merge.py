@@ -43,7 +43,8 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     more = (done.treatments, "treatment"), (len(done.codes), "scout's code")
     parts += [counted(n, thing) for n, thing in more if n]
     were = "was" if len(parts) == 1 and done.new == 1 else "were"
-    typer.echo(f"{other.name}: {joined(', ', parts)} {were} new{gone}")
+    noted = f", {done.more}" if done.more else ""
+    typer.echo(f"{other.name}: {joined(', ', parts)} {were} new{noted}{gone}")
     if done.moved:
         typer.echo(
             "  numbered anew: batches have other numbers now than before; the log shows both"

@@ -142,7 +142,8 @@ def _record(season: Season, read: list[BroughtFile], flags: RecordFlags) -> date
             n = done.corrected
             typer.echo(f"{one.name}: {n} correction{'' if n == 1 else 's'} taken, by {flags.who}")
         batch = "" if done.batch is None else f" (batch {done.batch})"
-        typer.echo(f"{one.name}: {done.new} new, {done.known} known already{batch}")
+        more = f", {done.more}" if done.more else ""
+        typer.echo(f"{one.name}: {done.new} new, {done.known} known already{more}{batch}")
     days = [inspections.date.max().item() for inspections in found if len(inspections)]
     return max(days, default=None)
 

@@ -11,6 +11,7 @@ from fieldmon.compute.arguments import days_of, entries_of, must_be_known, secon
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
+from fieldmon.infestation.inspection_columns import COLUMNS
 
 if TYPE_CHECKING:
     import datetime as dt
@@ -22,27 +23,9 @@ CLEAN, FOUND, SKIPPED = 0, 1, 2
 #: as files and people write them
 RESULT_NAMES = {CLEAN: "clean", FOUND: "found", SKIPPED: "skipped"}
 
-_TYPES: dict[str, Any] = {
-    "plant": "int32",
-    "result": "int8",
-    "date": "datetime64[D]",
-    "second": "float64",
-    "count": "float64",
-    "who": object,
-    "notes": object,
-    "detects": "float64",
-}
+_TYPES: dict[str, Any] = {column.name: column.dtype for column in COLUMNS}
 #: what a caller's array of each may be to numpy, and how a sentence calls it
-_GIVEN = {
-    "plant": ("iuf", "whole numbers of int32"),
-    "result": ("biuf", "whole numbers of int8"),
-    "date": ("M", "dates"),
-    "second": ("iufO", "numbers"),
-    "count": ("iufO", "numbers"),
-    "who": ("UO", "texts"),
-    "notes": ("UO", "texts"),
-    "detects": ("iufO", "numbers"),
-}
+_GIVEN = {column.name: column.given for column in COLUMNS}
 
 
 def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to its kind here
@@ -186,15 +169,16 @@ class Inspections:
                 f"The time of inspections must be said once, but {shown(on)} has one and second "
                 "is given too. Leave one out."
             )
-        known: dict[str, Any] = {
+        unsaid = {
+            column.name: np.full(k, column.empty, column.dtype)
+            for column in COLUMNS
+            if column.empty is not None
+        }
+        known: dict[str, Any] = unsaid | {
             "plant": plant,
             "result": result,
             "date": np.full(k, dates) if dates.ndim == 0 else dates,
             "second": np.full(k, seconds) if seconds.ndim == 0 else seconds,
-            "count": np.full(k, np.nan),
-            "who": np.full(k, "", object),
-            "notes": np.full(k, "", object),
-            "detects": np.full(k, np.nan),
         }
         return cls(**(known | columns))
 

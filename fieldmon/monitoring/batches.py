@@ -122,12 +122,30 @@ class Recorded:
         Inspections or treatments that were added, and those that the season held already.
     corrected
         Those that hold in place of what was recorded before.
+    noted, filled
+        Of those known, how many got a note, and how many others got what was left open: a name, a
+        chance to see what is there.
     """
 
     batch: int | None
     new: int
     known: int
     corrected: int = 0
+    noted: int = 0
+    filled: int = 0
+
+    @property
+    def more(self) -> str:
+        """What was added to those known, in words; empty: nothing."""
+        return more_in_words(self.noted, self.filled)
+
+
+def more_in_words(noted: int, filled: int = 0) -> str:
+    """Return in words how many notes were added to what was known, and how many gaps filled."""
+    said = [worded("{n} {n:note|notes} added", n=noted)] if noted else []
+    if filled:
+        said.append(worded("{n} completed", n=filled))
+    return joined(", ", said)
 
 
 def begin(db: sqlite3.Connection, kind: str, source: str, who: str) -> int:
@@ -138,6 +156,11 @@ def begin(db: sqlite3.Connection, kind: str, source: str, who: str) -> int:
         (utc_text(), kind, source, who),
     )
     return int(cursor.lastrowid or 0)
+
+
+def name(db: sqlite3.Connection, batch: int, who: str) -> None:
+    """Say whose a batch is."""
+    db.execute("UPDATE batches SET who = ? WHERE fid = ?", (who, batch))
 
 
 def must_count(db: sqlite3.Connection, batch: int) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.io.options import Upload, source_name
-from fieldmon.monitoring import findings
+from fieldmon.monitoring import findings, said_beside
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.transactions import MAGIC, connect, copy_season, is_season
 
@@ -57,12 +57,13 @@ class BroughtFile:
 def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Path:
     """Return a copy of a season with only the inspections that were not undone there.
 
-    Rows `besides` them are left out too.
+    Each says all that was said beside it. Rows `besides` them are left out too.
     """
     copy = folder / season.name
     copy_season(season, copy)
     with closing(connect(copy)) as db:
         db.execute("BEGIN")
+        said_beside.write_out(db)
         db.execute("DELETE FROM inspections WHERE undone <> 0")
         db.executemany("DELETE FROM inspections WHERE fid = ?", [(row,) for row in besides])
         db.execute("COMMIT")

@@ -6,15 +6,16 @@ which plant and when; what does not stays a draft, and is told of.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError
+from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
-from fieldmon.monitoring import inspection_lots, inspection_table
+from fieldmon.monitoring import inspection_lots, inspection_table, said_beside
 from fieldmon.monitoring.geopackage import geometry, touch
 from fieldmon.monitoring.recorded_before import contradictions, said_before
 from fieldmon.monitoring.schema import INSPECTIONS
@@ -42,11 +43,17 @@ class Draft(NamedTuple):
         What it says, or None.
     why
         Why it does not count; "" where it does.
+    known
+        The inspection that is held already, beside which it says more; None: it is new.
+    is_note
+        Whether that is a note.
     """
 
     row: int
     inspection: Inspections | None
     why: str = ""
+    known: Inspections | None = None
+    is_note: bool = False
 
     @property
     def sentence(self) -> str:
@@ -71,19 +78,22 @@ def read(
     settings: MonitoringSettings,
     held: Inspections,
 ) -> list[Draft]:
-    """Return the drafts of a season, besides those that say what it holds already.
+    """Return the drafts of a season, besides those that say no more than it holds already.
 
     `held` are the inspections that count. Of two drafts that contradict, the first counts.
     """
-    names = "fid, geom, plant, date, time, result, count, who, notes, detects"
-    wanted = f"SELECT {names} FROM inspections WHERE {_DRAFTS} ORDER BY fid"  # noqa: S608 - ours
+    names = ("geom", *(column.kept for column in COLUMNS))
+    wanted = f"SELECT fid, {', '.join(names)} FROM inspections WHERE {_DRAFTS} ORDER BY fid"  # noqa: S608 - ours
     rows = db.execute(wanted).fetchall()
     drafts = []
-    for row, *said in rows:
+    for row, *values in rows:
         try:
-            one = _inspection(said, plot[0])
+            one = _inspection(dict(zip(names, values, strict=True)), plot[0])
             inspection_table.rows(one, *plot, settings, (0, ""))  # whether it fits the season
             if said_before(one, held).any():
+                for more in said_beside.additions(one, held):
+                    known = held.take(np.array([more.held]))
+                    drafts.append(Draft(row, one, "", known, more.is_note))
                 continue
             contradictions(one, held).refuse(plot[0])
         except (FieldmonError, ValueError, TypeError) as error:
@@ -101,13 +111,17 @@ def keep(
     settings: MonitoringSettings,
     batch: int,
 ) -> Inspections:
-    """Let drafts count, each in its own row; return what they say."""
+    """Let drafts count, each in its own row; return what is new of them."""
     news = Inspections.none()
-    for draft in taken:
+    # first those beside which others may say more
+    for draft in sorted(taken, key=lambda one: one.known is not None):
         assert draft.inspection is not None  # noqa: S101 - these count
-        news = news.and_those(draft.inspection)
         (made,) = inspection_table.rows(draft.inspection, *plot, settings, (batch, ""))
         values = dict(zip(INSPECTIONS.names, made, strict=True))
+        if draft.known is None:
+            news = news.and_those(draft.inspection)
+        else:
+            values = said_beside.standing_back(db, draft.known, 0, made)
         names = ", ".join(f"{name} = ?" for name in values)
         db.execute(
             f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours
@@ -117,14 +131,14 @@ def keep(
     return news
 
 
-def _inspection(said: list[object], grid: PlantGrid) -> Inspections:
+def _inspection(said: dict[str, Any], grid: PlantGrid) -> Inspections:
     """Return what a draft says; raise with the reason where it makes no sense."""
     # readers take a tenth of a second to import, and drafts are few
     from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows  # noqa: PLC0415
     from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
     from fieldmon.io.readers.inspections import look_up  # noqa: PLC0415
 
-    place, plant, on, at, result, count, who, notes, detects = said
+    on, at, result = said["date"], said["time"], said["result"]
     if on in {None, ""}:
         raise ValueError("it has no date")
     if result not in _SAID:
@@ -134,17 +148,16 @@ def _inspection(said: list[object], grid: PlantGrid) -> Inspections:
     when = np.datetime64("NaT", "s")
     if not np.isnan(second):
         when = day.astype("datetime64[s]") + np.timedelta64(round(second), "s")
-    rows = _one_row(place, plant, _SAID[str(result)], count)
-    rows = rows | {"when": np.array([when]), "day": np.array([day])}
-    rows = rows | {"who": np.array([str(who or "")]), "notes": np.array([str(notes or "")])}
-    rows = rows | {"detects": np.array([np.nan if detects is None else float(str(detects))])}
+    rows = _one_row(said["geom"], said["plant"], _SAID[str(result)])
+    rows |= {"when": np.array([when]), "day": np.array([day])}
+    rows |= {one.name: np.array([one.from_file(said[one.kept])]) for one in (COUNT, *BESIDE)}
     found, messages = look_up(InspectionRows(**rows), grid, InspectionOptions())
     if not len(found):
         raise ValueError(messages[0].sentence if messages else "it names no plant")
     return found
 
 
-def _one_row(place: object, plant: object, result: int, count: object) -> dict[str, np.ndarray]:
+def _one_row(place: object, plant: object, result: int) -> dict[str, np.ndarray]:
     from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID  # noqa: PLC0415 - late
 
     point = geometry(place) if isinstance(place, bytes) else None
@@ -158,7 +171,6 @@ def _one_row(place: object, plant: object, result: int, count: object) -> dict[s
         "accuracy_m": np.array([np.nan]),
         "unread": np.array([""]),
         "result": np.array([result], np.int8),
-        "count": np.array([np.nan if count is None else float(str(count))]),
         "doubt": np.array([""]),
         "source_row": np.ones(1, np.int64),
         "block": np.array([""]),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
 from fieldmon.monitoring import batches, copy_corrections, outside_changes
 from fieldmon.monitoring.geopackage import touch
@@ -25,11 +26,11 @@ _OTHERWISE = (
     f"SELECT fid, {INSPECTED} FROM inspections AS old WHERE plant = ? AND date = ? "  # noqa: S608 - ours
     "AND undone = 0 AND result NOT IN (?, ?) ORDER BY fid"
 )
-# when, by whom and with which note stays where nobody says otherwise
+# when, and what is said beside it, stays where nobody says otherwise
+_BESIDE = ", ".join(f"{one.kept} = coalesce(nullif(?, ''), {one.kept})" for one in BESIDE)
 _SAYS = (
-    "UPDATE inspections SET result = ?, count = ?, time = coalesce(?, time), "
-    "who = coalesce(nullif(?, ''), who), notes = coalesce(nullif(?, ''), notes), "
-    "detects = coalesce(?, detects) WHERE fid = ?"
+    f"UPDATE inspections SET result = ?, count = ?, time = coalesce(?, time), {_BESIDE} "  # noqa: S608 - ours
+    "WHERE fid = ?"
 )
 
 
@@ -55,10 +56,11 @@ def take(
         (row, was), *others = db.execute(_OTHERWISE, key).fetchall()
         change = OutsideChange(INSPECTIONS.name, row, "update", was)
         change = replace(change, before=copy_corrections.as_it_is(db, row))
-        told = time_text(float(one.second[0])), str(one.who[0]) or who, str(one.notes[0])
         count = None if np.isnan(one.count[0]) else float(one.count[0])
-        detects = None if np.isnan(one.detects[0]) else float(one.detects[0])
-        db.execute(_SAYS, (result, count, *told, detects, row))
+        beside = {each.name: each.to_file(getattr(one, each.name))[0] for each in BESIDE}
+        beside["who"] = beside["who"] or who
+        told = count, time_text(float(one.second[0])), *beside.values()
+        db.execute(_SAYS, (result, *told, row))
         now = outside_changes.take_row(db, change, plot, settings, batch)
         outside_changes.keep_before(db, change, plot[0])
         copy_corrections.note(db, change, batch, now)

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.compute.digest import digest
+from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
-from fieldmon.monitoring import schema
+from fieldmon.monitoring import said_beside, schema
 from fieldmon.monitoring.geopackage import insert, unpacked
 
 if TYPE_CHECKING:
@@ -25,17 +26,22 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Columns = list[NDArray[Any]]
+    from fieldmon.infestation.inspection_columns import InspectionColumn
+
+    #: by the names of `Inspections`; dates as the season numbers its days
+    Columns = dict[str, NDArray[Any]]
 
 _CODES = {name: code for code, name in RESULT_NAMES.items()}
 _DAY_S = 86_400
 # the row numbers that SQLite knows
 _LEAST, _MOST = -(1 << 63), (1 << 63) - 1
-# in the order of `Inspections`, but with numbers of days
-_NUMBERS = {"plant": "<i4", "result": "<i1", "day": "<i4", "second": "<f8", "count": "<f8"}
-_TEXTS = ("who", "notes")
-# stands last
-_DETECTS = "<f8"
+# of each as it is kept; a text is the number of it among those of its lot
+_DTYPES = {
+    one.name: "<i4" if one.is_text else np.dtype(one.dtype).newbyteorder("<") for one in COLUMNS
+} | {"date": "<i4"}
+_TEXTS = tuple(one.name for one in COLUMNS if one.is_text)
+# columns of the table that say it, by the names of `Inspections`
+_FROM = {one.name: one.kept for one in COLUMNS} | {"date": "day"}
 # what all lots may unpack to: notes of 500 letters for each of a million rows
 _MOST_BYTES = 1 << 29
 
@@ -51,27 +57,29 @@ def load(db: sqlite3.Connection, begins: date) -> Inspections:
             except sqlite3.DatabaseError:
                 continue
             left -= len(data)
-            kept[lot] = _columns(data)
-    pieces = []
+            if (columns := _columns(data)) is not None:
+                kept[lot] = columns
+    pieces, others = [], said_beside.of_others(db)
     for rows, lot in _between(kept):
-        pieces.append(_read(db, rows))
+        pieces.append(_read(db, rows, others))
         if lot is not None:
             pieces.append(kept[lot])
-    columns = [np.concatenate(column) for column in zip(*pieces, strict=True)]
-    day, second = columns[2], columns[3]
-    columns[2] = np.datetime64(begins, "D") + day
-    return Inspections(*columns).take(np.lexsort((second, np.isnan(second), day)))
+    every = {name: np.concatenate([piece[name] for piece in pieces]) for name in _DTYPES}
+    day, second = every["date"], every["second"]
+    every["date"] = np.datetime64(begins, "D") + day
+    return Inspections(**every).take(np.lexsort((second, np.isnan(second), day)))
 
 
 def keep(db: sqlite3.Connection) -> None:
     """Keep lots that are full and not kept yet, within the transaction that changes the file."""
     (last,) = db.execute("SELECT max(fid) FROM inspections").fetchone()
     kept = [lot for (lot,) in db.execute("SELECT lot FROM inspection_lots ORDER BY lot")]
+    others = said_beside.of_others(db)
     there = "SELECT DISTINCT fid >> ? FROM inspections WHERE fid >= ? AND fid <= ?"
     for rows, _ in [*_between(kept)]:
         for (lot,) in db.execute(there, (schema.LOT_BITS, *rows)).fetchall():
             first, end = _rows_of(lot)
-            packed = _packed(_read(db, (first, end))) if end <= last else None
+            packed = _packed(_read(db, (first, end), others)) if end <= last else None
             if packed is not None:
                 insert(db, schema.INSPECTION_LOTS, [(lot, digest(packed), packed)])
 
@@ -91,29 +99,42 @@ def _between(kept: Iterable[int]) -> Iterator[tuple[tuple[int, int], int | None]
     yield (first, _MOST), None
 
 
-def _read(db: sqlite3.Connection, rows: tuple[int, int]) -> Columns:
-    """Return the inspections among some row numbers that count, as columns."""
+def _read(
+    db: sqlite3.Connection, rows: tuple[int, int], others: dict[str, list[said_beside.Beside]]
+) -> Columns:
+    """Return the inspections among some row numbers that count, as columns.
+
+    `others` is what is said beside them in other rows, see `said_beside.of_others`.
+    """
     found = db.execute(
-        "SELECT plant, day, result, time, count, detects, coalesce(who, ''), coalesce(notes, '') "
-        "FROM inspections "
+        f"SELECT digest, {', '.join(_FROM.values())} FROM inspections "  # noqa: S608 - names of ours
         "WHERE fid >= ? AND fid <= ? AND undone = 0 AND digest IS NOT NULL ORDER BY fid",
         rows,
     ).fetchall()
-    columns = zip(*found, strict=True) if found else ((),) * 8
-    plant, day, result, time, count, detects, *said = columns
+    marks, *values = zip(*found, strict=True) if found else ((),) * (len(_FROM) + 1)
+    said: dict[str, list[Any]] = {one: [*column] for one, column in zip(_FROM, values, strict=True)}
+    for k, mark in enumerate(marks) if others else ():
+        if mark in others:
+            own = {one.kept: said[one.name][k] for one in BESIDE}
+            whole = said_beside.together(own, others[mark])
+            for one in BESIDE:
+                said[one.name][k] = whole[one.kept]
+    said["result"] = [_CODES[name] for name in said["result"]]
+    said["second"] = [second_of(text) for text in said["second"]]
+    for one in (COUNT, *BESIDE):
+        said[one.name] = _each(one, said[one.name])
+    return {
+        name: np.array(column, object if name in _TEXTS else _DTYPES[name])
+        for name, column in said.items()
+    }
+
+
+def _each(column: InspectionColumn, kept: list[Any]) -> list[Any]:
+    """Return what a column of the table says, as inspections hold it."""
+    if not column.is_text:
+        return [np.nan if value is None else value for value in kept]
     texts: dict[str, str] = {}  # the same name stands in thousands of rows
-    numbers = (
-        plant,
-        [_CODES[name] for name in result],
-        day,
-        [second_of(text) for text in time],
-        [np.nan if value is None else value for value in count],
-    )
-    return [
-        *(np.array(*one) for one in zip(numbers, _NUMBERS.values(), strict=True)),
-        *(np.array([texts.setdefault(t, t) for t in column], object) for column in said),
-        np.array([np.nan if value is None else value for value in detects], _DETECTS),
-    ]
+    return [texts.setdefault(text, text) for text in ("" if one is None else one for one in kept)]
 
 
 @lru_cache(maxsize=_DAY_S)
@@ -127,29 +148,34 @@ def second_of(text: str | None) -> float:
 
 def _packed(columns: Columns) -> bytes | None:
     """Return columns as bytes; None: they hold what is no text where texts belong."""
-    texts, said = columns[len(_NUMBERS) : -1], []
-    codes = []
-    for column in texts:
-        numbers: dict[object, int] = {}
-        codes.append(np.array([numbers.setdefault(text, len(numbers)) for text in column], "<i4"))
+    said: dict[str, list[str]] = {}
+    arrays = []
+    for name, kind in _DTYPES.items():
+        if name not in _TEXTS:
+            arrays.append(columns[name])
+            continue
+        numbers: dict[Any, int] = {}
+        codes = [numbers.setdefault(text, len(numbers)) for text in columns[name]]
         if not all(isinstance(text, str) for text in numbers):
             return None
-        said.append([*numbers])
-    head = json.dumps([len(columns[0]), *said]).encode()  # one line: JSON knows no other
-    arrays = (*columns[: len(_NUMBERS)], *codes, columns[-1])
+        arrays.append(np.array(codes, kind))
+        said[name] = [*numbers]
+    # one line: JSON knows no other
+    head = json.dumps([len(columns["plant"]), [*_DTYPES], said]).encode()
     return zlib.compress(head + b"\n" + b"".join(array.tobytes() for array in arrays), 1)
 
 
-def _columns(data: bytes) -> Columns:
-    """Return the columns that bytes hold."""
+def _columns(data: bytes) -> Columns | None:
+    """Return the columns that bytes hold; None: another version kept others."""
     at = data.index(b"\n") + 1
-    n, *said = json.loads(data[:at])
-    columns: Columns = []
-    for kind in (*_NUMBERS.values(), *("<i4" for _ in _TEXTS), _DETECTS):
-        columns.append(np.frombuffer(data, kind, n, at))
-        at += columns[-1].nbytes
-    texts = [
-        np.array([*of, None], object)[codes]  # None: an array even of one text, or of none
-        for of, codes in zip(said, columns[len(_NUMBERS) : -1], strict=True)
-    ]
-    return [*columns[: len(_NUMBERS)], *texts, columns[-1]]
+    n, names, *said = json.loads(data[:at])
+    if names != [*_DTYPES]:
+        return None
+    columns: Columns = {}
+    for name, kind in _DTYPES.items():
+        columns[name] = np.frombuffer(data, kind, n, at)
+        at += columns[name].nbytes
+    for name, of in said[0].items():
+        # None: an array even of one text, or of none
+        columns[name] = np.array([*of, None], object)[columns[name]]
+    return columns

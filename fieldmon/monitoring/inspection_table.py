@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hashlib import sha256
+from itertools import repeat
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,14 +12,16 @@ from fieldmon.compute.digest import digest
 from fieldmon.compute.ranges import DETECTS
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.inspection_columns import BESIDE, COUNT, IDENTIFYING
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
-from fieldmon.monitoring.replaced import as_it_was
+from fieldmon.monitoring.replaced import COUNTS, as_it_was
 from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
     import sqlite3
+    from collections.abc import Iterable, Sequence
     from datetime import date
 
     from numpy.typing import NDArray
@@ -30,8 +33,8 @@ _CODES = {name: code for code, name in RESULT_NAMES.items()}
 _DAY_S = 86_400
 # of a digest
 _LENGTH = 24
-#: of what an inspection finds of what is there
-DECIMALS = 6
+#: what makes an inspection the same as another, by the names of the season's file
+IDENTIFIED_BY = tuple(column.kept for column in IDENTIFYING)
 
 
 def ever_recorded(db: sqlite3.Connection) -> set[tuple[int, str, int]]:
@@ -51,32 +54,32 @@ def rows(
 
     `batch` is its number and whose inspections these are where they do not say. Who inspected,
     what was noted and what it finds of what is there is no part of what makes one the same as
-    another: a file that comes back from somebody else, or with more notes, brings nothing new.
+    another: a file that comes back from somebody else, or with more notes, brings nothing new, but
+    may say more beside what is known (`said_beside`).
     """
     _check(inspections, grid)
     plants, dates = inspections.plant, inspections.date.tolist()
     number = {day: _day(day, dates, plants, grid, settings) for day in sorted(set(dates))}
-    columns = zip(
-        point_blobs(grid.lonlat(plants)),
-        plants.tolist(),
-        label.line[plants].tolist(),
-        label.number[plants].tolist(),
-        dates,
-        map(time_text, inspections.second.tolist()),
-        [RESULT_NAMES[code] for code in inspections.result.tolist()],
-        [None if np.isnan(count) else count for count in inspections.count.tolist()],
-        [str(who) or batch[1] for who in inspections.who],
-        map(str, inspections.notes),
-        [None if np.isnan(one) else round(one, DECIMALS) for one in inspections.detects.tolist()],
-        strict=True,
-    )
-    made: list[tuple[object, ...]] = []
-    for place, plant, line, in_row, date, at, result, count, who, notes, detects in columns:
-        on = date.isoformat()
-        mark = _digest(plant, on, at, result, count)
-        what = (number[date], on, at, result, count, who, notes)
-        made.append((place, plant, line, in_row, *what, batch[0], mark, 0, detects))
-    return made
+    said: dict[str, Sequence[object]] = {
+        "plant": plants.tolist(),
+        "date": [on.isoformat() for on in dates],
+        "time": [*map(time_text, inspections.second.tolist())],
+        "result": [RESULT_NAMES[code] for code in inspections.result.tolist()],
+        "count": COUNT.to_file(inspections.count),
+    }
+    said |= {one.kept: one.to_file(getattr(inspections, one.name)) for one in BESIDE}
+    marks = [_digest(*one) for one in zip(*(said[name] for name in IDENTIFIED_BY), strict=True)]
+    columns: dict[str, Iterable[object]] = said | {
+        "geom": point_blobs(grid.lonlat(plants)),
+        "line": label.line[plants].tolist(),
+        "number": label.number[plants].tolist(),
+        "day": [number[on] for on in dates],
+        "who": [who or batch[1] for who in said["who"]],
+        "batch": repeat(batch[0], len(plants)),
+        "digest": marks,
+        "undone": repeat(COUNTS, len(plants)),
+    }
+    return [*zip(*(columns[name] for name in schema.INSPECTIONS.names), strict=True)]
 
 
 def _day(
@@ -164,6 +167,24 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
         )
 
 
+def identity(inspections: Inspections, k: int) -> tuple[object, ...]:
+    """Return what makes an inspection the same as another, as the season's file has it."""
+    count = inspections.count[[k]]
+    said = {
+        "plant": int(inspections.plant[k]),
+        "date": str(inspections.date[k]),
+        "time": time_text(float(inspections.second[k])),
+        "result": RESULT_NAMES[int(inspections.result[k])],
+        "count": COUNT.to_file(count)[0],
+    }
+    return tuple(said[name] for name in IDENTIFIED_BY)
+
+
+def mark_of(said: tuple[object, ...]) -> str:
+    """Return the digest of what makes an inspection the same as another."""
+    return _digest(*said)
+
+
 def _digest(*parts: object) -> str:
     text = "|".join("" if part is None else str(part) for part in parts)
     return digest(text.encode(), length=_LENGTH, end=b"")
@@ -211,16 +232,16 @@ def not_what_they_say(db: sqlite3.Connection) -> list[int]:
     # most are as SQLite writes them; of others, as of counts of sixteen digits, Python is asked
     # the same as `digest` gives: it is called half a million times
     db.create_function("said", 1, lambda text: sha256(text).hexdigest()[:_LENGTH])
+    names = ", ".join(IDENTIFIED_BY)
+    text = " || '|' || ".join(f"coalesce({name}, '')" for name in IDENTIFIED_BY)
     doubted = db.execute(
-        "SELECT fid, plant, date, time, result, count, digest FROM inspections "
-        "WHERE digest NOTNULL AND digest <> said(CAST(coalesce(plant, '') || '|' || "
-        "coalesce(date, '') || '|' || coalesce(time, '') || '|' || coalesce(result, '') || '|' || "
-        "coalesce(count, '') AS BLOB))"
+        f"SELECT fid, {names}, digest FROM inspections "  # noqa: S608 - names of ours
+        f"WHERE digest NOTNULL AND digest <> said(CAST({text} AS BLOB))"
     )
     wrong = {fid: mark for fid, *said, mark in doubted if _digest(*said) != mark}
     # of a finding that came to two copies which were merged, only one of its rows is known
     told = [one for (one,) in db.execute("SELECT id FROM tellings")] if wrong else []
-    said = "SELECT plant, date, time, result, count FROM inspections WHERE fid = ?"
+    said = f"SELECT {names} FROM inspections WHERE fid = ?"  # noqa: S608 - as above
     for fid, mark in list(wrong.items()):
         own = _digest(*db.execute(said, (fid,)).fetchone())
         if mark in {digest(own, one, length=_LENGTH) for one in told} or _was_corrected(db, fid):
@@ -230,7 +251,7 @@ def not_what_they_say(db: sqlite3.Connection) -> list[int]:
 
 def _was_corrected(db: sqlite3.Connection, inspection: int) -> bool:
     """Tell whether a row is what the file itself kept of one before it was corrected."""
-    names = ("digest", "plant", "date", "time", "result", "count")
+    names = "digest", *IDENTIFIED_BY
     says = db.execute(f"SELECT {', '.join(names)} FROM inspections WHERE fid = ?", (inspection,))  # noqa: S608 - ours
     row = says.fetchone()
     corrected = db.execute(

@@ -21,15 +21,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.decisions.labels import plain_name
 from fieldmon.errors import FileProblem
+from fieldmon.infestation import inspection_columns
 from fieldmon.monitoring import (
     phone_tables,
     replaced,
+    said_beside,
     schema,
     season_log,
     settings_log,
     treatments,
 )
-from fieldmon.monitoring.batches import close_if_empty
+from fieldmon.monitoring.batches import close_if_empty, more_in_words
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
 from fieldmon.planning.members import person_key
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.geopackage import GeoPackageTable
+    from fieldmon.monitoring.replaced import Corrected
     from fieldmon.monitoring.treatments import Row
 
 #: what the batches of a copy are numbered now, by their numbers in it
@@ -52,15 +55,18 @@ TAKEN = (
     *(schema.BATCHES, schema.INSPECTIONS, schema.TREATMENTS, schema.SETTINGS),
     *(schema.ROUTES, schema.STOPS, schema.IMPORTS, schema.OUTSIDE_CHANGES, schema.LABELS),
 )
-_SAID = (
-    "SELECT digest, undone, who, notes, coalesce(detects, '') FROM inspections WHERE batch = ? "
-    "ORDER BY fid"
+#: what rows of the same inspections say, beside what makes them the same; numbers may be none
+_BESIDE = tuple(
+    one.kept if one.is_text and not one.since else f"coalesce({one.kept}, '')"
+    for one in inspection_columns.BESIDE
 )
+_SAYS = "digest", "undone", *_BESIDE
+_SAID = f"SELECT {', '.join(_SAYS)} FROM inspections WHERE batch = ? ORDER BY fid"  # noqa: S608 - ours
 # the same in one row: whichever way SQLite finds those of a batch, it is in the order of their fid
 _TOGETHER = (
-    "SELECT count(digest), count(undone), count(who), count(notes), group_concat(digest), "
-    "group_concat(undone), group_concat(who), group_concat(notes), "
-    "group_concat(coalesce(detects, '')) FROM inspections WHERE batch = ?"
+    "SELECT "  # noqa: S608 - names of ours
+    + ", ".join([*map("count({})".format, _SAYS), *map("group_concat({})".format, _SAYS)])
+    + " FROM inspections WHERE batch = ?"
 )
 
 
@@ -88,6 +94,8 @@ class Merged:
         A sentence for each two codes whose rows overlap.
     chosen
         Settings that were otherwise before, each from what to what, and the table of labels.
+    noted
+        Inspections known before that have more notes now.
     """
 
     new: int
@@ -98,6 +106,12 @@ class Merged:
     codes: tuple[str, ...] = ()
     overlaps: tuple[str, ...] = ()
     chosen: tuple[str, ...] = ()
+    noted: int = 0
+
+    @property
+    def more(self) -> str:
+        """What was added to inspections known before, in words; empty: nothing."""
+        return more_in_words(self.noted)
 
 
 class MergedCopy(NamedTuple):
@@ -121,6 +135,8 @@ class MergedCopy(NamedTuple):
         As `Merged` has it.
     alike
         Numbers of each two treatments that count, one of each copy alone, of one day and product.
+    noted
+        As `Merged` has it.
     """
 
     new: int
@@ -132,6 +148,7 @@ class MergedCopy(NamedTuple):
     gone: tuple[set[int], set[int], set[int]]
     chosen: tuple[str, ...]
     alike: tuple[tuple[int, int], ...]
+    noted: int
 
 
 def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -150,7 +167,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         for copied in copies
     ]
     stay = _n_staying((db, other), numbers)
-    before, keys = _counting(db, stay), _keys(db)
+    before, keys, noted = _counting(db, stay), _keys(db), said_beside.notes(db, stay)
     unnamed = (*_of_no_pest(db, other), *_of_no_pest(other, db))
     applied = [treatments.counting_of(copied["treatments"]) for copied in copies]
     changes = _merged_changes(copies, batches)
@@ -158,7 +175,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     gone = replaced.corrected([row for row in changes if row["batch"] is not None])
     _merge_inspections((db, other), numbers, gone, stay)
     own = [copied["treatments"] for copied in copies]
-    treated = _merged_findings(own, numbers, set(), set())
+    treated = _merged_findings(own, numbers, set(), {})
     treatments.settle(treated)
     _write(db, schema.TREATMENTS, treated)
     _count(db, batches)
@@ -180,6 +197,8 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         close_if_empty(db, batch)
     after = _counting(db, stay)
     new, taken_back = len(after - before), len(before - after)
+    now = said_beside.notes(db, stay)
+    n_noted = said_beside.n_noted(noted, now, {*now} - after)
     codes = tuple(sorted(name for key, name in _keys(db).items() if key not in keys))
     n_treated, undone = _changed_treatments(db, applied)
     held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
@@ -191,7 +210,7 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     anew = {old: number for old, number in numbers[0].items() if old != number}
     return MergedCopy(
         new, taken_back, said, n_treated, codes, anew, undone, tuple(taken_over),
-        tuple(_of_one_product(treated, held)),
+        tuple(_of_one_product(treated, held)), n_noted,
     )  # fmt: skip
 
 
@@ -410,7 +429,7 @@ def _number(
 def _merge_inspections(
     both: tuple[sqlite3.Connection, sqlite3.Connection],
     numbers: list[Numbers],
-    gone: set[str],
+    gone: Corrected,
     stay: int,
 ) -> None:
     """Let the first of both have the inspections of both, of which so many `stay`.
@@ -461,7 +480,7 @@ def _is_same_batch(
 ) -> bool:
     """Tell whether so many inspections of a batch say the same in both, each something else."""
     one, other = (db.execute(_TOGETHER, (number,)).fetchone() for db in both)
-    there, said = {*one[:4]}, one[4:]
+    there, said = {*one[: len(_SAYS)]}, one[len(_SAYS) :]
     # where something holds a comma, or nothing, is looked at row by row
     if there == {count} and one == other and {one.count(",") for one in said} == {count - 1}:
         return len({*said[0].split(",")}) == count
@@ -481,7 +500,7 @@ def _spans(db: sqlite3.Connection) -> dict[int, tuple[int, int, int]]:
 
 
 def _merged_findings(
-    copies: list[list[Row]], numbers: list[Numbers], counting: set[str], gone: set[str]
+    copies: list[list[Row]], numbers: list[Numbers], counting: set[str], gone: Corrected
 ) -> list[Row]:
     """Return inspections or treatments of both copies, once each, in the order of their batches.
 
@@ -500,18 +519,16 @@ def _merged_findings(
             known = found.setdefault(key, row)
             known["undone"] = _undone_in_either(known["undone"] or 0, row["undone"] or 0)
             known["fid"] = min(known["fid"], row["fid"])
-            for free in ("notes", "who"):  # what is no part of what makes it the same
-                if free in row:
-                    known[free] = max(known[free] or "", row[free] or "")
-            if "detects" in row:  # as above
-                told = [one for one in (known["detects"], row["detects"]) if one is not None]
-                known["detects"] = max(told, default=None)
+            for one in inspection_columns.BESIDE:  # what is no part of what makes it the same
+                if one.kept in row:
+                    known[one.kept] = said_beside.either(one, known[one.kept], row[one.kept])
     drafts_last = max((now for batch_of in numbers for now in batch_of.values()), default=0) + 1
     rows = sorted(
         found.values(), key=lambda r: (r["batch"] or drafts_last, r["fid"], repr(r["digest"]))
     )
     for row in rows:
-        if row["undone"] == STANDS_BACK and row["digest"] in gone:
+        stands_back = row["undone"] == STANDS_BACK
+        if stands_back and not replaced.may_count(gone, row["digest"], row["batch"]):
             continue
         if row["digest"] is not None and row["undone"] != TAKEN_BACK:
             row["undone"] = STANDS_BACK if row["digest"] in counting else COUNTS

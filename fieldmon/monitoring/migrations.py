@@ -81,8 +81,20 @@ def _applications_say_all(db: sqlite3.Connection) -> None:
 
 def _inspections_say_what_they_find(db: sqlite3.Connection) -> None:
     """Version 12 read each inspection by the season's settings alone."""
-    add_column(db, "inspections", schema.DETECTS)
-    # those of before lack the column, and are made anew as the file is written next
+    _columns_of_inspections_come(db)
+
+
+def _columns_of_inspections_come(db: sqlite3.Connection) -> None:
+    """Add the columns of inspections that came since the first version."""
+    for column in schema.LATER:
+        add_column(db, "inspections", column.sql)
+    # those of before lack the columns, and are made anew as the file is written next
+    db.execute("DELETE FROM inspection_lots")
+
+
+def _others_are_read_too(db: sqlite3.Connection) -> None:
+    """Version 14 read of an inspection what one recording says, whatever others of it say."""
+    schema.add_index(db, "inspections_beside")
     db.execute("DELETE FROM inspection_lots")
 
 
@@ -101,4 +113,5 @@ MIGRATIONS: dict[int, Callable[[sqlite3.Connection], None]] = {
     11: _applications_say_all,
     12: _inspections_say_what_they_find,
     13: _undone_changes_are_named,
+    14: _others_are_read_too,
 }

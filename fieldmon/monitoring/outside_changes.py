@@ -13,12 +13,14 @@ import numpy as np
 
 from fieldmon.compute.wording import Worded, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem
+from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.monitoring import (
     batches,
     inspection_lots,
     inspection_table,
     replaced,
+    said_beside,
     season_log,
     treatments,
 )
@@ -39,7 +41,7 @@ _DONE = {
 }
 _CODES = {name: code for code, name in RESULT_NAMES.items()}
 #: columns that say what was seen
-SEEN = ("plant", "date", "time", "result", "count", "who", "notes", "detects")
+SEEN = tuple(column.kept for column in COLUMNS)
 
 
 @dataclass(frozen=True)
@@ -271,6 +273,9 @@ def take_row(
         ) from error
     values = dict(zip(INSPECTIONS.names, made, strict=True))
     del values["undone"]
+    was = replaced.as_it_was(change.before)["digest"] if change.before else None
+    if was != values["digest"]:  # others stay with what it was: what they say goes along
+        values |= said_beside.with_others(db, was, values)
     twice = db.execute(
         "SELECT fid FROM inspections WHERE digest = ? AND undone = 0 AND fid <> ?",
         (values["digest"], change.row),
@@ -297,15 +302,13 @@ def _inspection(row: tuple[object, ...]) -> Inspections:
     said = dict(zip(SEEN, row, strict=True))
     on = date.fromisoformat(str(said["date"])[:10])
     second = np.nan if said["time"] is None else inspection_lots.second_of(str(said["time"]))
-    count, detects = (np.nan if said[name] is None else float(str(said[name]))
-                      for name in ("count", "detects"))  # fmt: skip
     return Inspections.of(
         np.array([int(str(said["plant"]))]),
         np.array([_CODES[str(said["result"])]]),
         np.datetime64(on, "D"),
         second=np.array([second]),
-        count=np.array([count]),
-        who=np.array([str(said["who"] or "")], object),
-        notes=np.array([str(said["notes"] or "")], object),
-        detects=np.array([detects]),
+        **{
+            one.name: np.array([one.from_file(said[one.kept])], one.dtype)
+            for one in (COUNT, *BESIDE)
+        },
     )

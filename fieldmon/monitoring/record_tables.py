@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import faces
@@ -119,12 +120,17 @@ def inspections_table(season: SeasonRecords) -> Table:
     label, plot, grid = season.label, season.plot.field.name, season.plot.grid
     plants, of = np.unique(done.plant, return_inverse=True)
     lon, lat = np.round(grid.lonlat(plants), 7).T
-    blank = [""] * len(done)
     results = [RESULT_NAMES[result] for result in done.result.tolist()]
     lines = label.line[done.plant].tolist()
     dates = np.datetime_as_string(done.date).tolist()
     counts = _each(done.count, float)
     which = zip(done.plant.tolist(), dates, results, counts, strict=True)
+    beside: Table = {}
+    for one in BESIDE:
+        told = getattr(done, one.name)
+        beside[one.kept] = told.tolist() if one.is_text else _each(told, float)
+        if one.name == "who":
+            beside["corrected_by"] = [corrected.get(key, "") for key in which]
     return {
         "plot": [plot] * len(done),
         "date": dates,
@@ -138,10 +144,7 @@ def inspections_table(season: SeasonRecords) -> Table:
         "lat": lat[of].tolist(),
         "result": results,
         "count": counts,
-        "who": done.who.tolist(),
-        "corrected_by": [corrected.get(one, "") for one in which] if corrected else blank,
-        "notes": done.notes.tolist(),
-        "detects": _each(done.detects, float),
+        **beside,
         "face": [face or None for face in faces(grid, done.plant).tolist()],
     }
 

@@ -27,8 +27,8 @@ def count_again(db: sqlite3.Connection) -> list[int]:
         "ORDER BY batch DESC, fid DESC",
         (STANDS_BACK,),
     ).fetchall()
-    gone = corrected(_corrections(db)) if found else set()
-    first = {mark: (fid, batch) for mark, fid, batch in found if mark not in gone}
+    gone = corrected(_corrections(db)) if found else {}
+    first = {mark: (fid, batch) for mark, fid, batch in found if may_count(gone, mark, batch)}
     db.executemany(
         "UPDATE inspections SET undone = 0 WHERE fid = ?", [(fid,) for fid, _ in first.values()]
     )
@@ -55,16 +55,28 @@ def _point_findings(
     )
 
 
-def corrected(corrections: Sequence[dict[str, Any]]) -> set[str]:
-    """Return digests of inspections that stand back for a correction, given rows of those in order.
+#: digests of inspections that stand back for a correction, and the batch of the last one that left
+#: them the same, as one of who inspected does; None: none did
+Corrected = dict[str | None, int | None]
+
+
+def corrected(corrections: Sequence[dict[str, Any]]) -> Corrected:
+    """Return which inspections stand back for a correction, given rows of those in order.
 
     Where one that was taken back had been corrected itself, the last correction stands.
     """
-    gone: set[str] = set()
+    gone: Corrected = {}
     for row in reversed(corrections):
         if row["before"] and (not row["undone"] or row["now"] in gone):
-            gone.add(as_it_was(row["before"])["digest"])
+            was = as_it_was(row["before"])["digest"]
+            same = was == row["now"] and not row["undone"]
+            gone.setdefault(was, row["batch"] if same else None)
     return gone
+
+
+def may_count(gone: Corrected, mark: str, batch: int | None) -> bool:
+    """Return whether an inspection of a batch counts where no other of its digest does."""
+    return mark not in gone or (batch is not None and gone[mark] == batch)
 
 
 def as_it_was(before: str) -> dict[str, Any]:
@@ -79,7 +91,7 @@ def as_it_was(before: str) -> dict[str, Any]:
 
 
 def _corrections(db: sqlite3.Connection) -> list[dict[str, Any]]:
-    names = ("before", "now", "undone")
+    names = ("before", "now", "undone", "batch")
     rows = db.execute(
         f"SELECT {', '.join(names)} FROM outside_changes WHERE batch NOTNULL "  # noqa: S608 - ours
         "AND before NOTNULL ORDER BY fid"

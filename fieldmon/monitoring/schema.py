@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.infestation import inspection_columns
 from fieldmon.monitoring import phone_tables
 from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, found
 from fieldmon.monitoring.qgis_styles import add_asked_styles, add_photo_styles, add_styles
@@ -11,7 +12,7 @@ from fieldmon.monitoring.qgis_styles import add_asked_styles, add_photo_styles, 
 if TYPE_CHECKING:
     import sqlite3
 
-VERSION = 14
+VERSION = 15
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version
@@ -107,25 +108,17 @@ OBSERVATIONS = GeoPackageTable(
     "POINT",
     "Pest records from before the season: 1 present, 0 looked and saw nothing, -1 undecided.",
 )
-#: of an inspection, since version 13: the chance to see what is there that was said with it
-DETECTS = "detects REAL"
+#: of an inspection's columns, those that a file of an earlier version lacks
+LATER = tuple(column for column in inspection_columns.COLUMNS if column.since)
+_PLANT, *_FIRST = (one.sql for one in inspection_columns.COLUMNS if one not in LATER)
 INSPECTIONS = GeoPackageTable(
     "inspections",
     (
-        "plant INTEGER",
-        "line INTEGER",
-        "number INTEGER",
-        "day INTEGER",
-        "date DATE",
-        "time TEXT",
-        "result TEXT",
-        "count REAL",
-        "who TEXT",
-        "notes TEXT",
-        "batch INTEGER",
-        "digest TEXT",
-        "undone INTEGER DEFAULT 0",
-        DETECTS,
+        _PLANT,
+        *("line INTEGER", "number INTEGER", "day INTEGER"),
+        *_FIRST,
+        *("batch INTEGER", "digest TEXT", "undone INTEGER DEFAULT 0"),
+        *(column.sql for column in LATER),
     ),
     "POINT",
     "What was found at which plant: clean, found or skipped.",
@@ -314,7 +307,10 @@ INSPECTED = (
 #: layers that nobody may change unnoticed: what is shown or known of each row, and those of its
 #: columns that make no difference
 _WATCHED: dict[str, tuple[str, tuple[str, ...]]] = {
-    "inspections": (INSPECTED, ("notes",)),
+    "inspections": (
+        INSPECTED,
+        tuple(column.kept for column in inspection_columns.COLUMNS if not column.watched),
+    ),
     "treatments": ("coalesce(old.product, '') || ' on ' || coalesce(old.date, '')", ()),
     "settings": ("old.name || ' = ' || old.value", ()),
     "batches": ("coalesce(old.source, '')", ()),
@@ -351,6 +347,7 @@ INDEXES = {
     "routes_revision": "UNIQUE INDEX {} ON routes (day, who, revision)",
     "stops_route": "INDEX {} ON stops (route, stop)",
     "inspections_batch": "INDEX {} ON inspections (batch)",
+    "inspections_beside": "INDEX {} ON inspections (digest) WHERE undone = 2",
 }
 
 
@@ -372,8 +369,8 @@ def lay_out(db: sqlite3.Connection) -> None:
 
 
 def add_index(db: sqlite3.Connection, name: str) -> None:
-    """Add one of the `INDEXES`."""
-    db.execute(f"CREATE {INDEXES[name].format(name)}")
+    """Add one of the `INDEXES`, where it is not there."""
+    db.execute(f"CREATE {INDEXES[name].format(f'IF NOT EXISTS {name}')}")
 
 
 def add_phones(db: sqlite3.Connection) -> None:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import estimate, filled, worded, written
 from fieldmon.errors import FileProblem
+from fieldmon.infestation.inspection_columns import BESIDE, InspectionColumn
 from fieldmon.monitoring import schema, settings_log
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.plot.local_clock import utc_text
@@ -53,8 +54,8 @@ class LogEntry:
     at
         When it was written, UTC.
     kind
-        ``"begins"``, ``"seen"``, ``"planned"``, ``"advised"``, ``"treated"``, ``"undone"``,
-        ``"corrected"``, ``"changed"``, ``"labels"``, ``"merged"`` or ``"saved"``.
+        ``"begins"``, ``"seen"``, ``"noted"``, ``"planned"``, ``"advised"``, ``"treated"``,
+        ``"undone"``, ``"corrected"``, ``"changed"``, ``"labels"``, ``"merged"`` or ``"saved"``.
     who
         Whose doing; empty: nobody said.
     what
@@ -91,6 +92,8 @@ class LogEntry:
         said = filled(_SAID[kind], what) + chosen + undone + anew
         for old, now in self.numbers.items():
             said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
+        if self.kind in ("seen", "merged") and (added := what.get("more")):
+            said += f"; {added}"
         if detects := what.get("detects"):
             said += f"; told to find {', '.join(map(_percent, detects))} of what is there"
         return said
@@ -118,6 +121,7 @@ _SAID = {
     "begins": "the log begins: {why}",
     "seen": "{source}: {found} found, {clean} clean, {skipped} could not be inspected, "
     "batch {batch}",
+    "noted": "{source}: {more} to what was known, batch {batch}",
     "planned": "{date}: {stops} {stops:stop|stops} by {sampler}, "
     "about {expected} of them visibly infested",
     "advised": "{date}: {said}",
@@ -247,16 +251,29 @@ def _batch_state(db: sqlite3.Connection, number: int) -> str:
     return _digest([*own, tuple(_rows_of_batch(db, number))])
 
 
+# the last version whose columns a batch's digest names by nothing but their places
+_UNNAMED = 13
+
+
+def _beside(column: InspectionColumn) -> str:
+    """Return in SQL what a batch's digest says of a column; what nobody said is left out of it."""
+    if not column.since:
+        return f"coalesce({column.kept}, '')"
+    called = f"{column.kept} " if column.since > _UNNAMED else ""
+    return f"coalesce('|{called}' || nullif({column.kept}, ''), '')"
+
+
+_LOGGED = tuple(column for column in BESIDE if column.watched)
+_SAID_BESIDE = "undone || '|' || " + " || ".join(map(_beside, _LOGGED))
 _ONE_BY_ONE = (
-    "SELECT digest || '|' || undone || '|' || coalesce(who, '') "
-    "|| coalesce('|' || detects, '') FROM inspections WHERE batch = ?1 "
+    f"SELECT digest || '|' || {_SAID_BESIDE} FROM inspections WHERE batch = ?1 "  # noqa: S608 - ours
     "UNION ALL SELECT digest || '|' || undone FROM treatments WHERE batch = ?1 ORDER BY 1"
 )
 # the same but for the order: all marks with one ending in one text
 _TOGETHER = (
-    "SELECT '|' || undone || '|' || coalesce(who, '') || coalesce('|' || detects, ''), "
-    "count(*), count(digest), group_concat(digest) FROM inspections WHERE batch = ?1 "
-    "GROUP BY undone, who, detects "
+    f"SELECT '|' || {_SAID_BESIDE}, count(*), count(digest), group_concat(digest) "  # noqa: S608 - as above
+    "FROM inspections WHERE batch = ?1 "
+    f"GROUP BY undone, {', '.join(column.kept for column in _LOGGED)} "
     "UNION ALL SELECT '|' || undone, 1, count(digest), digest FROM treatments "
     "WHERE batch = ?1 GROUP BY fid"
 )

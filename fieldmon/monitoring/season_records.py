@@ -18,17 +18,19 @@ from fieldmon.monitoring import (
     copy_corrections,
     drafts,
     held_instead,
+    inspection_lots,
     inspection_table,
     label_table,
     merging,
     outside_changes,
     phone_tables,
+    said_beside,
     scouts,
     season_log,
     tables,
     treatments,
 )
-from fieldmon.monitoring.batches import Recorded, Undone
+from fieldmon.monitoring.batches import Recorded, Undone, more_in_words
 from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
 from fieldmon.monitoring.people import as_written, names_written, written_in
@@ -171,11 +173,13 @@ class SeasonRecords(OpenSeason):
                 contradictions(every, held).refuse(self.plot.grid)
             for (told, source), n in zip(brought, taken, strict=True):
                 inspections = _by_those_known(known, told)
-                batch, news = self._add(db, inspections, held, (source, who, into))
-                new = len(news)
-                done.append(Recorded(batch if new else None, new, len(inspections) - new, n))
-                if new:
+                one, news = self._add(db, inspections, held, (source, who, into))
+                done.append(replace(one, corrected=n))
+                if one.new:
                     held = held.and_those(news)
+                if one.more:  # the next source is held to that, too
+                    held = inspection_lots.load(db, settings_of(db).begins)
+                if one.batch is not None:
                     first.append(settings_of(db).day(inspections.date.min().item()))
             if first:
                 self._refresh(db, min(first), before)
@@ -208,17 +212,17 @@ class SeasonRecords(OpenSeason):
             inspections = _by_those_known(known, inspections)
             against = contradictions(inspections, held).which
             others = inspections.take(np.setdiff1d(np.arange(len(inspections)), against))
-            batch, news = self._add(db, others, held, (source, who, None))
+            done, news = self._add(db, others, held, (source, who, None))
             holding, plot = inspections.take(against), (self.plot.grid, self.label)
             taken: tuple[str, ...] = ()
             if len(holding):
                 said = settings_of(db), (source, who)
                 taken = held_instead.take(db, holding, plot, *said)
                 self._corrected(db, taken, who)
-            elif len(news):
-                self._refresh(db, settings_of(db).day(news.date.min().item()), before)
-        new = len(news)
-        return Recorded(batch if new else None, new, len(others) - new, len(holding))
+            elif done.batch is not None:
+                day = settings_of(db).day((others if done.more else news).date.min().item())
+                self._refresh(db, day, before)
+        return replace(done, corrected=len(holding))
 
     def _add(
         self,
@@ -226,31 +230,53 @@ class SeasonRecords(OpenSeason):
         inspections: Inspections,
         held: Inspections,
         said: tuple[str, str, int | None],
-    ) -> tuple[int, Inspections]:
-        """Write inspections of one source, besides what is held; return batch and the new ones."""
+    ) -> tuple[Recorded, Inspections]:
+        """Write inspections of one source, besides what is held, and what they say beside it.
+
+        Return what that did, and the new ones.
+        """
         source, who, into = said
-        news = inspections.take(~said_before(inspections, held))
-        # as the rows say it, which are `who`'s where they name nobody
-        by = ", ".join(sorted({str(name) or who for name in news.who} - {""}))
-        batch = batches.begin(db, "findings", source, by) if into is None else into
         if into is not None:
             batches.must_count(db, into)
-        made = inspection_table.rows(
-            news, self.plot.grid, self.label, settings_of(db), (batch, who)
-        )
-        news = news.take(inspection_table.store(db, made))
-        batches.end(db, batch, len(news), grows=into is not None)
-        if len(news):
-            self._log_seen(db, news, (batch, source, by), who)
-        return batch, news
+        batch = batches.begin(db, "findings", source, "") if into is None else into
+        how = self.plot.grid, self.label, settings_of(db), (batch, who)
+        named = np.where(inspections.who == "", who, inspections.who).astype(object)
+        inspections = replace(inspections, who=named)
+        known = said_before(inspections, held)
+        told = inspections.take(~known)
+        new = inspection_table.store(db, inspection_table.rows(told, *how))
+        news, told = told.take(new), inspections.take(known).and_those(told.take(~new))
+        held = held.and_those(news)
+        more = said_beside.additions(told, held)
+        told = told.take(np.array([one.brought for one in more], np.intp))
+        made = inspection_table.rows(told, *how)
+        said_beside.keep(db, held, zip([one.held for one in more], made, strict=True))
+        by = ", ".join(sorted({*map(str, news.who), *map(str, told.who)} - {""}))
+        if into is None:
+            batches.name(db, batch, by)
+        batches.end(db, batch, len(news) + len(more), grows=into is not None)
+        n_notes = sum(one.is_note for one in more)
+        done = Recorded(
+            batch if len(news) or more else None, len(news), len(inspections) - len(news),
+            noted=n_notes, filled=len(more) - n_notes,
+        )  # fmt: skip
+        self._log_seen(db, news, (source, by), done, who)
+        return done, news
 
     def _log_seen(
-        self, db: sqlite3.Connection, news: Inspections, said: tuple[int, str, str], who: str = ""
-    ) -> None:
-        batch, source, by = said
+        self, db: sqlite3.Connection, news: Inspections, said: tuple[str, str], done: Recorded,
+        who: str = "",
+    ) -> None:  # fmt: skip
+        """Log what is new of a batch, and what was added to what was known."""
+        if done.batch is None:
+            return
+        source, by = said
+        what: dict[str, object] = {"more": str(done.more)} if done.more else {}
+        if len(news):
+            what |= inspection_table.in_words(news, said_now(db, news, who))
         season_log.append(
-            db, "seen", by, states=season_log.states(db, [batch]),
-            batch=batch, source=source, **inspection_table.in_words(news, said_now(db, news, who)),
+            db, "seen" if len(news) else "noted", by,
+            states=season_log.states(db, [done.batch]), batch=done.batch, source=source, **what,
         )  # fmt: skip
 
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
@@ -374,9 +400,13 @@ class SeasonRecords(OpenSeason):
         said = (self.plot.grid, self.label), settings, batch
         news = drafts.keep(db, taken, *said)
         batches.end(db, batch, len(taken))
-        self._log_seen(db, news, (batch, drafts.SOURCE, ""))
+        known = [one for one in taken if one.known is not None]
+        n_notes = sum(one.is_note for one in known)
+        done = Recorded(batch, len(news), len(known), noted=n_notes, filled=len(known) - n_notes)
+        self._log_seen(db, news, (drafts.SOURCE, ""), done)
         # there are as many rows as before: all is read again
-        self._refresh(db, settings.day(news.date.min().item()))
+        days = [one.inspection.date[0].item() for one in taken if one.inspection is not None]
+        self._refresh(db, settings.day(min(days)))
 
     def is_copy(self, file: Path) -> bool:
         """Return whether a file is this season or a copy of it, however far they went apart.
@@ -480,7 +510,7 @@ class SeasonRecords(OpenSeason):
                 season_log.append(
                     db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
                     moved=moved, numbers=taken.numbers, undone=undone,
-                    chosen=taken.chosen,
+                    chosen=taken.chosen, more=str(more_in_words(taken.noted)),
                 )  # fmt: skip
             by_number = {one.number: one for one in treatments.kept(db, self._inside, clock)}
             twice = (
@@ -502,6 +532,7 @@ class SeasonRecords(OpenSeason):
             taken.codes,
             overlaps,
             taken.chosen,
+            taken.noted,
         )
 
     def batches(self) -> tuple[Batch, ...]:

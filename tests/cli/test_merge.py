@@ -115,3 +115,24 @@ def test_seasons_of_two_years_on_one_plot_are_no_copies(run, tmp_path):
     assert (code, made) == (2, set())
     assert f"one was begun on {BEGINS} and the other on 2027-11-02" in err
     assert (tmp_path / "this.gpkg").read_bytes() == kept
+
+
+def test_a_note_is_said_where_it_is_added_and_where_it_comes_from_another_copy(
+    run, season, tmp_path
+):
+    other = shutil.copy(season, tmp_path / "other.gpkg")
+    for of, who, notes in ((season, "Ada", ("", "webs")), (other, "Bob", ("eggs",))):
+        for note in notes:
+            line = f"row,number,date,result,count,notes\n2,1,{BEGINS},found,3,{note}\n"
+            (season.parent / "found.csv").write_text(line)
+            code, out, err, _ = run("record", of, "found.csv", "--who", who)
+            assert code == 0, err
+    assert "found.csv: 1 new, 0 known already (batch 1)" in out
+    code, out, _, _ = run("record", season, "found.csv", "--who", "Ada")
+    assert (code, "found.csv: 0 new, 1 known already, 1 note added (batch 3)" in out) == (0, True)
+    code, _, _, _ = run("undo", season)
+    code, out, err, _ = run("merge", season, other)
+    assert "other.gpkg: 0 inspections were new, 1 note added" in out, err
+    assert Season(season).inspections.notes.tolist() == ["webs; eggs (Bob)"]
+    _, out, _, _ = run("log", season)
+    assert "found.csv: 1 note added to what was known, batch 2" in out

@@ -7,6 +7,7 @@ from contextlib import closing
 import numpy as np
 import pytest
 
+from fieldmon.infestation import inspection_columns
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season, inspection_lots, schema
 from tests.monitoring.seasons import BEGINS
@@ -16,7 +17,7 @@ REPLACED = (
     "REPLACE INTO inspections (plant, day, date, result, digest, undone) "
     "SELECT plant, day, date, 'found', digest, 0 FROM inspections WHERE fid = 20"
 )
-COLUMNS = ("plant", "result", "date", "second", "count", "who", "notes", "detects")
+COLUMNS = tuple(column.name for column in inspection_columns.COLUMNS)
 
 
 @pytest.fixture(scope="module")

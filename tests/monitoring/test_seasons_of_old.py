@@ -236,6 +236,22 @@ def test_in_a_season_of_format_13_what_was_taken_back_is_a_change_that_can_be_ta
     assert season.held_to_log() == ()
 
 
+def test_a_season_of_format_14_shows_what_both_noted_of_one_find(tmp_path):
+    """Made of Ada's and Bob's copies, each with a note on the same find: hers alone was shown."""
+    season = Season(shutil.copy(FOLDER / "of_format_14.gpkg", tmp_path))
+    assert (tmp_path / "of_format_14.gpkg.format-14").is_file()
+    told = season.inspections
+    assert list(zip(told.who, told.notes, strict=True)) == [
+        ("Ada", "webs; eggs too (Bob)"), ("Ada", ""),
+    ]  # fmt: skip
+    # nothing else comes out otherwise than it did
+    last = season.days()[-1]
+    assert (last.expected, last.low, last.high) == (10.256884232151428, 2, 33)
+    assert season.verify() == ()
+    season.undo(2)
+    assert season.inspections.notes.tolist() == ["webs", ""]
+
+
 def _only_the_map_differs(season, day):
     """Hold that a map that learns comes out as it learns now, that this is said, and no more."""
     (said,) = season.verify()

@@ -9,9 +9,9 @@ Decisions
 - Where both faces of a plant are inspected and a file does not say which, it is the first face,
   and the import says so.
 - Records of several leaves of a plant in one visit are one inspection, found if any leaf is.
-- Of the inspections of one visit (`visits`) that are the same but for their notes, one is taken. At
-  clearly other times of a day each is a look of its own, as the belief has it. What a season
-  holds already is told there (`fieldmon.monitoring.inspection_table`).
+- Of the inspections of one visit (`visits`) that are the same but for their notes, one is taken,
+  with the notes of all. At clearly other times of a day each is a look of its own, as the belief
+  has it. What a season holds already is told there (`fieldmon.monitoring.inspection_table`).
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ import numpy as np
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import first_few, worded
+from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
@@ -36,6 +37,7 @@ from fieldmon.io.import_report import (
     guessed,
     seen,
 )
+from fieldmon.io.parse.noted import joined_notes
 from fieldmon.io.read import read_inspection_rows
 from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
 from fieldmon.io.readers.inspection_options import InspectionOptions
@@ -49,7 +51,7 @@ from fieldmon.io.readers.inspection_places import (
     misplaced,
 )
 from fieldmon.io.readers.nearby import doubt_of_order
-from fieldmon.io.readers.visits import first_of_visits, visits_of
+from fieldmon.io.readers.visits import visits_of
 from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
@@ -359,16 +361,14 @@ def _inspections(
     count[count == 0] = np.nan
     when, date = rows.when[records], rows.day[records]
     since_midnight = when - when.astype("datetime64[D]")
-    detects = np.full(len(records), np.nan) if rows.detects is None else rows.detects[records]
+    beside = {one.name: getattr(rows, one.name) for one in BESIDE}
     return Inspections.of(
         plant[records],
         result,
         date,
         second=since_midnight / np.timedelta64(1, "s"),
         count=count,
-        who=rows.who[records],
-        notes=rows.notes[records],
-        detects=detects,
+        **{name: column[records] for name, column in beside.items() if column is not None},
     )
 
 
@@ -423,7 +423,7 @@ def _whole_plants(
 def _once_each(
     rows: InspectionRows, inspections: Inspections, records: NDArray[np.intp]
 ) -> Inspections:
-    """Return the first of each visit that are the same but for their notes."""
+    """Return the first of each visit that are the same but for their notes, with those of all."""
     told = [words[records].tolist() for words in (rows.rest, rows.leaf) if words is not None]
     columns = zip(
         inspections.plant.tolist(),
@@ -434,4 +434,12 @@ def _once_each(
         *told,
         strict=True,
     )
-    return inspections.take(first_of_visits(columns, inspections.second))
+    first = visits_of(columns, inspections.second)
+    kept = np.unique(first)
+    if len(kept) == len(first):
+        return inspections
+    noted: dict[int, list[str]] = {}
+    for visit, note in zip(first.tolist(), inspections.notes, strict=True):
+        noted.setdefault(visit, []).append(str(note))
+    notes = np.array([joined_notes(noted[visit]) for visit in kept.tolist()], object)
+    return replace(inspections.take(kept), notes=notes)

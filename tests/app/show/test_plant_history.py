@@ -200,3 +200,24 @@ def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_its_plant
     st.session_state["history row called"], st.session_state["history plant"] = "5A", 4
     with pytest.raises(SettingError, match="4 may be any of plants 3–4 of row 1 · 5a here"):
         plant_history.show(choices)
+
+
+def test_what_was_counted_and_noted_and_by_whom_stands_with_each_inspection(said, season, tmp_path):
+    copy = Season(shutil.copy(season.path, tmp_path))
+    day = np.datetime64(BEGINS)
+    for who, note in (("Ada", "webs"), ("נועה", "two\n**lines** of <b>https://x.y</b> :home:")):
+        copy.record(
+            Inspections.of(
+                np.array([PLANT]), np.array([FOUND]), day + 4, count=np.array([3.0]),
+                who=np.array([who], object), notes=np.array([note], object),
+            )
+        )  # fmt: skip
+    choices = in_season(copy, BEGINS)
+    tap(choices, PLANT)
+    plant_history.show(choices)
+    note = r"webs; two \*\*lines\*\* of \<b\>https:|//x.y\</b\> :|home: (נועה)".replace(
+        "|", "\u2060"
+    )
+    assert said[-1].splitlines()[-1] == (
+        f"- Fri 10 Apr: **found, count 3** · \u2068{note}\u2069 · \u2068Ada\u2069"
+    )

@@ -146,7 +146,7 @@ def test_notes_and_blanks_make_no_other_inspection():
     head = "plant,found,count,who,time,notes\n"
     rows = "7,x,3,Noa,2026-11-18T08:30,leaf\n7,x,3.0, Noa ,2026-11-18T08:30:00,thorns\n"
     rows += "7,x,3,Noa,2026-11-18,\n"
-    assert read(head + rows).value.notes.tolist() == ["leaf"]
+    assert read(head + rows).value.notes.tolist() == ["leaf; thorns"]
 
 
 def test_what_a_file_says_twice_is_taken_once():

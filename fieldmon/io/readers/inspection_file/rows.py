@@ -13,6 +13,7 @@ import shapely
 
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, guessed, seen
@@ -152,7 +153,7 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
 
 def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> NDArray[np.str_]:
     """Return what columns say that are not read ``(n,)``, where they tell things apart."""
-    said = ("who", "detects")
+    said = [one.name for one in BESIDE if one.role != "noted"]  # of notes `telling` knows
     read = {name for name in layer.columns
             if is_position(name) or any(is_own(role, name) for role in said)}  # fmt: skip
     read |= {name for name in columns if name} | set(dict(options.columns).values())

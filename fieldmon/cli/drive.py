@@ -27,13 +27,13 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import USUAL_SAMPLER
-from fieldmon.cli.season_files import refuse_what_was_chosen
+from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import FieldmonError, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from datetime import date
 
     from fieldmon.drive.day import DrivenDay, DrivenStop
@@ -173,7 +173,7 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
     its finds, so a season accepts them only with --made-up. A team's robots drive at once by VDA
     5050, each with its name as serial number; its scouts are left out.
 
-    Example: fieldmon drive estate.zip --feature Gate --rover --hours 1 --robot mujoco -o day.csv
+    Example: fieldmon drive estate.zip --feature Gate --rover --hours 1 --robot mujoco -o driven.csv
     Example: fieldmon drive estate.zip --feature Gate --rover --robot mujoco --steering ackermann
     Example: fieldmon drive season.gpkg --robot vda5050 --broker farm.local --serial robot1
     """
@@ -202,6 +202,7 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     from fieldmon.planning.assumptions import assumed_by
     from fieldmon.plot.local_clock import local_clock
 
+    _refuse_written_over(None, (options.output,))
     worker = options.worker.robot()
     if options.steering == "ackermann":
         from fieldmon.drive.robot_body import with_turning_radius
@@ -235,6 +236,7 @@ def _season(options: DriveOptions, file: Path) -> None:
             "Drive a copy of the season with --made-up, or a robot with --robot vda5050."
         )
     season = Season(file)
+    _refuse_written_over(season, (options.output,))
     on = day_on(season.plot.field, day(options.on))
     settings = season.planned_by(on)
     worker = settings.robot
@@ -300,13 +302,16 @@ def _team_day(
     """Let a season's team drive what is left of its day, and write what came of it."""
     from fieldmon.cli.team_files import files_of_each
     from fieldmon.drive.recording import Recording
-    from fieldmon.drive.team_season import TeamSeason
+    from fieldmon.drive.team_season import TeamSeason, robots_of
     from fieldmon.drive.vda5050.team import drive_team
     from fieldmon.drive.vda5050.wire import Broker
 
     asked = [path for path in (options.output, options.bag) if path is not None]
+    robots = robots_of(settings.team)
+    files = files_of_each(asked, robots) if asked else [[] for _ in robots]
+    if options.output is not None:
+        _refuse_written_over(season, (first for first, *_ in files))
     today = TeamSeason(season, on, options.manufacturer)
-    files = files_of_each(asked, today.robots) if asked else [[] for _ in today.robots]
     tell_assumed(season.assumed(settings))
     tell_past_midnight(on, settings)
     _tell_left_out([one.name for one in today.team if one not in today.robots])
@@ -521,6 +526,17 @@ def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before
     write_whole(options.output, day_table(driven, on, name, before))
     write_whole(stops_path(options.output), stop_table(driven))
     typer.echo(f"Written to {options.output} and {stops_path(options.output)}")
+
+
+def _refuse_written_over(season: Season | None, outputs: Iterable[Path | None]) -> None:
+    """Refuse tables that cannot be written, or would replace what somebody filled in."""
+    from fieldmon.drive.account import is_driven_table, stops_path
+    from fieldmon.io.atomic_write import require_place
+
+    files = [file for path in outputs if path is not None for file in (path, stops_path(path))]
+    for file in files:
+        require_place(file)
+    refuse_unrecorded(season, [file for file in files if not is_driven_table(file)])
 
 
 def _robot_name(options: DriveOptions) -> RobotName:

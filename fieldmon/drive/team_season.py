@@ -61,10 +61,7 @@ class TeamSeason:
         if not self.team:
             raise SettingError("A day of several robots needs a season with a team (--robots).")
         #: who of the team drives: people walk their own routes
-        self.robots = tuple(one for one in self.team if not one.robot.on_foot)
-        if not self.robots:
-            names = ", ".join(one.name for one in self.team)
-            raise SettingError(f"A day is driven by robots, but the team has none: {names}.")
+        self.robots = robots_of(self.team)
         self.season, self.on = season, on
         self.keeper = AisleKeeper()
         self.lock = threading.RLock()
@@ -119,6 +116,15 @@ class TeamSeason:
             left = {one.name: left_of_plan(self.season, self.on, one.name) for one in self.team}
         self.days = {name: today for name, today in left.items() if today is not None}
         return len(self.days) == len(left) and any(len(one.route) for one in self.days.values())
+
+
+def robots_of(team: tuple[TeamMember, ...]) -> tuple[TeamMember, ...]:
+    """Return who of a team drives; raise `SettingError` if nobody does."""
+    robots = tuple(one for one in team if not one.robot.on_foot)
+    if not robots:
+        names = ", ".join(one.name for one in team)
+        raise SettingError(f"A day is driven by robots, but the team has none: {names}.")
+    return robots
 
 
 class MemberDay(AskedDay):

@@ -127,7 +127,7 @@ def order_of(
             {"key": "plant", "value": errand.stop.plant},
             {"key": "row", "value": errand.stop.row},
             {"key": "number", "value": errand.stop.number},
-            {"key": "seconds", "value": round(errand.stop.inspect_s, 3)},
+            {"key": "seconds", "value": round(errand.look_s, 3)},
         ],
     }
     return _order([(errand.line_m, [look]), *((line, []) for _, line in errand.ahead)],

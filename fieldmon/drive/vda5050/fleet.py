@@ -24,7 +24,9 @@ from fieldmon.drive.vda5050.messages import (
     sent_at,
 )
 from fieldmon.drive.vda5050.wire import Wire
-from fieldmon.errors import ObservationError, SettingError
+from fieldmon.errors import FieldmonError, ObservationError, SettingError
+from fieldmon.plot.clearance import STRAY_M
+from fieldmon.plot.grid import row_label
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -40,6 +42,8 @@ _AGAIN_S = 5.0
 _POLL_S = 0.2
 # so often, heard each time, a robot may leave a thing undone
 _MOST_TRIES = 24
+# how far from a node it may pass where nobody said how wide it is, and nothing more is known
+_FREE_M = 0.3
 _OVER = {"FINISHED", "FAILED"}
 # errors with which a robot cannot go on with its order; 2.1 has only the last
 _ENDS = {"CRITICAL", "FATAL"}
@@ -95,6 +99,8 @@ class Vda5050Robot:
         frame = aisles.grid.frame
         east_north = frame.turned(90.0)
         self._places = lambda line_m: east_north.xy_m(frame.lonlat(line_m))
+        self._east_north, self._grid = east_north, aisles.grid
+        self._known["strays_m"] = _FREE_M if aisles.clearance is None else STRAY_M
         self._gone_s, self._begun = gone_s, time.monotonic()
         self._began = datetime.now(UTC)
         self._own_clock, self._heard_at = False, time.monotonic()

@@ -1,8 +1,10 @@
 """Asked and told over a broker: nothing lost, nothing twice, whatever the line does."""
 
 import json
+import re
 import threading
 from contextlib import nullcontext
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
 from typing import ClassVar
@@ -107,6 +109,23 @@ def test_a_clock_that_counts_no_day_is_said_once_and_ours_goes_on(plot, odd):
     assert 110.0 <= driver._at_s(odd) <= driver._at_s(odd) < 86_400.0
     assert driver._at_s("86400") == 86_400.0
     assert [odd in one for one in said] == [True]
+
+
+@pytest.mark.parametrize("is_wide", [True, False])
+def test_a_robot_may_pass_as_far_from_a_node_as_its_ways_keep_off_plants(
+    broker, plot, robot, is_wide
+):
+    """Ways of a robot whose width is known keep 0.1 m more off plants than it needs."""
+    own = robot if is_wide else replace(robot, width_m=None, length_m=None)
+    said = set()
+
+    class Listens(StandIn):
+        def _take(self, order):
+            said.update(one["nodePosition"]["allowedDeviationXY"] for one in order["nodes"])
+            super()._take(order)
+
+    drive(broker, plot, own, Monitor(plot, robot=own), f"wide {is_wide}", kind=Listens)
+    assert said == {0.1 if is_wide else 0.3}
 
 
 @pytest.mark.parametrize(("charge", "told"), [(14.97, "14.9"), (9, "9")])

@@ -30,14 +30,14 @@ from fieldmon.cli.sampler_names import USUAL_SAMPLER
 from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED
-from fieldmon.errors import FieldmonError, SettingError
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
     from datetime import date
 
-    from fieldmon.drive.day import DrivenDay, DrivenStop
-    from fieldmon.drive.errand import DayToDrive, DrivingRobot, Errand
+    from fieldmon.drive.day import DrivenDay
+    from fieldmon.drive.errand import DayToDrive, DrivingRobot
     from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.vda5050.wire import RobotName
@@ -329,9 +329,10 @@ def _team_day(
     missing: dict[str, None] = {}
     for one, paths in zip(today.robots, files, strict=True):
         each = driven[one.name]
-        if isinstance(each, FieldmonError):
-            missing[str(each)] = None
-            continue
+        if each.broken:
+            missing[each.broken] = None
+            if not each.stops:
+                continue
         own = [*paths]
         output = own.pop(0) if options.output is not None else None
         bag = own.pop(0) if options.bag is not None else None
@@ -339,7 +340,7 @@ def _team_day(
         _write_bag(recordings[one.name], begins[one.name], mine)
         _write(each, on, mine, one.name, before[one.name])
     _tell_replanned(today.replanned - 1)
-    if today.stopped:
+    if today.stops:
         _tell_stopped(season, on, today.batch)
         raise KeyboardInterrupt
     if missing:
@@ -428,17 +429,12 @@ def _driven(
     begins: datetime,
     so_far: DrivenDay | None = None,
 ) -> DrivenDay:
-    """Drive a day; each stop that was told is also put into `so_far`."""
+    """Drive a day; it is noted in `so_far`, which stays where the day breaks off."""
     from fieldmon.drive.day import drive_day
 
     robot, (driver, recording) = who
 
-    def watch(stop: DrivenStop, errand: Errand) -> None:
-        if so_far is not None:
-            so_far.stops.append(stop)
-        recording.note(stop, errand)
-
-    driven = drive_day(today, aisles, (robot, driver), watch)
+    driven = drive_day(today, aisles, (robot, driver), recording.note, so_far)
     _write_bag(recording, begins, options)
     return driven
 

@@ -68,8 +68,8 @@ class TeamSeason:
         self.source = f"{source} {on}"
         #: plans that it went by, the one it began or went on with included
         self.replanned = 0
-        #: whether somebody stopped it: nobody is given another plant
-        self.stopped = False
+        #: how often somebody stopped it: nobody is given another plant
+        self.stops = 0
         #: plants that somebody has set out for
         self.errands: dict[str, int] = {}
         grid = season.plot.grid
@@ -162,7 +162,7 @@ class MemberDay(AskedDay):
         """
         team, name = self._team, self._member.name
         with team.lock:
-            if team.stopped:
+            if team.stops:
                 return None
             if self._asked is None and (left := self._left()):
                 team.errands[name] = left[0]

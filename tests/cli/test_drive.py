@@ -5,6 +5,8 @@ from datetime import date
 import pytest
 
 from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.day import DrivenDay, DrivenStop
+from fieldmon.drive.errand import Visit
 from fieldmon.drive.one_drive import one_drive
 from fieldmon.drive.season_day import SeasonDay
 from fieldmon.errors import ObservationError
@@ -182,6 +184,25 @@ def test_a_teams_robots_have_their_own_serial_numbers_and_none_is_given(run, sea
     code, _, err, _ = run("drive", season, "--date", BEGINS, *words)
     assert code == 2
     assert "names as serial numbers (robot-1, robot-2), but --serial was given too" in err
+
+
+@pytest.mark.parametrize("stops", [0, 1])
+def test_a_team_that_breaks_off_writes_the_tables_of_those_that_drove(
+    run, season, monkeypatch, stops
+):
+    def drive_team(day, *_):
+        stop, day.stops = day.member("robot-1").ask(), stops
+        driven = DrivenDay([DrivenStop(stop, Visit(found=False), 40.0, 40.0)])
+        return {"robot-1": driven, "robot-2": DrivenDay(broken="It has no order.")}
+
+    monkeypatch.setattr("fieldmon.drive.vda5050.team.drive_team", drive_team)
+    run("change", season, "--robots", "2")
+    words = ("--date", BEGINS, "--robot", "vda5050", "-o", "day.csv")
+    code, out, err, made = run("drive", season, *words)
+    assert code == (130 if stops else 2), err
+    assert ("It has no order." in err) == (not stops)
+    assert {one.name for one in made} == {"day-robot-1.csv", "day-robot-1.stops.csv"}
+    assert (f"0 results of {BEGINS} in the season" in out) == bool(stops)
 
 
 def test_a_team_of_scouts_has_nobody_who_drives(run, season, tmp_path):

@@ -152,9 +152,12 @@ def test_a_fatal_error_ends_the_day_in_its_own_words(broker, plot, robot, monito
         if errand.number == 2:
             other.self.errors = [MOTOR]
 
-    driven, day, _ = drive(broker, plot, robot, monitor, "fatal", fail)
+    driven, day, said = drive(broker, plot, robot, monitor, "fatal", fail)
     assert len(driven.stops) == 3
     assert "left wheel" in driven.stuck[0]
+    number = driven.stops[1].stop.number
+    where = rf"It stands near row \d, plant {number}, by its own word: latitude 30\.359"
+    assert re.match(f"{driven.stuck[0]} {where}", said[0])
     assert len(day.plants) == 2
 
 

@@ -291,7 +291,7 @@ def _team(context: typer.Context, options: DriveOptions, file: Path) -> bool:
         )
     from fieldmon.drive.one_drive import one_drive
 
-    with one_drive(file, f"a team ({options.manufacturer})"):
+    with one_drive(file, f"a team ({options.manufacturer})", is_team=True):
         _team_day(options, season, on, settings)
     return True
 

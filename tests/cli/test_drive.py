@@ -152,8 +152,13 @@ def test_a_season_that_another_command_drives_is_refused(run, season):
     with one_drive(season, "fieldmon/A"):
         code, _, err, _ = run("drive", season, "--date", BEGINS, "--made-up")
     assert code == 2
-    assert "but fieldmon/A drives season.gpkg now" in err
+    assert "but fieldmon/A drives season.gpkg now. Wait for its end, or give the season a" in err
     assert len(Season(season).history.inspections) == 0
+    run("change", season, "--robots", "2")
+    with one_drive(season, "a team (fieldmon)", is_team=True):
+        code, _, err, _ = run("drive", season, "--date", BEGINS, "--robot", "vda5050")
+    assert code == 2
+    assert "but a team (fieldmon) drives season.gpkg now. Wait for its end: one command" in err
 
 
 def test_a_robot_that_goes_on_for_another_is_told_where_it_is_taken_to_stand(run, season):

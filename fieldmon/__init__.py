@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.season_file import Season
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.status import Status
-    from fieldmon.pests.pest import Pest
+    from fieldmon.pests.pest import Citation, Entry, Increase, Movement, Pest, Stage
     from fieldmon.pests.weather import Weather
     from fieldmon.planning import routes
     from fieldmon.planning.members import TeamMember, Teamwork, team_of
@@ -111,7 +111,7 @@ _MODULES = {
     "monitoring.monitor": ("Monitor", "MonitorDay", "PlantToInspect"),
     "monitoring.season_file": ("Season",),
     "monitoring.settings": ("MonitoringSettings",),
-    "pests.pest": ("Pest",),
+    "pests.pest": ("Citation", "Entry", "Increase", "Movement", "Pest", "Stage"),
     "pests.weather": ("Weather",),
     "planning.plan": ("DayPlan", "plan_day"),
     "planning.route": ("Route",),
@@ -151,11 +151,13 @@ __all__ = [
     "BeliefSettings",
     "Block",
     "ChoiceNeeded",
+    "Citation",
     "CompareSettings",
     "Comparison",
     "ContradictionError",
     "DayPlan",
     "Dose",
+    "Entry",
     "Field",
     "FieldmonError",
     "FileProblem",
@@ -163,12 +165,14 @@ __all__ = [
     "HotSpotSettings",
     "HotSpots",
     "ImportDoubt",
+    "Increase",
     "Inspections",
     "Learning",
     "MapVerdict",
     "Monitor",
     "MonitorDay",
     "MonitoringSettings",
+    "Movement",
     "ObservationError",
     "Observations",
     "Pest",
@@ -193,6 +197,7 @@ __all__ = [
     "SimulatedDay",
     "Sprayer",
     "Spread",
+    "Stage",
     "Start",
     "Status",
     "Stops",

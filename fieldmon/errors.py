@@ -17,7 +17,7 @@ class FieldmonError(Exception):
     ...     fm.Robot(hours=-1)
     ... except fm.FieldmonError as problem:
     ...     print(problem)
-    The robot's hours must be above 0, but it is -1.
+    The robot's hours must be above 0, not -1.
     """
 
 

@@ -273,7 +273,7 @@ MISTAKES = {
     "states of words": (lambda plot: fm.hot_spots(plot.grid, ["a"] * 3825), "must hold numbers"),
     "states in a table": (lambda plot: fm.hot_spots(plot.grid, np.zeros((3825, 2))), "one entry a"),
     "states half found": (lambda plot: fm.hot_spots(plot.grid, np.full(3825, 0.5)), "1 (found inf"),
-    "states of a plot": (lambda plot: fm.hot_spots(plot, np.zeros(3825)), "Give plot.grid"),
+    "states of no plot": (lambda _: fm.hot_spots("Gate", np.zeros(3825)), "Give the plot"),
     "a hot spot's radius": (
         lambda plot: fm.hot_spots(plot.grid, np.zeros(3825), 9.0), "must be HotSpotSettings",
     ),

@@ -4,6 +4,8 @@ import ast
 
 import pytest
 
+from fieldmon.compute.wording import worded
+from fieldmon.io.writers.handoff import FORMATS, HandoffFormat
 from tests.paths import ROOT
 
 LIBRARY, TESTS = ROOT / "fieldmon", ROOT / "tests"
@@ -32,9 +34,21 @@ def without_tests(names, tests):
     return [name for name, test in wanted.items() if test not in tests]
 
 
+def of_formats():
+    """Return the writers of route formats: `tests/io/writers/test_handoff.py` tries each format."""
+    return {f"io/writers/{one.writer.partition(':')[0]}.py" for one in FORMATS.values()}
+
+
 def test_every_module_of_logic_has_tests_of_its_name():
     tests = {path.relative_to(TESTS).as_posix() for path in TESTS.rglob("test_*.py")}
-    assert without_tests(set(modules()) - DECLARATIONS, tests) == []
+    assert without_tests(set(modules()) - DECLARATIONS - of_formats(), tests) == []
+
+
+def test_the_writer_of_a_new_format_needs_no_tests_of_its_name(monkeypatch):
+    assert of_formats() < set(modules())
+    new = HandoffFormat("plain:route_plain", (".txt",), worded("people"))
+    monkeypatch.setitem(FORMATS, "plain", new)
+    assert "io/writers/plain.py" in of_formats()
 
 
 def test_a_module_without_tests_is_noticed():

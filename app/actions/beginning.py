@@ -120,7 +120,7 @@ def begin(choices: Choices) -> str:
         choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,
         belief=BeliefSettings(treated=widget_memory.value(_FINDS, True), earlier=_earlier()),
         pest=chosen_pest.pest(), weather=chosen_pest.met(choices) if chosen_pest.pest() else None,
-        language=language.current(),
+        language=language.for_seasons(),
     )  # fmt: skip
     said = [one.message for one in choices.messages]
     messages = [KeptMessage("import", str(m.severity), m.feature, m.sentence) for m in said]

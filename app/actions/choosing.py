@@ -312,14 +312,16 @@ def choose_display() -> None:
     What was chosen is known before, see `chosen_units.units`: so a page shows it below all else.
     """
     with st.expander(texts.DISPLAY):
+        spoken = language.current()
+        names = language.LANGUAGES | {c: n for c, n in language.DRAFTS.items() if c == spoken}
         code = widget_memory.show(
-            st.selectbox, texts.LANGUAGE, list(language.LANGUAGES), key=chosen_language.KEY,
-            default=language.current(), filter_mode=None, format_func=language.LANGUAGES.get,
-            on_change=chosen_language.carry_over, args=(language.current(),),
+            st.selectbox, texts.LANGUAGE, list(names), key=chosen_language.KEY, default=spoken,
+            filter_mode=None, format_func=names.get, on_change=chosen_language.carry_over,
+            args=(spoken,),
         )  # fmt: skip
         chosen_language.keep_in_address(code)
         if code != language.ENGLISH:
-            st.caption(texts.MACHINE_MADE)
+            st.caption(texts.DRAFT if code in language.DRAFTS else texts.MACHINE_MADE)
         now = chosen_units.units()
         for key, label, options in zip(
             chosen_units.KEYS, (texts.LENGTH, texts.AREA, texts.DATE_LIKE),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import SettingError
+from fieldmon.io.readers.pest_file import shipped_pest
 
 from ..show import pest_figures
 from ..state import chosen_pest, notices, widget_memory
@@ -61,7 +62,7 @@ def _begins_with(kept: Pest | None) -> str:
 def _name(which: str) -> str:
     if which == chosen_pest.NONE:
         return texts.NO_PEST
-    return texts.OWN_PEST if which == chosen_pest.OWN else texts.PEST_TITLES[which]
+    return texts.OWN_PEST if which == chosen_pest.OWN else pest_figures.title(shipped_pest(which))
 
 
 def _say_kept(choices: Choices) -> None:

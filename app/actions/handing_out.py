@@ -15,7 +15,7 @@ from fieldmon.monitoring import day_ahead, scouts
 
 from ..show import qr_code
 from ..state import chosen_day, morning, notices, phone, wishes
-from ..words import texts
+from ..words import language, texts
 from . import inviting
 
 if TYPE_CHECKING:
@@ -71,8 +71,7 @@ def _show_address() -> None:
 
 def _files(choices: Choices, plan: HandoffPlan) -> None:
     """Offer the route in the formats of robots, phones and paper."""
-    # the commonest first
-    names = sorted(FORMATS, key=list(texts.READERS).index)
+    names = list(FORMATS)
     name = st.selectbox(texts.FORMAT, names, names.index("gpx"), key="format", filter_mode=None,
                         label_visibility="collapsed",
                         format_func=lambda one: f"{_reader(one)}: {one}")  # fmt: skip
@@ -87,7 +86,7 @@ def _files(choices: Choices, plan: HandoffPlan) -> None:
 
 def _reader(name: str) -> str:
     """Return who reads a format."""
-    return texts.READERS.get(name, FORMATS[name].reader)
+    return language.in_words(FORMATS[name].reader)
 
 
 def made(chosen: HandoffFormat, plan: HandoffPlan) -> bytes:

@@ -18,12 +18,15 @@ from ..words.language import number
 from . import handing_out, recording
 
 if TYPE_CHECKING:
+    from streamlit.delta_generator import DeltaGenerator
+
     from fieldmon.monitoring import MonitoringSettings
     from fieldmon.planning.members import TeamMember
 
     from ..state.choices import Choices
 
 SOURCE = "scout mode"
+_TAPS = "scout taps"
 
 
 def _second(choices: Choices) -> float:
@@ -47,10 +50,32 @@ def _tap(choices: Choices, plant: int, result: int) -> str:
     return ""
 
 
-def tap(choices: Choices, plant: int, result: int) -> None:
-    """Record a tap at once."""
+def taps() -> int:
+    """Return how many taps were answered so far: by this the browser knows what a tap is of."""
+    n: int = st.session_state.setdefault(_TAPS, 0)
+    return n
+
+
+def drawn() -> DeltaGenerator:
+    """Return what says how many taps what stands above it was drawn after: see `taps.js`."""
+    return st.container(key=f"scout_after_{taps()}")
+
+
+def tap(choices: Choices, plant: int, result: int, after: int) -> None:
+    """Record a tap at once; a second one of what was drawn after as many taps says nothing."""
+    if after != taps():
+        return
+    st.session_state[_TAPS] += 1
     _tap(choices, plant, result)
     st.session_state["scout_count"] = None
+
+
+def undo(choices: Choices, batch: int, after: int) -> None:
+    """Take a tap back; a second press of the same button takes no other one back."""
+    if after != taps():
+        return
+    st.session_state[_TAPS] += 1
+    recording.undo(choices, batch)
 
 
 def last_tap(choices: Choices) -> tuple[int, str] | None:

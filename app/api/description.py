@@ -208,6 +208,11 @@ DAY: dict[str, Any] = {
             "season: they count no more. Told again with another id, they do.",
             "items": ID,
         },
+        "taken_back_before": {
+            "type": "object",
+            "description": "The same of the week before, by day.",
+            "additionalProperties": {"type": "array", "items": ID},
+        },
         "hot_spots": {"type": "array", "items": {"type": "object"}},
         "photos": {"type": "array", "items": {"type": "object"}},
         "photos_asked": {

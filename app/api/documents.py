@@ -27,7 +27,7 @@ from fieldmon.monitoring.day_ahead import (
     work_hours,
 )
 from fieldmon.monitoring.derived_layers import spot_area
-from fieldmon.monitoring.findings import taken_back
+from fieldmon.monitoring.findings import taken_back, taken_back_before
 from fieldmon.monitoring.photos import photos_of
 from fieldmon.monitoring.plant_states import hot_spots_on, shown_states
 from fieldmon.planning.skips import left_out
@@ -124,6 +124,9 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "today": _said(history.inspections.on(on)),
         "contradicting": _said(season.contradicting(on)),
         "taken_back": list(taken_back(season, scout.name, on)),
+        "taken_back_before": {
+            day: list(ids) for day, ids in taken_back_before(season, scout.name, on).items()
+        },
         "hot_spots": _hot_spots(season, on),
         "photos": [photo._asdict() for photo in photos_of(season)],
         "photos_asked": [one._asdict() for one in ahead.asked_of(part)],

@@ -12,7 +12,8 @@ import shapely
 import streamlit as st
 from pydeck import Layer
 
-from fieldmon.compute.wording import litres_figure, share_figure
+from fieldmon.compute.wording import share_figure
+from fieldmon.io.spray_rate import litres_figure
 from fieldmon.plot.grid import row_ends, row_label
 
 from ..state import assumptions, cached

@@ -56,18 +56,23 @@ def _in_language(make: Callable[..., alt.Chart]) -> Callable[..., alt.Chart]:
 
     @wraps(make)
     def made(*args: object, **settings: object) -> alt.Chart:
-        chart = make(*args, **settings).configure(background="transparent")
-        chart = chart.properties(padding={"left": _EDGE_PX, "right": _EDGE_PX})
+        # set in place: each of Altair's own ways builds the chart and its layers anew
+        chart = make(*args, **settings)
+        chart.padding = {"left": _EDGE_PX, "right": _EDGE_PX}
         level = {"titleAngle": 0, "titleBaseline": "bottom", "titleY": -8}
-        chart = chart.configure_axisLeft(titleAlign="left", titleX=-_ASIDE_PX, **level)
-        chart = chart.configure_axisRight(titleAlign="right", titleX=_ASIDE_PX, **level)
+        chart.config = alt.Config(
+            background="transparent",
+            axisLeft=alt.AxisConfig(titleAlign="left", titleX=-_ASIDE_PX, **level),
+            axisRight=alt.AxisConfig(titleAlign="right", titleX=_ASIDE_PX, **level),
+        )
         if language.current() == language.ENGLISH:
             return chart
         fraction, thousands = language.separators()
         number = {"decimal": fraction, "thousands": thousands, "grouping": [3],
                   "currency": ["", ""]}  # fmt: skip
         chart.config.locale = alt.Locale(number=number)
-        return chart.configure_axisY(orient=_sides()[0])
+        chart.config.axisY = alt.AxisConfig(orient=_sides()[0])
+        return chart
 
     return made
 

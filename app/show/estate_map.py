@@ -16,23 +16,21 @@ from .map_view import MapContent
 from .maps import legends
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from ..state.estate import PlotState
     from ..state.shared_plots import PlannedTurn
     from .maps.colours import Colour
-    from .maps.labels import Label
 
 #: the layer in which a tapped plot is looked up
 PLOTS = "plots"
-#: the layer of plots that are too small on the map of all to be seen there
+#: the layer of dots: the browser shows those of plots that are too small to be seen, and one with
+#: their number for plots that would have the same
 MARKS = "plot marks"
 _COLOURS: dict[str, Colour] = {
     "fresh": (46, 139, 87), "due": (230, 159, 0), "late": (200, 60, 40), "new": (130, 140, 135),
 }  # fmt: skip
 _LATE = 7
-# smaller than this share of the map of all, a plot has a mark; its name then stands below it
-_SMALL, _MARK_PX = 0.02, 6
+# the state of several plots under one dot is that of the first of these
+_URGENT = ("late", "due", "fresh", "new")
 # who works, told apart for the colour-blind too (Okabe and Ito); their names say it as well
 _WHO: tuple[Colour, ...] = (
     (0, 114, 178), (213, 94, 0), (0, 158, 115), (204, 121, 167), (86, 180, 233), (230, 159, 0),
@@ -85,8 +83,10 @@ def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapC
     states = dict.fromkeys(map(state_of, plots))
     items = [("square", _COLOURS[name], texts.PLOTS_STATES[name]) for name in states]
     of_plot = {id(turn.state): turn for turn in turns}
-    marked = {id(plot) for plot in small(plots)}
-    names = [_label(plot, of_plot.get(id(plot)), marked=id(plot) in marked) for plot in plots]
+    names = [
+        {"p": _middle(plot), "t": _named(plot, of_plot.get(id(plot))), "k": "name", "plot": number}
+        for number, plot in enumerate(plots)
+    ]
     who = {turn.number: turn.who for turn in turns}
     workers = [("line", _WHO[k % len(_WHO)], name) for k, name in sorted(who.items())]
     legend = [legends.part("", items), *([legends.part("", workers)] if workers else [])]
@@ -95,48 +95,25 @@ def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapC
         "all plots",
         bounds,
         alt,
-        [*_marks(plots), areas, *_routes(turns)],
+        [areas, *_routes(turns), _marks(plots)],
         legend=legend,
         labels=names,
     )
 
 
-def small(plots: list[PlotState]) -> list[PlotState]:
-    """Return the plots that are hardly seen where all are in view."""
-    if not plots:
-        return []
-    least = _SMALL * _side(shapely.total_bounds([plot.outline for plot in plots]))
-    return [plot for plot in plots if _side(plot.outline.bounds) < least]
-
-
-def _side(bounds: Iterable[float]) -> float:
-    west, south, east, north = bounds
-    return max(east - west, north - south)
-
-
-def _marks(plots: list[PlotState]) -> list[Layer]:
+def _marks(plots: list[PlotState]) -> Layer:
     rows = [
-        {"p": _middle(plot), "t": said(plot), "c": [*_COLOURS[state_of(plot)], 255]}
-        for plot in small(plots)
-    ]
-    if not rows:
-        return []
-    return [
-        Layer("ScatterplotLayer", rows, id=MARKS, get_position="p", get_fill_color="c",
-              get_radius=1, radius_min_pixels=_MARK_PX, stroked=True,
-              get_line_color=[60, 70, 65], line_width_min_pixels=1.5)
+        {"p": _middle(plot), "t": said(plot), "c": [*_COLOURS[state_of(plot)], 255],
+         "around": list(plot.outline.bounds), "urgent": _URGENT.index(state_of(plot))}
+        for plot in plots
     ]  # fmt: skip
+    return Layer("ScatterplotLayer", rows, id=MARKS, get_position="p", get_fill_color="c",
+                 stroked=True, get_line_color=[60, 70, 65], line_width_min_pixels=1.5)  # fmt: skip
 
 
 def _middle(plot: PlotState) -> list[float]:
     place: list[float] = shapely.get_coordinates(plot.outline.representative_point())[0].round(7)
     return list(map(float, place))
-
-
-def _label(plot: PlotState, turn: PlannedTurn | None, *, marked: bool) -> Label:
-    lon, lat = _middle(plot)
-    label: Label = {"p": [lon, lat], "t": _named(plot, turn), "k": "name"}
-    return label | {"away": [lon, lat - 1e-4], "gap": 2 * _MARK_PX} if marked else label
 
 
 def _named(plot: PlotState, turn: PlannedTurn | None) -> str:
@@ -165,11 +142,11 @@ def _routes(turns: tuple[PlannedTurn, ...]) -> list[Layer]:
 
 
 def plot_tapped(plots: list[PlotState], index: int, layer: str = PLOTS) -> PlotState | None:
-    """Return the plot whose part or mark was tapped, by its number in the layer."""
+    """Return the plot whose part or dot was tapped, by its number in the layer."""
     if layer not in (PLOTS, MARKS):
         return None
     parts = (
-        small(plots)
+        plots
         if layer == MARKS
         else [plot for plot in plots for _ in range(shapely.get_num_geometries(plot.outline))]
     )

@@ -7,21 +7,28 @@ from typing import TYPE_CHECKING
 import pandas as pd
 import streamlit as st
 
+from fieldmon.compute.wording import worded
+from fieldmon.io.readers.pest_file import shipped_words
+
 from ..words import texts
-from ..words.language import number
+from ..words.language import in_words, number
 
 if TYPE_CHECKING:
     from fieldmon.pests.pest import Pest
 
 
 def title(pest: Pest) -> str:
-    """Return what a pest is called: by the page's words, or its file's."""
-    return texts.PEST_TITLES.get(pest.name) or texts.isolated(pest.title or pest.name)
+    """Return what a pest is called: in the page's words if it comes along, or by its file's."""
+    return _said(pest.title or pest.name)
 
 
 def stage_name(name: str) -> str:
     """Return what a stage is called."""
-    return texts.PEST_STAGES.get(name) or texts.isolated(name)
+    return _said(name)
+
+
+def _said(name: str) -> str:
+    return in_words(worded(name)) if name in shipped_words() else texts.isolated(name)
 
 
 def celsius(temperature_c: float) -> str:

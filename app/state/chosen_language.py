@@ -17,7 +17,7 @@ def begin() -> None:
     """Speak the session's language from here on: what the address says, until one is chosen."""
     language.ask(chosen)
     said = st.query_params.get(KEY)
-    widget_memory.first(KEY, said if said in language.LANGUAGES else None)
+    widget_memory.first(KEY, said if language.is_spoken(said) else None)
     language.use(chosen())
 
 
@@ -26,7 +26,7 @@ def chosen() -> str:
     if get_script_run_ctx(suppress_warning=True) is None:
         return language.ENGLISH
     said = widget_memory.value(KEY)
-    return said if said in language.LANGUAGES else browser.language()
+    return str(said) if language.is_spoken(said) else browser.language()
 
 
 def keep_in_address(code: str) -> None:

@@ -11,7 +11,8 @@ from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.pest_prior import prior_for
-from fieldmon.io.readers.pest_file import read_pest, shipped_names, shipped_pest
+from fieldmon.io.packaged import pest_names
+from fieldmon.io.readers.pest_file import read_pest, shipped_pest
 from fieldmon.io.readers.weather_options import WeatherOptions
 from fieldmon.plot.local_clock import local_clock
 
@@ -38,14 +39,14 @@ WHICH, NONE, OWN = "which_pest", "", "own"
 
 def options() -> tuple[str, ...]:
     """Return what can be chosen: no pest, those that come along, one from a file."""
-    return (NONE, *shipped_names(), OWN)
+    return (NONE, *pest_names(), OWN)
 
 
 def pest() -> Pest | None:
     """Return the pest that was chosen; None: none was, or its file cannot be used."""
     which = widget_memory.value(WHICH, NONE)
     if which != OWN:
-        return shipped_pest(which) if which in shipped_names() else None
+        return shipped_pest(which) if which in pest_names() else None
     file = brought().get(PEST)
     if file is None:
         return None

@@ -161,11 +161,8 @@ def unfinished() -> dict[str, Any]:
     }
     if not boxes:
         return {}
-    state = {str(key): value for key, value in st.session_state.items()}
-    return {
-        "boxes": boxes,
-        "times": {key: n for key, n in state.items() if key.startswith(_TIMES)},
-    }
+    emptied = [str(key) for key in st.session_state if str(key).startswith(_TIMES)]
+    return {"boxes": boxes, "times": {key: st.session_state[key] for key in emptied}}
 
 
 def take(said: dict[str, Any]) -> None:

@@ -153,11 +153,11 @@ def _keep() -> None:
 
 def _said(files: dict[str, File]) -> dict[str, Any]:
     """Return what is kept beside the files' bytes, as it is written."""
-    state: dict[str, Any] = {str(key): value for key, value in st.session_state.items()}
-    answers = {key: value for key, value in state.items() if key.startswith("answers ")}
+    keys = [str(key) for key in st.session_state]
+    answers = {key: st.session_state[key] for key in keys if key.startswith("answers ")}
     edits = {
-        key: [(edit.kind, edit.lonlat) for edit in value]
-        for key, value in state.items()
+        key: [(edit.kind, edit.lonlat) for edit in st.session_state[key]]
+        for key in keys
         if key.startswith("edits ")
     }
     named = {k: (file.key, [part.name for part in _parts(file)]) for k, file in files.items()}

@@ -37,8 +37,9 @@ def show(choices: Choices) -> None:
     plan, progress = choices.plan(), chosen_day.progress(choices)
     if not len(plan.route):
         field_map.want(map_layers.day_map(choices, first="state"))
-        st.markdown(texts.SCOUT_DONE.format(inspected=progress.inspected_today,
-                                            found=progress.found_today))  # fmt: skip
+        with scouting.drawn():
+            st.markdown(texts.SCOUT_DONE.format(inspected=progress.inspected_today,
+                                                found=progress.found_today))  # fmt: skip
         if scouting.can_be_longer(choices):
             st.caption(texts.SCOUT_LONGER_NOTE)
             with st.container(key="scout_more"):
@@ -49,19 +50,20 @@ def show(choices: Choices) -> None:
         return
     stop = next_stop(plan, chosen_day.n_done(choices), choices.units)
     st.markdown(f"## {stop.arrow} {stop.place}")
-    st.markdown(f"**{stop.direction}**")
+    with scouting.drawn():
+        st.markdown(f"**{stop.direction}**")
     with st.container(key="scout_buttons", horizontal=True):
         for key, label, result in (
             ("scout_found", texts.FOUND_BUTTON, FOUND),
             ("scout_clean", texts.CLEAN_BUTTON, CLEAN),
         ):
             st.button(label, key=key, width="stretch", on_click=scouting.tap,
-                      args=(choices, stop.plant, result))  # fmt: skip
+                      args=(choices, stop.plant, result, scouting.taps()))  # fmt: skip
     st.caption(stop.chance)
     st.number_input(texts.COUNT_LABEL, 0, 100_000, None, key="scout_count")
     with st.container(key="scout_others"):
         st.button(texts.SKIP_BUTTON, key="scout_skip", width="stretch", on_click=scouting.tap,
-                  args=(choices, stop.plant, SKIPPED))  # fmt: skip
+                  args=(choices, stop.plant, SKIPPED, scouting.taps()))  # fmt: skip
     _undo(choices)
     here = marks.places([stop.lonlat], "next", (255, 190, 0), texts.NEXT)
     field_map.want(map_layers.day_map(choices, above=[here], first="state"))
@@ -69,10 +71,9 @@ def show(choices: Choices) -> None:
 
 
 def _undo(choices: Choices) -> None:
-    last = scouting.last_tap(choices)
-    if last is not None:
+    if (last := scouting.last_tap(choices)) is not None:
         batch, said = last
         st.caption(said)
         with st.container(key="scout_back"):
             st.button(texts.UNDO_BUTTON, key="scout_undo", width="stretch", icon=":material/undo:",
-                      on_click=recording.undo, args=(choices, batch))  # fmt: skip
+                      on_click=scouting.undo, args=(choices, batch, scouting.taps()))  # fmt: skip

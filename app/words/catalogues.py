@@ -18,11 +18,12 @@ from babel.messages.pofile import read_po, write_po
 import fieldmon
 from fieldmon.compute.units import IN_UNIT
 from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.io.readers.pest_file import shipped_words
 from fieldmon.reports import words as report_words
 from fieldmon.samplers import of_equal_times
 
 from . import texts
-from .language import ENGLISH, FOLDER, LANGUAGES, LIBRARY, SAME, Plural
+from .language import DRAFTS, ENGLISH, FOLDER, LANGUAGES, LIBRARY, SAME, Plural
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -86,9 +87,10 @@ def of_library() -> list[TextEntry]:
 
 
 def _of_reports() -> Iterator[TextEntry]:
-    """Yield what reports write without wording it: headings, units, names of samplers."""
+    """Yield what reports write without wording it: headings, units, names."""
     titles = [kind.title for kind in of_equal_times().values()]
-    for value in (*report_words.TEXTS.values(), *IN_UNIT.values(), *titles, *RESULT_NAMES.values()):
+    named = (*IN_UNIT.values(), *titles, *RESULT_NAMES.values(), *shipped_words())
+    for value in (*report_words.TEXTS.values(), *named):
         for entry in _within(LIBRARY, value):
             if entry.words not in _SAME_ON_PAPER and _has_letters(entry.words):
                 yield TextEntry(LIBRARY, entry.words)
@@ -178,7 +180,7 @@ def update(language: str) -> list[TextEntry]:
 
 def main() -> None:
     """Bring all files up to date with the texts."""
-    for language in LANGUAGES:
+    for language in LANGUAGES | DRAFTS:
         if language != ENGLISH:
             missing = update(language)
             print(f"{path_of(language).name}: {len(missing)} to translate")  # noqa: T201 - a command

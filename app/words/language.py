@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 ENGLISH = "en"
 #: each by its own name
 LANGUAGES = wording.LANGUAGES
+#: languages whose file is not whole yet, by their own names: only an address (?lang=) asks for
+#: them, and what has no words is English
+DRAFTS: dict[str, str] = {}
 RIGHT_TO_LEFT = frozenset({"he", "ar"})
 # languages that set the sign of a share apart from its number
 _SHARE_APART = frozenset({ENGLISH, "es"})
@@ -40,8 +43,6 @@ FOLDER = Path(__file__).with_name("languages")
 LIBRARY = "fieldmon"
 # so many things, as `counted` says them
 _COUNTED = re.compile(r"([\d,]*\d) ([a-z][a-z ]*)")
-# how the contexts of the names of shipped pests begin
-_PEST_TITLES = "PEST_TITLES."
 #: names, signs and files, which are the same in every language
 SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_name"})
 
@@ -85,6 +86,16 @@ def current() -> str:
     if said is None:
         said = _ASKED[0]() if _ASKED else ENGLISH
     return said
+
+
+def is_spoken(code: str | None) -> bool:
+    """Return whether an address may ask for a language: also for one that is a draft."""
+    return code in LANGUAGES or code in DRAFTS
+
+
+def for_seasons() -> str:
+    """Return the language that a season keeps, for its reports: none is a draft."""
+    return current() if current() in LANGUAGES else ENGLISH
 
 
 def is_right_to_left() -> bool:
@@ -139,10 +150,11 @@ class Plural(Text):
     def form(self, count: object) -> str:
         """Return the words for so many."""
         number = int(count)  # type: ignore[call-overload]
+        english = self.one if number == 1 else str(self)
         if self.language == ENGLISH:
-            return self.one if number == 1 else str(self)
+            return english
         found = _catalogue(self.language)
-        return found.npgettext(self.context, self.one, str(self), number) or str(self)
+        return found.npgettext(self.context, self.one, str(self), number) or english
 
 
 class Late(str):  # noqa: SLOT000 - it has one attribute
@@ -219,13 +231,6 @@ class _Catalogue(gettext.GNUTranslations):
         before = f"{context}\x04"
         keys = (key for key in texts_ if isinstance(key, str))
         return [key.removeprefix(before) for key in keys if key.startswith(before)]
-
-    @cache  # noqa: B019 - there are three, for good
-    def pest_titles(self) -> dict[str, str]:
-        """Return the names of shipped pests by their English ones: the library names them so."""
-        texts_: dict[object, str] = self._catalog  # type: ignore[attr-defined]
-        keys = (key for key in texts_ if isinstance(key, str) and key.startswith(_PEST_TITLES))
-        return {key.partition("\x04")[2]: texts_[key] for key in keys}
 
 
 class _Unknown(gettext.NullTranslations):
@@ -344,7 +349,6 @@ def _said(sentence: object, language: str) -> str | None:
         form = found.npgettext(LIBRARY, sentence.one, sentence.words, sentence.number)
     else:
         form = found.pgettext(LIBRARY, sentence.words)
-        form = form or found.pest_titles().get(sentence.words, "")
     if not form and _is_wordless(sentence.words):
         apart = language in _SHARE_APART
         form = sentence.words if apart else sentence.words.replace(" %", "%")

@@ -211,6 +211,7 @@ MAP_WORDS = {
     "lasso_hint": "Draw round the plants; with Shift, to those selected before.",
     "select_rows": "Select rows", "rows_hint": "Tap plants or row numbers: a whole row each.",
     "too_many": "At most {most} plants can be selected at once.",
+    "plots_here": "Plots here: {n}",
     "keys": "Map. Arrow keys move it, plus and minus zoom, Enter opens what is under the cross, "
             "Escape leaves.", "corners": "Points: {n}",
     "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",
@@ -249,22 +250,6 @@ PEST_CHANGED = "The season's nights are believed by these from the first on."
 PEST_KEPT = "Pest of this season: {pest}."
 WEATHER_KEPT = "Its weather: {first} to {last}."
 WEATHER_NEEDS_PEST = "Weather goes with a pest, which says what warmth does: choose one."
-PEST_TITLES = {
-    "thesis": "Two-spotted spider mite, the thesis's rule",
-    "spider-mite": "Two-spotted spider mite, by degree-days",
-    "green-peach-aphid": "Green peach aphid",
-    "plum-pox-virus": "Plum pox virus (sharka), carried by aphids",
-    "strawberry-anthracnose": "Strawberry anthracnose, carried by rain splash",
-    "western-flower-thrips": "Western flower thrips",
-    "whitefly": "Tobacco whitefly",
-}
-PEST_STAGES = {
-    "egg": "egg", "larva": "larva", "protonymph": "protonymph", "deutonymph": "deutonymph",
-    "egg to adult": "egg to adult", "adult before eggs": "adult before eggs",
-    "first instar": "first instar", "second instar": "second instar",
-    "third instar": "third instar", "fourth instar": "fourth instar",
-    "adult before young": "adult before young",
-}  # fmt: skip
 PEST_PARTS = {
     "stages": "Stages", "generation": "A generation", "increase": "Rate of increase",
     "movement": "How it moves", "entry": "How it enters", "detection": "How it is seen",
@@ -382,6 +367,7 @@ UNDO_CHANGE, UNDO_NO_CHANGE = "Take back: {what}", "Take the last change back"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
 LANGUAGE = "Language"
 #: said in the other languages only: see `language.is_machine_made`
+DRAFT = "A draft: what nobody has translated yet stands in English."
 MACHINE_MADE = "Translated by a machine; no native speaker has read it yet."
 UNITS = {"m": "m", "km": "km", "ft": "ft", "mi": "mi", "ha": "ha", "dunam": "dunam",
          "acre": "acre"}  # fmt: skip
@@ -548,14 +534,6 @@ TODAY_DONE = Plural(
     by="inspected",
 )
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
-#: as `fieldmon.io.writers.handoff` says them, which takes long to load
-READERS = {
-    "gpx": "GPS handhelds and hiking apps", "kml": "Google Earth, map apps on phones",
-    "sheet": "a printer: a scout without a phone", "csv": "spreadsheets",
-    "geojson": "QGIS, phones, web maps", "gpkg": "QGIS, QField, ArcGIS",
-    "shapefile": "older map programs and consoles", "waypoints": "robots of any kind",
-    "nav2": "robots with Nav2 (ROS 2)", "nav2-pauses": "robots with Nav2 and a plugin for pauses",
-}  # fmt: skip
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
 
@@ -919,6 +897,7 @@ COUNTS_ELSEWHERE = "counts in another recording"
 BATCHES_MORE = "Show {n} more"
 REDO, REDONE_BEFORE = "Redo", "This counts again already. Nothing changed."
 UNDO_ASK = "Take this back? It can be redone here."
+UNDO_ASK_FOR_GOOD = "Take these corrections back? That cannot be redone: they are made anew."
 UNDO_ASK_WHO = "{who} recorded it; a phone that has it is told so."
 UNDO_ASK_DAY = "It is of {days}, and this page is about {day}."
 UNDO_YES, UNDO_NO = "Take it back", "Leave it"
@@ -1189,6 +1168,7 @@ SCOUT_PAGE = {
     "not_loaded": "{season}: nothing is loaded yet. A network is needed once.",
     "load_day": "Load the day", "old_day": "This route is of {day}: load today's",
     "taken_back": "Records of yours that count no more: {n}",
+    "taken_back_before": "Records of yours of {day} that count no more: {n}",
     "taken_back_why": "Somebody took them back in the season.",
     "tell_again": "Send them again", "let_go": "Let them go",
     "newer_plan": "There is a newer plan: load it",

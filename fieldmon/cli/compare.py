@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_unusable
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
@@ -26,13 +25,14 @@ from fieldmon.cli.options import (
     WorkerOptions,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
-from fieldmon.cli.preparing import prepared
-from fieldmon.cli.sampler_names import USUAL_SAMPLER, SamplerName
+from fieldmon.cli.preparing import believed, prepared
+from fieldmon.cli.sampler_names import known
 from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, PAIRED
 from fieldmon.errors import SettingError
+from fieldmon.samplers import USUAL, kind_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -64,10 +64,11 @@ class CompareOptions:
         ),
     ] = None
     sampler: Annotated[
-        list[SamplerName] | None,
+        list[str] | None,
         typer.Option(
             help="What chooses the plants; repeat to compare numbers of robots with each. Default: "
-            "adaptive."
+            f"{USUAL}.",
+            callback=known,
         ),
     ] = None
     sections: Annotated[
@@ -133,7 +134,7 @@ def compare(options: CompareOptions) -> None:
     write_all(options.output, {"robots.md": table(made), "robots.html": report_html(made)})
 
 
-def _tell_compared(sizes: list[int], samplers: list[SamplerName]) -> None:
+def _tell_compared(sizes: list[int], samplers: list[str]) -> None:
     """Print what is compared with what: people expect samplers, too, where there are several."""
     typer.echo(f"Numbers of robots compared: {', '.join(map(str, sizes))}", err=True)
     if len(samplers) > 1:
@@ -191,20 +192,12 @@ def _own(
     options: CompareOptions,
 ) -> tuple[tuple[Plot, NDArray[np.float64]], PestInWeather | None]:
     """Return the plot of the command's files with what is believed of it, and its pest."""
-    import numpy as np
-
-    from fieldmon.infestation.prior import prior_chance
-
     told = day(options.on)
     known = prepared(options.files.request(options.plot, options.feature, options.observations))
-    plot = known.plot
-    begins = day_on(plot.field, told)
-    on = np.datetime64(begins, "D")
-    pest_in_weather = options.pest_options.in_weather(plot.field, begins)
-    prior = prior_of(pest_in_weather, begins)
-    tell_unusable(known.records, on, prior)
-    chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
-    return (plot, chance), pest_in_weather
+    begins = day_on(known.plot.field, told)
+    pest_in_weather = options.pest_options.in_weather(known.plot.field, begins)
+    chance = believed(known, begins, prior_of(pest_in_weather, begins))
+    return (known.plot, chance), pest_in_weather
 
 
 def _settings(
@@ -219,20 +212,14 @@ def _settings(
     together = Teamwork(True, 60.0 * options.contact, options.least_gain, passing_m)
     apart = Teamwork(together=False, passing_m=passing_m)
     made = []
-    for name in options.sampler or [SamplerName(USUAL_SAMPLER)]:
-        reads = _reads_chance(name)
+    for name in options.sampler or [USUAL]:
+        reads = kind_of(name).reads_chance
         ways = [*([together] if reads else []), *([apart] if options.sections or not reads else [])]
         for k in sizes:
             # alone there is one way to work
             own = ways[:1] if k == 1 else ways
-            made += [TeamSetting(scenario, name.value, Team(k, way)) for way in own]
+            made += [TeamSetting(scenario, name, Team(k, way)) for way in own]
     return made
-
-
-def _reads_chance(name: SamplerName) -> bool:
-    from fieldmon.samplers import kind_of
-
-    return kind_of(name.value).reads_chance
 
 
 def _outcomes(settings: list[TeamSetting], options: CompareOptions) -> list[TeamOutcome]:

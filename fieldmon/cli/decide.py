@@ -13,10 +13,10 @@ from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.season_files import day_meant
 from fieldmon.cli.times import day
-from fieldmon.compute.arguments import RATE_L_HA, USUAL_RATE_L_HA
 from fieldmon.compute.ranges import MOST_COUNTED, SURE, USUAL_SURE
 from fieldmon.decisions.sprayer import COSTS, SWITCHED, Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
+from fieldmon.io.spray_rate import RATE_L_HA, USUAL_RATE_L_HA
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

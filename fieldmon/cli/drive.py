@@ -18,7 +18,6 @@ from fieldmon.cli.options import (
     Every,
     Feature,
     MaybePlotFile,
-    OneSampler,
     PlotFiles,
     Records,
     WorkDate,
@@ -26,11 +25,12 @@ from fieldmon.cli.options import (
     sampler_of,
 )
 from fieldmon.cli.preparing import prepared
-from fieldmon.cli.sampler_names import USUAL_SAMPLER
+from fieldmon.cli.sampler_names import OneSampler
 from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import SettingError
+from fieldmon.samplers import USUAL
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -120,7 +120,7 @@ class DriveOptions:
     ] = None
     observations: Records = None
     feature: Feature = None
-    sampler: OneSampler = USUAL_SAMPLER
+    sampler: OneSampler = USUAL
     every: Every = None
     on: WorkDate = None
     infested: Annotated[

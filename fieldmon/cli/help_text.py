@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from functools import wraps
+import sys
+from copy import copy
+from functools import cache, wraps
 from inspect import getdoc
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +14,7 @@ import typer
 from fieldmon.cli.outputs import refuse_what_is_read
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator, Sequence
 
 # an end of line that ends no paragraph and begins no example
 _WRAPPED = re.compile(r"(?<!\n)\n(?!\n|Example: )")
@@ -36,6 +38,42 @@ class Commands(typer.Typer):
             return function
 
         return register
+
+    def __call__(self, args: Sequence[str] | None = None, **more: Any) -> Any:  # noqa: ANN401 - typer's own
+        """Run the command that the words begin with."""
+        words = sys.argv[1:] if args is None else args
+        return _put_together(self, *self.named(words))(args, **more)
+
+    def named(self, words: Sequence[str]) -> Iterator[str]:
+        """Yield those of the words that lead to a command: those of its groups, its own."""
+        first = words[0] if words else ""
+        for group in self.registered_groups:
+            if group.name and group.name == first and isinstance(group.typer_instance, Commands):
+                yield group.name
+                yield from group.typer_instance.named(words[1:])
+        yield from (one.name for one in self.registered_commands if one.name and one.name == first)
+
+    def only(self, *names: str) -> Commands:
+        """Return these commands without any of another name; all of them, if none is given."""
+        if not names:
+            return self
+        alone = copy(self)
+        alone.registered_commands = [
+            one for one in self.registered_commands if one.name == names[0]
+        ]
+        alone.registered_groups = [
+            copy(one) for one in self.registered_groups if one.name == names[0]
+        ]
+        for group in alone.registered_groups:
+            if isinstance(group.typer_instance, Commands):
+                group.typer_instance = group.typer_instance.only(*names[1:])
+        return alone
+
+
+@cache
+def _put_together(commands: Commands, *names: str) -> Callable[..., Any]:
+    """Return what runs a command by itself: to put all together takes as long as the imports."""
+    return typer.main.get_command(commands.only(*names))
 
 
 def flowing(text: str) -> str:

@@ -19,7 +19,6 @@ from fieldmon.cli.options import (
     Feature,
     LeastGain,
     MaybePlotFile,
-    OneSampler,
     Passing,
     PlotFiles,
     Records,
@@ -31,12 +30,13 @@ from fieldmon.cli.options import (
 from fieldmon.cli.pest_options import SAYS_ITSELF, PestOptions, prior_of
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.report_languages import Language, checked_language
-from fieldmon.cli.sampler_names import USUAL_SAMPLER
+from fieldmon.cli.sampler_names import OneSampler
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError
+from fieldmon.samplers import USUAL
 
 if TYPE_CHECKING:
     from datetime import datetime, time
@@ -56,7 +56,7 @@ class InitOptions:
     plot: MaybePlotFile = None
     observations: Records = None
     feature: Feature = None
-    sampler: OneSampler = USUAL_SAMPLER
+    sampler: OneSampler = USUAL
     every: Every = None
     begins: Annotated[
         str | None, typer.Option(help="First day of the season, YYYY-MM-DD; default: today.")
@@ -121,8 +121,8 @@ class InitOptions:
             begins.date(),
             begins.time(),
             self.pest_options.seen(self.worker.robot()),
-            self.sampler.value,
-            sampler_settings(self.sampler.value, self.every),
+            self.sampler,
+            sampler_settings(self.sampler, self.every),
             belief=belief if self.spread is None else _spreading(belief, self.spread),
             seed=self.seed,
             prior=prior_of(pest_in_weather, begins.date(), self.background),

@@ -11,13 +11,13 @@ import typer
 from fieldmon.cli.named_values import Options, chosen, chosen_of_file
 from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.raster_options import RasterFiles
-from fieldmon.cli.sampler_names import SamplerName
 from fieldmon.compute.ranges import CHANCE, DAYS, SEED, SHARE
 from fieldmon.errors import SettingError
 from fieldmon.planning.members import TEAMWORK
 from fieldmon.plot.planting import PLANTED
 from fieldmon.plot.robot import KM_H
-from fieldmon.samplers import EVERY, SAMPLERS, kind_of, sampler
+from fieldmon.samplers import EVERY, SAMPLERS, kind_of, sampler_with
+from fieldmon.samplers.own import is_own
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -239,7 +239,6 @@ Rover = Annotated[
         help="A robot 0.58 m wide and 0.8 m long, as in simulated drives (docs: drive).",
     ),
 ]
-OneSampler = Annotated[SamplerName, typer.Option(help="What chooses the plants.")]
 Every = Annotated[
     int | None,
     typer.Option(
@@ -466,8 +465,9 @@ def plot_options(
 
 
 def refuse_idle_every(names: Sequence[str], every: int | None) -> None:
-    """Refuse --every where none of the samplers inspects every N-th."""
-    if every is None or any(kind_of(name).every is not None for name in names):
+    """Refuse --every where none of the samplers inspects every N-th; one of one's own does not."""
+    having_n = (kind_of(name).every is not None for name in names if not is_own(name))
+    if every is None or any(having_n):
         return
     having = ", ".join(name for name, kind in SAMPLERS.items() if kind.every is not None)
     raise SettingError(
@@ -482,9 +482,10 @@ def sampler_settings(name: str, every: int | None) -> dict[str, float]:
     return kind_of(name).settings_for(every)
 
 
-def sampler_of(name: SamplerName, every: int | None) -> Sampler:
-    """Return the sampler that was chosen."""
-    return sampler(name.value, **sampler_settings(name.value, every))
+def sampler_of(name: str, every: int | None) -> Sampler:
+    """Return the sampler that was chosen; refuse an N of which it does not hear."""
+    refuse_idle_every([name], every)
+    return sampler_with(name, every)
 
 
 def _of(options: Options, more: list[str] | None, file: Path | None, role: str) -> Options:

@@ -11,6 +11,7 @@ import typer
 from fieldmon.cli.messages import FLAGS, Terminal, tell_assumed
 from fieldmon.cli.named_values import chosen
 from fieldmon.errors import ChoiceNeeded, SettingError
+from fieldmon.io.packaged import pest_names
 
 if TYPE_CHECKING:
     from datetime import date
@@ -26,8 +27,7 @@ PestName = Annotated[
     str | None,
     typer.Option(
         "--pest",
-        help="The pest: a file (TOML), or thesis, spider-mite, green-peach-aphid, "
-        "plum-pox-virus, strawberry-anthracnose, western-flower-thrips, whitefly.",
+        help=f"The pest: a file (TOML), or {', '.join(pest_names())}.",
     ),
 ]
 WeatherFile = Annotated[

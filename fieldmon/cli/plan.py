@@ -27,6 +27,7 @@ from fieldmon.cli.plan_team import plan_team
 from fieldmon.cli.preparing import estate, prepared
 from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.errors import SettingError
+from fieldmon.samplers.own import label_of
 
 if TYPE_CHECKING:
     from fieldmon.io.sources import PlotRequest
@@ -107,6 +108,7 @@ def _plan_one(options: PlanOptions) -> None:
     from fieldmon.planning.bound_wording import share_above
     from fieldmon.planning.day_bound import with_bound
     from fieldmon.planning.plan import PlanSettings, first_day
+    from fieldmon.samplers.answers import must_name_plants
 
     refuse_unrecorded(None, options.output or [ROUTE])
     robot, starts = options.pest_options.seen(options.worker.robot()), options.starts()
@@ -115,26 +117,27 @@ def _plan_one(options: PlanOptions) -> None:
     begins = starts.on_plot(known.plot.field)
     on = np.datetime64(begins.date(), "D")
     pest_in_weather = options.pest_options.in_weather(known.plot.field, begins.date())
-    sampler = sampler_of(options.sampler, options.every)
+    sampler, name = sampler_of(options.sampler, options.every), label_of(options.sampler)
     prior = prior_of(pest_in_weather, begins.date(), options.background)
     settings = PlanSettings(robot, sampler, prior)
     tell_unusable(known.records, on, prior)
     today = first_day(known.plot, known.records, on, settings, known.risk)
     if not len(today.route):
+        must_name_plants(sampler, known.plot.aisles, robot)
         raise SettingError(
             f"The working day must be long enough to reach a plant and come back, but "
             f"{robot.hours:g} h are not. Give more --hours."
         )
     if options.bound:
         today = with_bound(today)
-    typer.echo(f"{day_in_words(today.route)}\nPlanned by {options.sampler.value}.")
+    typer.echo(f"{day_in_words(today.route)}\nPlanned by {name}.")
     route = today.route
     if route.found_bound and share_above(route.expected_found, route.found_bound) > _FAR_BELOW:
         typer.echo(
             "If nobody plans again after a find, a fixed route may find more: add --robots 1."
         )
     tell_assumed(assumed_by((), settings.prior, robot, known.plot.grid))
-    notes = RouteNotes(known.plot.field.name, options.sampler.value, begins)
+    notes = RouteNotes(known.plot.field.name, name, begins)
     write_routes(replace(today.route, notes=notes), options.output)
     write_chance_map(options.chance_map, known.plot, today.chance)
 
@@ -156,7 +159,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
     pest_in_weather = options.pest_options.in_weather(plots.fields[0], begins.date())
     orders = Orders(
         day=np.datetime64(begins.date(), "D"),
-        sampler=options.sampler.value,
+        sampler=options.sampler,
         every=options.every,
         on_foot=worker.scout,
         robot=worker.given(),

@@ -29,6 +29,7 @@ from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.planning.batch import plan_task
+from fieldmon.samplers.own import label_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -239,7 +240,7 @@ def _work(name: str, task: Task) -> Row:
         (day.folder / name).unlink(missing_ok=True)
         return row | {"state": "refused", "sentence": str(error)}
     route = today.route
-    notes = RouteNotes(task.plot.name, task.orders.sampler, day.began)
+    notes = RouteNotes(task.plot.name, label_of(task.orders.sampler), day.began)
     robot, grid = today.scene.robot, route.aisles.grid
     assumed = assumed_by((*laid.assumed, *task.assumed(robot)), task.orders.prior, robot, grid)
     assumed = tuple(dict.fromkeys(assumed))

@@ -13,7 +13,6 @@ from fieldmon.cli.options import (
     Every,
     Feature,
     MaybePlotFile,
-    OneSampler,
     Outputs,
     Passing,
     PlotFiles,
@@ -25,8 +24,9 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.outputs import ChanceMap
 from fieldmon.cli.pest_options import PestOptions
-from fieldmon.cli.sampler_names import USUAL_SAMPLER
+from fieldmon.cli.sampler_names import OneSamplerOrOwn
 from fieldmon.cli.times import WorkStart, clock, day
+from fieldmon.samplers import USUAL
 
 Now = Annotated[
     str | None,
@@ -64,7 +64,7 @@ class PlanOptions:
     output: Outputs = None
     observations: Records = None
     feature: Feature = None
-    sampler: OneSampler = USUAL_SAMPLER
+    sampler: OneSamplerOrOwn = USUAL
     every: Every = None
     on: WorkDate = None
     start: StartTime = "06:00"

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from fieldmon.cli.messages import tell_assumed, tell_unusable
+from fieldmon.cli.messages import tell_assumed
 from fieldmon.cli.outputs import write_chance_map
 from fieldmon.cli.pest_options import prior_of
-from fieldmon.cli.preparing import prepared
+from fieldmon.cli.preparing import believed, prepared
 from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.cli.team_files import (
     files_of_each,
@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 
 def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None:
     """Plan a day of a team on one plot, and write a file for each."""
-    import numpy as np
-
-    from fieldmon.infestation.prior import prior_chance
     from fieldmon.planning import team
     from fieldmon.planning.assumptions import assumed_by_team
 
@@ -48,9 +45,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     pest_in_weather = options.pest_options.in_weather(plot.field, begins.date())
     prior = prior_of(pest_in_weather, begins.date(), options.background)
     members = tuple(replace(one, robot=options.pest_options.seen(one.robot)) for one in members)
-    on = np.datetime64(begins.date(), "D")
-    tell_unusable(known.records, on, prior)
-    chance = prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)
+    chance = believed(known, begins.date(), prior)
     with counting("Routes") as count:
         planned = team.plan_team(
             plot, chance, members, progress=count, passing_m=options.passing or 0.0, on=begins

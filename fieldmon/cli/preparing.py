@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.cli.messages import Terminal
+from fieldmon.cli.messages import Terminal, tell_unusable
 
 if TYPE_CHECKING:
+    from datetime import date
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.io.prepared import Estate, Prepared
     from fieldmon.io.sources import PlotRequest
 
@@ -27,3 +33,14 @@ def estate(request: PlotRequest, terminal: Terminal | None = None) -> Estate:
     terminal = terminal or Terminal()
     with terminal.answering():
         return prepare_estate(request, terminal)
+
+
+def believed(known: Prepared, day: date, prior: PriorSettings) -> NDArray[np.float64]:
+    """Return each plant's chance of infestation on a day; say which records tell nothing of it."""
+    import numpy as np
+
+    from fieldmon.infestation.prior import prior_chance
+
+    plot, on = known.plot, np.datetime64(day, "D")
+    tell_unusable(known.records, on, prior)
+    return prior_chance(plot.grid, plot.field, known.records, on, prior, known.risk)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import typer
 
@@ -16,6 +16,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
+# what typer's own library calls what it cannot make of a text, in our words
+_NUMBERS = {
+    "float_parsing": "a number", "int_parsing": "a whole number",
+    "int_from_float": "a whole number", "int_parsing_size": "a number of fewer digits",
+}  # fmt: skip
 # of a name that cannot be one
 _LONGEST = 80
 
@@ -58,6 +63,8 @@ def _unexpected(error: Exception) -> NoReturn:
     # typer's own base of a wrong option or argument, wherever its version keeps it
     usage = next(c for c in typer.BadParameter.__mro__ if c.__name__ == "ClickException")
     if isinstance(error, usage):
+        if sentence := _of_value(error):
+            _end(sentence, 2)
         error.show()  # type: ignore[attr-defined]
         sys.exit(2)
     if os.environ.get("FIELDMON_DEBUG"):
@@ -67,6 +74,22 @@ def _unexpected(error: Exception) -> NoReturn:
         "Run the command again with FIELDMON_DEBUG=1 to see where, and report it.",
         1,
     )
+
+
+def _of_value(error: Any) -> str:  # noqa: ANN401 - typer's own
+    """Return why a value of an option is refused, where typer lets another library say so."""
+    told, of = getattr(error.__cause__, "errors", None), getattr(error, "param", None)
+    if told is None or of is None:
+        return ""
+    found = told()[0]
+    kind, given = found["type"], found["input"]
+    name = of.opts[0] if of.param_type_name == "option" else of.human_readable_name
+    if kind in _NUMBERS:
+        return f"{name} must be {_NUMBERS[kind]}, but it is {given!r}."
+    _, parted, names = str(found.get("ctx", {}).get("error", "")).partition(" is not one of ")
+    if not parted:
+        return ""
+    return f"{name} must be one of {names.rstrip('.').replace(chr(39), '')}, but it is {given!r}."
 
 
 def _end(sentence: str, code: int) -> NoReturn:

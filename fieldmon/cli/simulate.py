@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import tell_unusable
 from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
@@ -25,12 +24,13 @@ from fieldmon.cli.options import (
     refuse_idle_every,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
-from fieldmon.cli.preparing import prepared
-from fieldmon.cli.sampler_names import COMPARED_SAMPLERS, SamplerName
+from fieldmon.cli.preparing import believed, prepared
+from fieldmon.cli.sampler_names import OWN, known_or_own
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED, SHARE
 from fieldmon.compute.wording import counted
-from fieldmon.samplers import kind_of, sampler
+from fieldmon.samplers import COMPARED, sampler_with
+from fieldmon.samplers.own import label_of
 
 if TYPE_CHECKING:
     from fieldmon.decisions.sprayer import TreatmentCosts
@@ -58,9 +58,11 @@ class SimulateOptions:
     observations: Records = None
     feature: Feature = None
     sampler: Annotated[
-        list[SamplerName] | None,
+        list[str] | None,
         typer.Option(
-            help="What chooses the plants; repeat to compare. Default: naive, bouncy and dynamic."
+            help="What chooses the plants, by name, or "
+            f"{OWN}; repeat to compare. Default: {', '.join(COMPARED)}.",
+            callback=known_or_own,
         ),
     ] = None
     every: Every = None
@@ -123,24 +125,18 @@ def simulate(options: SimulateOptions) -> None:
     Example: fieldmon simulate vines.zip --feature 3 --visit-every 7 --hours 12
     Example: fieldmon simulate vines.zip --feature 3 --sampler naive --sampler dynamic --days 10
     """
-    import numpy as np
-
     from fieldmon.compute.random_streams import RandomStreams
-    from fieldmon.infestation.prior import prior_chance
     from fieldmon.simulation.start import season_start
 
-    names = options.sampler or COMPARED_SAMPLERS
-    refuse_idle_every([name.value for name in names], options.every)
+    names = options.sampler or COMPARED
+    refuse_idle_every(names, options.every)
     robot, told = options.pest_options.seen(options.worker.robot()), day(options.on)
     request = options.files.request(options.plot, options.feature, options.observations)
     known = prepared(request)
     begins = day_on(known.plot.field, told)
-    on = np.datetime64(begins, "D")
     pest_in_weather = options.pest_options.in_weather(known.plot.field, begins)
-    season, prior = options.season(pest_in_weather), prior_of(pest_in_weather, begins)
-    tell_unusable(known.records, on, prior)
-    plot, records = known.plot, known.records
-    chance = prior_chance(plot.grid, plot.field, records, on, prior, known.risk)
+    season, plot = options.season(pest_in_weather), known.plot
+    chance = believed(known, begins, prior_of(pest_in_weather, begins))
     streams = RandomStreams(options.seed)
     begin = season_start(plot.grid, chance, options.infested, streams)
     rows = []
@@ -157,7 +153,7 @@ def simulate(options: SimulateOptions) -> None:
 def _season(
     plot: Plot,
     robot: Robot,
-    name: SamplerName,
+    name: str,
     begin: Start,
     told: tuple[SimulateOptions, SeasonSettings],
 ) -> list[str]:
@@ -166,20 +162,19 @@ def _season(
     from fieldmon.simulation.season import simulated_days
 
     options, settings = told
-    settings_of = kind_of(name.value).settings_for(options.every)
-    decides, streams = sampler(name.value, **settings_of), RandomStreams(options.seed)
+    decides, streams = sampler_with(name, options.every), RandomStreams(options.seed)
     walk = simulated_days(plot.aisles, robot, decides, begin, settings, streams)
     rows, plant_days, sprayed, inspected, worked_s = [], 0, [], 0, 0.0
     apart = settings.visit_every > 1
     visit = "  visit" if apart else ""
-    typer.echo(f"\n{name}\n day{visit}  detection %  visited %  found  infested left")
+    typer.echo(f"\n{label_of(name)}\n day{visit}  detection %  visited %  found  infested left")
     for each in walk:
         plant_days, inspected = plant_days + each.left, inspected + len(each.work)
         worked_s += each.worked_s
         sprayed += [] if each.sprayed is None else [each.sprayed.zones]
         typer.echo(_line(each, apart=apart))
         rows.append(
-            f"{name},{each.number + 1},{each.detection_pct:.4f},{each.visited_pct:.4f},"
+            f"{label_of(name)},{each.number + 1},{each.detection_pct:.4f},{each.visited_pct:.4f},"
             f"{each.ever_visited_pct:.4f},{each.found},{each.left}"
         )
         if apart:

@@ -22,10 +22,12 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.preparing import estate
+from fieldmon.cli.sampler_names import OWN
 from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, DAYS, SEASONS, SEED, SHARE
+from fieldmon.samplers import COMPARED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,10 +56,7 @@ class StudyOptions:
     observations: Annotated[Path | None, typer.Option(help="Dated pest records.")] = None
     sampler: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Sampler, or one of your own: my_sampler.py:Mine (docs: own_sampler); repeat for "
-            "more. Default: naive, bouncy, dynamic."
-        ),
+        typer.Option(help=f"Sampler, or {OWN}; repeat for more. Default: {', '.join(COMPARED)}."),
     ] = None
     hours: Annotated[
         list[float] | None,

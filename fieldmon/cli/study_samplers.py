@@ -13,6 +13,7 @@ from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import VisitEvery
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
+from fieldmon.cli.sampler_names import OWN
 from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import PAIRED
@@ -61,10 +62,7 @@ class SamplersOptions:
     ] = None
     sampler: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Sampler to add to those compared, or one of your own: my_sampler.py:Mine (docs: "
-            "own_sampler); repeat for more."
-        ),
+        typer.Option(help=f"Sampler to add to those compared, or {OWN}; repeat for more."),
     ] = None
     tune: Annotated[
         bool, typer.Option("--tune", help="Search Dynamic's open choices instead (ten minutes).")

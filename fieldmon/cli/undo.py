@@ -28,7 +28,8 @@ def undo(
     inspection: Annotated[
         int | None,
         typer.Option(
-            help="Number (fid) of one inspection in the season's file.", callback=within(NUMBER)
+            help="Number (fid) of one inspection in the season's file; cannot be redone.",
+            callback=within(NUMBER),
         ),
     ] = None,
     redo: Annotated[
@@ -60,9 +61,10 @@ def undo(
     if redo is not None:
         typer.echo(kept.redo(redo, who))
         return
-    before = {one.number for one in kept.batches() if one.undone}
-    typer.echo(kept.undo(batch, inspection, who))
-    for one in kept.batches():
-        if one.can_be_redone and one.number not in before:
-            again = shlex.join(["fieldmon", "undo", str(season), "--redo", str(one.number)])
-            typer.echo(f"To let it count again: {again}")
+    undone = kept.take_back(batch, inspection, who)
+    typer.echo(undone.said)
+    if undone.batch is None:
+        typer.echo("This cannot be redone. If it was right, record it again.")
+    else:
+        again = shlex.join(["fieldmon", "undo", str(season), "--redo", str(undone.batch)])
+        typer.echo(f"To let it count again: {again}")

@@ -11,9 +11,8 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 from zoneinfo import ZoneInfo
 
-from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import LANGUAGES, worded
-from fieldmon.errors import ObservationError, SettingError
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -22,12 +21,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from fieldmon.compute.ranges import AllowedRange
+
     K = TypeVar("K", np.float64, np.bool_)
 
 _LONGEST = 40
-_FARTHEST_DEG = (360.0, 90.0)
-RATE_L_HA = AllowedRange(0.0, 100_000.0, above=True, below=True, unit=" litres per hectare")
-USUAL_RATE_L_HA = 300.0
 
 
 def must_be(
@@ -352,64 +350,6 @@ def _as_clocks_say(given: object) -> NDArray[Any]:
     made = np.empty(len(local), object)
     made[:] = local
     return made.reshape(array.shape)
-
-
-def lonlat_of(
-    what: str, given: object, instead: str = "", *, nowhere: bool = False
-) -> NDArray[np.float64]:
-    """Return positions ``(m, 2)`` in degrees, longitude first; raise an error for anything else.
-
-    Parameters
-    ----------
-    what
-        Whose they are, in the sentence: ``"Positions of records"``.
-    given
-        What was handed over.
-    instead
-        What else to do.
-    nowhere
-        Whether NaN will do: of what nobody says where it was.
-
-    Examples
-    --------
-    >>> lonlat_of("Plants", [[30.0, 135.0]])
-    Traceback (most recent call last):
-    ...
-    fieldmon.errors.ObservationError: Plants must be longitude and latitude in degrees, but one is 30, 135. Give longitude first.
-    """  # noqa: E501 - a sentence
-    import numpy as np  # noqa: PLC0415 - as above
-
-    points = array_of(np.float64, what, given)
-    if points.size == 0 and points.ndim:
-        return points.reshape(-1, 2)
-    if points.ndim != 2 or points.shape[1] != 2:
-        raise ObservationError(
-            f"{what} must be pairs of longitude and latitude, but they have the shape "
-            f"{points.shape}."
-        )
-    wrong = (np.abs(points) > _FARTHEST_DEG).any(axis=1)
-    if not nowhere:
-        wrong |= np.isnan(points).any(axis=1)
-    if wrong.any():
-        lon, lat = points[wrong][0]
-        raise ObservationError(
-            f"{what} must be longitude and latitude in degrees, but one is {lon:g}, {lat:g}. "
-            f"Give longitude first{instead}."
-        )
-    return points
-
-
-def must_be_rate(rate_l_ha: float) -> None:
-    """Raise `SettingError` unless so many litres can be sprayed on a hectare."""
-    must_be("The rate in the zones must be a number", rate_l_ha, Real, "Give litres a hectare.")
-    if RATE_L_HA.broken(rate_l_ha):
-        raise SettingError(
-            worded(
-                "The rate in the zones must lie between 0 and 100 000 litres a hectare, but it "
-                "is {rate_l_ha:g}.",
-                rate_l_ha=max(min(rate_l_ha, 1e300), -1e300),  # a whole number may be no float
-            )
-        )
 
 
 def must_be_known(what: str, given: Iterable[str], known: Sequence[str]) -> None:

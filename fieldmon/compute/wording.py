@@ -143,17 +143,6 @@ def share_figure(share: float) -> Worded:
     return figure(100 * share, ".2g", " %") if 0 < share < 0.01 else figure(share, ".0%")
 
 
-def litres_figure(litres: float) -> Worded:
-    """Return litres as whole ones; few in as many digits as say anything.
-
-    Examples
-    --------
-    >>> litres_figure(1234.5), litres_figure(1.44), litres_figure(0.0312)
-    ('1,234', '1.4', '0.031')
-    """
-    return figure(litres, ",.0f" if litres >= 10 or litres <= 0 else ".2g")
-
-
 def hours_figure(value_h: float) -> Worded:
     """Return hours to the tenth, whole ones without; what takes time takes a tenth or more.
 

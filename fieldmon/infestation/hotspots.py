@@ -30,6 +30,7 @@ from fieldmon.errors import ObservationError
 from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.plot.grid import PlantGrid
+from fieldmon.plot.plot import Plot
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -207,7 +208,7 @@ def newest_records(
 
 
 def hot_spots(
-    grid: PlantGrid, state: NDArray[np.int8], settings: HotSpotSettings | None = None
+    plot: Plot | PlantGrid, state: NDArray[np.int8], settings: HotSpotSettings | None = None
 ) -> HotSpots:
     """Return where finds cluster, from each plant's `state` ``(n,)``.
 
@@ -215,8 +216,8 @@ def hot_spots(
 
     Parameters
     ----------
-    grid
-        The plants.
+    plot
+        The plot, or its plants alone.
     state
         ``(n,)`` int8: 1 found infested, 0 only found clean, -1 never inspected.
     settings
@@ -235,10 +236,11 @@ def hot_spots(
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> state = np.zeros(plot.n_plants, np.int8)
     >>> state[1000:1006] = 1
-    >>> len(fm.hot_spots(plot.grid, state))
+    >>> len(fm.hot_spots(plot, state))
     1
     """
-    must_be("Plants must be a PlantGrid", grid, PlantGrid, "Give plot.grid.")
+    must_be("A plot must be what read_plot returns", plot, (Plot, PlantGrid), "Give the plot.")
+    grid = plot.grid if isinstance(plot, Plot) else plot
     must_be(
         "Settings must be HotSpotSettings", settings, (HotSpotSettings, NoneType),
         "Leave them out, or give HotSpotSettings(radius_m=10).",

@@ -47,28 +47,34 @@ _GIVEN = {
 
 def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to its kind here
     """Return a column as it is kept, a view: the caller's own array stays as it is."""
+    # of columns that were held to their kind before, as mostly, there is nothing to find out
+    if type(given) is np.ndarray and given.ndim == 1 and given.dtype == _TYPES[name]:
+        return given.view()
     letters, words = _GIVEN[name]
-    wrong = ObservationError(
-        f"The {name} of inspections must be {words}, but {shown(given)} does not hold them."
-    )
-    if name == "date":
-        given = days_of(given)
     try:
-        values = np.atleast_1d(given)
+        held: Any = days_of(given) if name == "date" else given
+        values = np.atleast_1d(held)
         if values.ndim != 1:
             raise ObservationError(
                 f"The {name} of inspections must be {words} in a row, one an inspection, but they "
                 f"have the shape {values.shape}."
             )
         if values.size and values.dtype.kind not in letters:
-            raise wrong
+            raise _wrong(name, given)
         with np.errstate(invalid="ignore"):
             column: NDArray[Any] = values.astype(_TYPES[name], copy=False).view()
     except (ValueError, TypeError, OverflowError) as error:
-        raise wrong from error
+        raise _wrong(name, given) from error
     if words.startswith("whole") and not np.array_equal(column, values):
-        raise wrong
+        raise _wrong(name, given)
     return column
+
+
+def _wrong(name: str, given: object) -> ObservationError:
+    return ObservationError(
+        f"The {name} of inspections must be {_GIVEN[name][1]}, "
+        f"but {shown(given)} does not hold them."
+    )
 
 
 def _no_date(given: object) -> ObservationError:

@@ -9,18 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import (
-    array_of,
-    days_of,
-    entries_of,
-    lonlat_of,
-    must_be,
-    must_be_known,
-    shown,
-)
+from fieldmon.compute.arguments import array_of, days_of, entries_of, must_be, must_be_known, shown
 from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import ImportDoubt, ObservationError
+from fieldmon.plot.positions import lonlat_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -1,1 +1,1 @@
-"""The doors: files in, files out. Only here (and in project.py) files are opened."""
+"""The doors: files of others in, files for others out."""

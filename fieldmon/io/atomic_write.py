@@ -11,6 +11,8 @@ from pathlib import Path
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 
+#: SQLite's codes where another connection holds a database
+HELD = frozenset({sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED})
 # a database that another program holds for longer is taken for a season: nothing is risked
 _GLANCE_S = 0.5
 
@@ -87,6 +89,11 @@ def why_not_written(error: Exception) -> str:
     return said or worded("no room, or no leave to write")
 
 
+def sqlite_code(error: sqlite3.Error) -> int:
+    """Return SQLite's primary code of an error; 0: it comes from Python."""
+    return getattr(error, "sqlite_errorcode", 0) & 0xFF
+
+
 def _may_be_season(file: Path) -> bool:
     """Return whether a file holds what every season has, be it damaged or held by a program."""
     try:
@@ -96,7 +103,7 @@ def _may_be_season(file: Path) -> bool:
             known = db.execute("SELECT 1 FROM sqlite_master WHERE name = 'fieldmon'")
             return known.fetchone() is not None
     except sqlite3.Error as error:
-        if "locked" in str(error):
+        if sqlite_code(error) in HELD:
             return True
     with suppress(OSError), file.open("rb") as damaged:
         head = damaged.read(1 << 16)

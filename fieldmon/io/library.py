@@ -8,6 +8,7 @@ from __future__ import annotations
 import warnings
 from contextlib import contextmanager
 from dataclasses import replace
+from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -262,13 +263,13 @@ def read_inspections(source: Source, plot: Plot, **options: object) -> Inspectio
     return read.value
 
 
-def read_pest(said: str) -> Pest:
+def read_pest(said: str | PathLike[str]) -> Pest:
     """Return a pest: the name of one that comes with fieldmon, or the path of a TOML file.
 
     Parameters
     ----------
     said
-        ``"spider-mite"``, ``"western-flower-thrips"``, ... or ``"mite.toml"``.
+        ``"spider-mite"``, ``"western-flower-thrips"``, ... or ``"mite.toml"``, a path too.
 
     Raises
     ------
@@ -282,8 +283,10 @@ def read_pest(said: str) -> Pest:
     >>> [stage.name for stage in mite.stages]
     ['egg', 'larva', 'protonymph', 'deutonymph']
     """
-    must_be("A pest must be its name or its file's path", said, str, 'Give "spider-mite".')
-    return pest_of(said)
+    must_be(
+        "A pest must be its name or its file's path", said, (str, PathLike), 'Give "spider-mite".'
+    )
+    return pest_of(fspath(said))
 
 
 def read_weather(source: Source, plot: Plot, **options: object) -> Weather:

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import csv
+from functools import cache
 from importlib.resources import files
+
+#: where the pests are that come with fieldmon
+PESTS = "fieldmon/pests"
 
 
 def packaged_text(path: str) -> str:
@@ -38,3 +42,10 @@ def packaged_names(folder: str, ending: str) -> list[str]:
     """
     inside = files(folder.replace("/", ".")).iterdir()
     return sorted(one.name for one in inside if one.name.endswith(ending))
+
+
+@cache
+def pest_names() -> tuple[str, ...]:
+    """Return the names of the pests that come with fieldmon, the thesis's first."""
+    names = [name.removesuffix(".toml") for name in packaged_names(PESTS, ".toml")]
+    return tuple(sorted(names, key=lambda name: (name != "thesis", name != "spider-mite", name)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from datetime import date
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
@@ -54,8 +54,13 @@ class Batch:
 
     @property
     def can_be_redone(self) -> bool:
-        """Whether it can count again: it was undone, and is none of corrections."""
-        return self.undone and self.kind != "corrections"
+        """Whether it can count again: it was undone, and that was not for good."""
+        return self.undone and not self.is_undone_for_good
+
+    @property
+    def is_undone_for_good(self) -> bool:
+        """Whether it cannot count again once it is undone, as corrections cannot."""
+        return self.kind == "corrections"
 
     def by(self, said: BatchContents | None) -> str:
         """Return who inspected, as its inspections say, or else who recorded it."""
@@ -96,6 +101,13 @@ class BatchContents:
     result: str
     count: float | None = None
     who: str = ""
+
+
+class Undone(NamedTuple):
+    """What an undo did: a sentence that says it, and the batch to redo; None: it is for good."""
+
+    said: str
+    batch: int | None
 
 
 @dataclass(frozen=True)
@@ -261,6 +273,12 @@ def _waiting(db: sqlite3.Connection, number: int | None) -> Batch:
             )
         )
     return waiting[0]
+
+
+def to_redo(db: sqlite3.Connection, changed: set[int]) -> int | None:
+    """Return which of the batches that an undo changed can be redone; None: none of them."""
+    numbers = (one.number for one in all_of(db) if one.number in changed and one.can_be_redone)
+    return next(numbers, None)
 
 
 def redo(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.io.atomic_write import HELD, sqlite_code
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,8 +37,8 @@ def sentences(path: Path, patience_s: float, into: Path | None = None) -> Iterat
             )
         ) from error
     except sqlite3.Error as error:
-        text = str(error)
-        if "not a database" in text:
+        text, code = str(error), sqlite_code(error)
+        if code == sqlite3.SQLITE_NOTADB:
             raise FileProblem(
                 worded(
                     "{path} must be the file of a season (a GeoPackage), but "
@@ -46,7 +47,7 @@ def sentences(path: Path, patience_s: float, into: Path | None = None) -> Iterat
                     path=path,
                 )
             ) from error
-        if "interrupted" in text:
+        if code == sqlite3.SQLITE_INTERRUPT:
             raise FileProblem(
                 worded(
                     "Work on a season must come to an end, but a view or a trigger in {path} "
@@ -54,7 +55,7 @@ def sentences(path: Path, patience_s: float, into: Path | None = None) -> Iterat
                     path=path,
                 )
             ) from error
-        if "locked" in text:
+        if code in HELD:
             raise FileHeld(
                 worded(
                     "{path} must be free to be written, but another program "
@@ -65,7 +66,7 @@ def sentences(path: Path, patience_s: float, into: Path | None = None) -> Iterat
                     patience_s=patience_s,
                 )
             ) from error
-        if "full" in text:
+        if code == sqlite3.SQLITE_FULL:
             raise FileProblem(
                 worded(
                     "There must be room on the disk for {path}, but it is "
@@ -73,7 +74,7 @@ def sentences(path: Path, patience_s: float, into: Path | None = None) -> Iterat
                     path=into or path,
                 )
             ) from error
-        if "readonly" in text or "unable to open" in text:
+        if code in {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN}:
             raise FileProblem(
                 worded(
                     "{path} must be a file that can be written, but it cannot "

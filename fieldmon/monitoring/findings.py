@@ -52,6 +52,7 @@ SOURCE = "phone"
 MOST_A_DAY = 20_000
 #: a clock as wrong as this was set wrong; less is the way through the network
 CLOCK_IS_WRONG = timedelta(minutes=2)
+_WEEK = timedelta(days=7)
 
 
 @dataclass(frozen=True)
@@ -306,15 +307,29 @@ def taken_back(season: Season, who: str, on: date) -> tuple[str, ...]:
 
     What the same person took back, or counts in another recording, is not among it.
     """
+    return _taken_back(season, who, on, on).get(str(on), ())
+
+
+def taken_back_before(season: Season, who: str, on: date) -> dict[str, tuple[str, ...]]:
+    """Return the same of the week before a day, by day (ISO)."""
+    return _taken_back(season, who, on - _WEEK, on - timedelta(days=1))
+
+
+def _taken_back(season: Season, who: str, first: date, last: date) -> dict[str, tuple[str, ...]]:
     with season.store.reading() as db:
         rows = db.execute(
-            "SELECT t.id, t.scout FROM tellings t JOIN inspections i ON i.fid = t.inspection "
-            "WHERE i.undone = ? AND i.date = ? AND NOT EXISTS (SELECT 1 FROM inspections "
-            "WHERE digest = i.digest AND undone = 0) AND NOT EXISTS (SELECT 1 FROM tellings "
-            "WHERE undoes = t.id) ORDER BY t.fid",
-            (replaced.TAKEN_BACK, str(on)),
+            "SELECT t.id, t.scout, i.date FROM tellings t "
+            "JOIN inspections i ON i.fid = t.inspection "
+            "WHERE i.undone = ? AND i.date BETWEEN ? AND ? AND NOT EXISTS (SELECT 1 FROM "
+            "inspections WHERE digest = i.digest AND undone = 0) AND NOT EXISTS (SELECT 1 FROM "
+            "tellings WHERE undoes = t.id) ORDER BY i.date, t.fid",
+            (replaced.TAKEN_BACK, str(first), str(last)),
         ).fetchall()
-    return tuple(one for one, name in rows if person_key(name) == person_key(who))
+    days: dict[str, tuple[str, ...]] = {}
+    for one, name, day in rows:
+        if person_key(name) == person_key(who):
+            days[day] = (*days.get(day, ()), one)
+    return days
 
 
 def _known(db: sqlite3.Connection, ids: list[str]) -> dict[str, tuple[str, str]]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sqlite3
 import zlib
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -80,7 +81,7 @@ class GeoPackageTable:
     about: str
     key: str = "fid"
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """Return the names of the columns but the key, geometry first where there is one."""
         own = tuple(column.split()[0] for column in self.columns)

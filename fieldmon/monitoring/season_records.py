@@ -28,7 +28,7 @@ from fieldmon.monitoring import (
     tables,
     treatments,
 )
-from fieldmon.monitoring.batches import Recorded
+from fieldmon.monitoring.batches import Recorded, Undone
 from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
 from fieldmon.monitoring.people import as_written, names_written, written_in
@@ -256,9 +256,26 @@ class SeasonRecords(OpenSeason):
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
         """Take a `batch` back (None: the last one), or one `inspection`; nothing is deleted.
 
-        Both are numbers; `who` takes it back, for the log. `redo` lets a batch count again.
-        Return a sentence that says what was undone. Raise `SettingError` if there is nothing, or
-        both are given.
+        Both are numbers; `who` takes it back, for the log. `redo` lets a batch count again, but
+        none of corrections, and no inspection alone: that is recorded anew. Return a sentence that
+        says what was undone. Raise `SettingError` if there is nothing, or both are given.
+        """
+        return self.take_back(batch, inspection, who).said
+
+    def take_back(
+        self, batch: int | None = None, inspection: int | None = None, who: str = ""
+    ) -> Undone:
+        """Do what `undo` does; return also which batch `redo` then lets count again.
+
+        Parameters
+        ----------
+        batch, inspection, who
+            As `undo` has them.
+
+        Raises
+        ------
+        SettingError
+            As `undo` has it.
         """
         if batch is not None and inspection is not None:
             raise SettingError(
@@ -279,7 +296,7 @@ class SeasonRecords(OpenSeason):
                 changed, said = batches.undo_one(db, inspection, signs)
                 what = {}
             self._note_undone(db, who, changed, said, **what)
-        return said
+            return Undone(said, batches.to_redo(db, changed))
 
     def redo(self, batch: int, who: str = "") -> str:
         """Let a `batch` that was undone count again; `who` does so, for the log.

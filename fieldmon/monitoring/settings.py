@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from copy import copy
 from dataclasses import asdict, dataclass, field, fields, replace
 from datetime import date, time
 from functools import lru_cache
@@ -268,6 +269,16 @@ def as_json(settings: MonitoringSettings) -> dict[str, str]:
 
 def from_json(parts: dict[str, str]) -> MonitoringSettings:
     """Return the settings that `as_json` wrote; raise `FileProblem` where it cannot be read."""
+    settings = copy(_kept_settings(tuple(parts.items())))
+    # the one thing in them that a caller could change
+    object.__setattr__(settings, "sampler_settings", dict(settings.sampler_settings))
+    return settings
+
+
+@lru_cache(maxsize=16)
+def _kept_settings(written: tuple[tuple[str, str], ...]) -> MonitoringSettings:
+    """Return the settings of a season file, which are read at every look into the file."""
+    parts = dict(written)
     try:
         plain = {name: json.loads(text) for name, text in parts.items() if name != "weather"}
         season, chooses = plain["season"], plain["sampler"]

@@ -8,6 +8,7 @@ not name it: what they took back is a change like any other, and taking that bac
 from __future__ import annotations
 
 import json
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.wording import worded
@@ -123,7 +124,12 @@ def change(db: sqlite3.Connection, settings: MonitoringSettings) -> None:
 
 def as_written_now(parts: Parts) -> Parts:
     """Return settings as this version writes them: an earlier one took some of it for granted."""
-    return {**parts, **as_json(from_json(parts))} if parts else {}
+    return {**parts, **_written_now(tuple(parts.items()))} if parts else {}
+
+
+@lru_cache(maxsize=16)  # a merge asks it of each change of both files
+def _written_now(parts: tuple[tuple[str, str], ...]) -> Parts:
+    return as_json(from_json(dict(parts)))
 
 
 # of settings that their own names do not tell

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.arguments import must_be, must_be_name_of_file
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.io.atomic_write import require_folder
+from fieldmon.io.atomic_write import HELD, require_folder, sqlite_code
 from fieldmon.monitoring import journals, outside_changes, season_log
 from fieldmon.monitoring.file_problems import damaged, no_file, sentences
 from fieldmon.monitoring.geopackage import APPLICATION_ID
@@ -69,7 +69,7 @@ def is_season(path: str | Path) -> bool:
             mark = db.execute("PRAGMA application_id").fetchone()[0]
             return mark == APPLICATION_ID and _version(db) is not None
     except sqlite3.Error as error:
-        if "locked" in str(error):  # whoever opens it waits for longer and says so
+        if sqlite_code(error) in HELD:  # whoever opens it waits for longer and says so
             return True
     except OSError:  # a name that is too long
         return False
@@ -165,7 +165,9 @@ class Store:
         with _sentences(self.path, target), closing(connect(self.path)) as db:
             _into_one_file(db)
             if db.execute("PRAGMA journal_mode").fetchone()[0] == "wal":
-                raise sqlite3.OperationalError("database is locked")
+                held = sqlite3.OperationalError("database is locked")
+                held.sqlite_errorcode = sqlite3.SQLITE_BUSY
+                raise held
             db.execute("BEGIN EXCLUSIVE")
             _put(self.path, target)
             self.path.unlink(missing_ok=True)
@@ -332,7 +334,7 @@ def _is_free(db: sqlite3.Connection, *, to_write: bool) -> bool:
         db.execute("BEGIN IMMEDIATE" if to_write else "BEGIN")
         db.execute("SELECT 1 FROM sqlite_master LIMIT 1").fetchone()
     except sqlite3.DatabaseError as error:
-        return "locked" not in str(error)
+        return sqlite_code(error) not in HELD
     finally:
         if db.in_transaction:
             db.execute("ROLLBACK")

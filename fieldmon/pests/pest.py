@@ -48,6 +48,13 @@ class Citation:
         Who published them; or that they are our choice, where nothing was found.
     doubt
         Why they should be doubted; empty: no more than usual.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> mite = fm.read_pest("spider-mite")
+    >>> isinstance(mite.citations[0], fm.Citation)
+    True
     """
 
     part: str
@@ -71,6 +78,13 @@ class Stage:
         Upper threshold; None: none was published.
     visible, mobile
         Whether an inspection can see it, and whether it goes to other plants.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> egg = fm.Stage("egg", threshold_c=12.0, degree_days=60.0, visible=False, mobile=False)
+    >>> egg.upper_c is None
+    True
     """
 
     name: str
@@ -105,6 +119,12 @@ class Increase:
     per_day
         Intrinsic rate of increase r at each: numbers grow e^r times in a day. Outside the
         temperatures it is as at the nearest.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> float(fm.Increase(at_c=(10.0, 30.0), per_day=(0.0, 0.3)).at(20.0))
+    0.15
     """
 
     at_c: tuple[float, ...]
@@ -134,7 +154,13 @@ class Increase:
             _must("increase", "per_day", rate, "0 to 2", 0 <= rate <= 2)
 
     def at(self, temperature_c: float | Floats) -> Floats:
-        """Return the rate per day at temperatures, of their shape."""
+        """Return the rate per day at temperatures, of their shape.
+
+        Parameters
+        ----------
+        temperature_c
+            One, or an array of any shape, degrees Celsius.
+        """
         return np.asarray(np.interp(temperature_c, self.at_c, self.per_day))
 
 
@@ -169,6 +195,13 @@ class Movement:
         Whether it is simulated by the hour rather than by the night.
     least_rain_mm
         It moves only in hours or days with so much rain or more; 0: whatever the weather.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> flies = fm.Movement("exponential", per_day=0.1, reach_m=8.0, wind="with")
+    >>> fm.Pest("whitefly of ours", movement=flies).movement.rate_per_day
+    0.1
     """
 
     kernel: KernelName = "adjacent"
@@ -247,6 +280,12 @@ class Entry:
         Of every plant.
     depth_m
         How deep edges and paths let it in.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.Pest("from the road", entry=fm.Entry(paths_per_day=0.01)).entry.depth_m
+    10.0
     """
 
     edge_per_day: float = 0.0

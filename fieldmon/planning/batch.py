@@ -14,7 +14,8 @@ from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.robot import Robot, rover, scout
-from fieldmon.samplers import USUAL, kind_of, sampler
+from fieldmon.samplers import USUAL, sampler_with
+from fieldmon.samplers.own import is_own, own_text
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,7 +36,7 @@ class Orders:
     day
         The day of the work.
     sampler
-        Name of the sampler.
+        Name of the sampler, or ``my_sampler.py:Mine``.
     every
         Its setting of that name, where it has one; None: its own.
     on_foot
@@ -117,6 +118,8 @@ class Task:
         for name in later:
             if ordered[name] == usual[name]:
                 del ordered[name]
+        if is_own(self.orders.sampler):  # another text is another sampler
+            ordered["own"] = own_text(self.orders.sampler)
         parts = (*self.plot.content, self.who, self.stated, *ordered.values())
         return digest(*parts, *vars(observations).values(), length=16)
 
@@ -125,7 +128,7 @@ def plan_task(task: Task, plot: Plot, observations: Observations) -> DayPlan:
     """Plan the day on a task's plot; raise a `FieldmonError` where it cannot be done."""
     orders = task.orders
     robot = _robot(task)
-    decides = sampler(orders.sampler, **kind_of(orders.sampler).settings_for(orders.every))
+    decides = sampler_with(orders.sampler, orders.every)
     plans = PlanSettings(robot, decides, orders.prior)
     today = first_day(plot, observations, orders.day, plans)
     if not len(today.route):

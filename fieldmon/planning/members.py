@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import lonlat_of
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.plot.positions import lonlat_of
 from fieldmon.plot.robot import Robot
 
 if TYPE_CHECKING:

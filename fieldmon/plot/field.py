@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely import MultiLineString, MultiPolygon
 
-from fieldmon.compute.arguments import lonlat_of
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.block import let_have_parts
+from fieldmon.plot.positions import lonlat_of
 from fieldmon.plot.projection import Frame, goes_round, on_both_sides
 
 if TYPE_CHECKING:

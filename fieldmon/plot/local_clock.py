@@ -6,7 +6,7 @@ import json
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, time, timedelta
-from functools import cache
+from functools import cache, lru_cache
 from itertools import product
 from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
@@ -202,6 +202,7 @@ def zones_within(bounds: tuple[float, float, float, float]) -> tuple[str, ...]:
 
 
 @cache
+@lru_cache(maxsize=16)  # a zone's outline may have 100 000 corners
 def zone_outline(zone: str, rough_deg: float) -> MultiPolygon:
     """Return where a time zone counts, lon/lat; empty where the zone is unknown.
 

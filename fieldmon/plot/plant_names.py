@@ -160,74 +160,88 @@ def _tells_apart(grid: PlantGrid, plants: Int) -> bool:
 
 def said_of_numbers(grid: PlantGrid) -> list[str]:
     """Return which numbers rows and plants have whose names are no numbers; of many the first."""
-    said: list[str] = []
-    if grid.block_named is not None:
-        some = [
-            worded("{name} is block {number}", name=first_few(name.splitlines(), 3), number=k)
-            for k, name in enumerate(grid.block_named.tolist(), start=1)
-        ]
-        said.append(worded("Blocks count from 1: {some}.", some=first_few(some, _NAMED)))
+    each = (_of_blocks(grid), _of_rows(grid), _of_rows_beyond(grid), _of_plants(grid))
+    return [said for said in each if said]
+
+
+def _of_blocks(grid: PlantGrid) -> str:
+    if grid.block_named is None:
+        return ""
+    some = [
+        worded("{name} is block {number}", name=first_few(name.splitlines(), 3), number=k)
+        for k, name in enumerate(grid.block_named.tolist(), start=1)
+    ]
+    return worded("Blocks count from 1: {some}.", some=first_few(some, _NAMED))
+
+
+def _of_rows(grid: PlantGrid) -> str:
     if grid.line_called is not None and grid.counts_on:
-        first = np.unique(grid.row_line, return_index=True)[1]
-        block = block_label(grid, grid.row_start[first])
-        both = zip(*grid.line_called.T.tolist(), block.tolist(), strict=True)
-        some = [
-            worded("row {row} of block {block} is row {number}", row=row, block=k, number=n)
-            for n, row, k in both
-            if n != row
-        ]
-        said.append(
-            worded(
-                "Rows of several blocks have the same names and are counted on: {some}.",
-                some=first_few(some, _NAMED),
-            )
+        return _of_rows_counted_on(grid, grid.line_called)
+    if grid.line_named is None:
+        return ""
+    own = [
+        (name, n)
+        for name, n in zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
+        if n not in grid.rows_beyond
+    ]
+    some = [
+        worded("{name} is row {number}", name=first_few(name.splitlines(), 3), number=n)
+        for name, n in own
+        if name
+    ]
+    if grid.line_called is None:
+        return worded(
+            "Rows count from 1, since no numbers in their names tell them apart: {some}.",
+            some=first_few(some, _NAMED),
         )
-    elif grid.line_named is not None:
-        own = list(zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True))
-        some = [
-            worded("{name} is row {number}", name=first_few(name.splitlines(), 3), number=n)
-            for name, n in own
-            if name and n not in grid.rows_beyond
-        ]
-        if grid.line_called is None:
-            said.append(
-                worded(
-                    "Rows count from 1, since no numbers in their names tell them apart: {some}.",
-                    some=first_few(some, _NAMED),
-                )
-            )
-        elif any(f"{n}" != name for name, n in own if n not in grid.rows_beyond):
-            said.append(
-                worded("Rows have the numbers in their names: {some}.", some=first_few(some, 2))
-            )
-    if grid.rows_beyond and grid.line_named is not None:
-        some = [
-            worded("{name} is row {number}", name=first_few(name.splitlines(), 3), number=n)
-            if name
-            else worded("a row without a name is row {number}", number=n)
-            for name, n in zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
-            if n in grid.rows_beyond
-        ]
-        said.append(
-            worded(
-                "Rows whose names have no number of their own get one beyond all others: {some}.",
-                some=first_few(some, _NAMED),
-            )
+    if any(f"{n}" != name for name, n in own):
+        return worded("Rows have the numbers in their names: {some}.", some=first_few(some, 2))
+    return ""
+
+
+def _of_rows_counted_on(grid: PlantGrid, called: Int) -> str:
+    first = np.unique(grid.row_line, return_index=True)[1]
+    block = block_label(grid, grid.row_start[first])
+    some = [
+        worded("row {row} of block {block} is row {number}", row=row, block=k, number=n)
+        for n, row, k in zip(*called.T.tolist(), block.tolist(), strict=True)
+        if n != row
+    ]
+    return worded(
+        "Rows of several blocks have the same names and are counted on: {some}.",
+        some=first_few(some, _NAMED),
+    )
+
+
+def _of_rows_beyond(grid: PlantGrid) -> str:
+    if not grid.rows_beyond or grid.line_named is None:
+        return ""
+    some = [
+        worded("{name} is row {number}", name=first_few(name.splitlines(), 3), number=n)
+        if name
+        else worded("a row without a name is row {number}", number=n)
+        for name, n in zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
+        if n in grid.rows_beyond
+    ]
+    return worded(
+        "Rows whose names have no number of their own get one beyond all others: {some}.",
+        some=first_few(some, _NAMED),
+    )
+
+
+def _of_plants(grid: PlantGrid) -> str:
+    if grid.plant_named is None:
+        return ""
+    label = row_label(grid)
+    some = [
+        worded("{name} is plant {number} of row {row}", name=name, number=n, row=row)
+        for name, n, row in zip(
+            grid.plant_named[:2].tolist(), label.number[:2], label.line[:2], strict=True
         )
-    if grid.plant_named is not None:
-        label = row_label(grid)
-        some = [
-            worded("{name} is plant {number} of row {row}", name=name, number=n, row=row)
-            for name, n, row in zip(
-                grid.plant_named[:2].tolist(), label.number[:2], label.line[:2], strict=True
-            )
-        ]
-        said.append(
-            worded("Plants count from 1 in each row: {some}.", some=", ".join(some))
-            if grid.plant_called is None
-            else worded("Plants have the numbers in their names: {some}.", some=", ".join(some))
-        )
-    return said
+    ]
+    if grid.plant_called is None:
+        return worded("Plants count from 1 in each row: {some}.", some=", ".join(some))
+    return worded("Plants have the numbers in their names: {some}.", some=", ".join(some))
 
 
 def doubts_of_numbers(grid: PlantGrid) -> list[str]:

@@ -38,11 +38,14 @@ class PlantsOutside:
         ``(n,)`` how far each plant is from the plot's area; 0 on it.
     left_out
         ``(n,)`` whether it is left out.
+    all_stay
+        Whether none is left out however far it is, as that was said or none is near the plot.
     """
 
     plot: str
     away_m: NDArray[np.float64]
     left_out: NDArray[np.bool_]
+    all_stay: bool
 
     def __repr__(self) -> str:
         return f"<PlantsOutside {self.plot}: {int(self.left_out.sum())} left out>"
@@ -56,10 +59,8 @@ class PlantsOutside:
         """
         away_m = distance_m(lonlat, field)
         outside = away_m > (0.0 if far == "drop" else _GPS_M)
-        if far == "keep" or outside.all():
-            outside = np.zeros_like(outside)
-            away_m = np.zeros_like(away_m)
-        return cls(field.name, away_m, outside)
+        all_stay = far == "keep" or bool(outside.all())
+        return cls(field.name, away_m, outside & (not all_stay), all_stay)
 
     def of_left_out(self) -> str:
         """Return what to say of plants that are left out; empty: there are none."""
@@ -77,7 +78,7 @@ class PlantsOutside:
     def of_beside(self) -> str:
         """Return what to say of plants just outside that stay; empty: there are none."""
         beside = (self.away_m > 0.0) & ~self.left_out
-        if not beside.any():
+        if self.all_stay or not beside.any():
             return ""
         return worded(
             "{n} {n:plant stands|plants stand} outside {plot}, up to {away} away, and {n:is|are} "

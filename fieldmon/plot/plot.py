@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import shapely
 from shapely import MultiPolygon
 
-from fieldmon.compute.arguments import lonlat_of, must_be, must_be_shaped
+from fieldmon.compute.arguments import must_be, must_be_shaped
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ImportDoubt, PlotError
@@ -22,6 +22,7 @@ from fieldmon.plot.missing_plants import without
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, numbered
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plants_outside import PlantsOutside
+from fieldmon.plot.positions import lonlat_of
 from fieldmon.plot.row_detection import frame_around, rows_from_plants
 from fieldmon.plot.row_lines import Ground
 from fieldmon.plot.row_report import RowReport, row_report
@@ -414,5 +415,6 @@ def must_be_plot(given: object) -> None:
     """Raise `SettingError` unless this is a `Plot`: plants alone have no ways between them."""
     must_be(
         "A plot must be what read_plot or Plot.from_geopandas returns", given, Plot,
-        "Give the plot itself; its plants are plot.grid.",
+        "Give the plot itself; its plants are plot.grid. Of outlines (read_plots) read one: "
+        "read_plot(source, feature=NAME).",
     )  # fmt: skip

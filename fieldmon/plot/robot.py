@@ -180,9 +180,7 @@ class Robot:
     def __post_init__(self) -> None:
         must_hold_kinds(self, "The robot's")
         if broken := broken_setting(self, _ALLOWED):
-            raise SettingError(
-                worded("The robot's {name} must be {rule}, but it is {value}.", **broken)
-            )
+            raise SettingError(worded("The robot's {name} must be {rule}, not {value}.", **broken))
         if self.length_m is not None and self.width_m is None:
             raise SettingError(
                 worded("A robot whose length is known must have a width too. Give both.")

@@ -152,7 +152,7 @@ class Aisles:
         >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
         >>> tractor = fm.Robot(width_m=1.1, length_m=1.6, turning_radius_m=1.5)
         >>> plot.aisles.worked_by(tractor).row_change_s
-        14.2
+        9.9
         """
         return robot_on(self.grid, robot)
 

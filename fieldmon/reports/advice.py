@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import estimate, figure, litres_figure, share_figure, worded
+from fieldmon.compute.wording import estimate, figure, share_figure, worded
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.io.spray_rate import litres_figure
 from fieldmon.monitoring.plant_states import shown_states
 from fieldmon.plot.grid import row_ends, row_label
 from fieldmon.reports import words

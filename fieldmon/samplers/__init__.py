@@ -14,6 +14,7 @@ from fieldmon.samplers.registry import (
     sampler,
     sampler_maker,
     sampler_or_name,
+    sampler_with,
 )
 
 __all__ = [
@@ -27,4 +28,5 @@ __all__ = [
     "sampler",
     "sampler_maker",
     "sampler_or_name",
+    "sampler_with",
 ]

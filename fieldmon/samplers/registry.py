@@ -124,11 +124,20 @@ def check_every(every: int) -> None:
         raise SettingError(f"'every' must be {rule}, but it is {shown(every)}.")
 
 
-def kind_of(name: str) -> SamplerKind:
-    """Return what is known of a sampler; raise `SettingError` if there is none of that name."""
-    if name not in SAMPLERS:
-        raise SettingError(f"A sampler must be one of {', '.join(SAMPLERS)}, but it is {name!r}.")
-    return SAMPLERS[name]
+def kind_of(name: str, what: str = "A sampler") -> SamplerKind:
+    """Return what is known of a sampler; raise `SettingError` if there is none of that name.
+
+    `what` was given, in the sentence.
+    """
+    if name in SAMPLERS:
+        return SAMPLERS[name]
+    sentence = f"{what} must be one of {', '.join(SAMPLERS)}, but it is {name!r}."
+    if is_own(name):
+        sentence += (
+            " One of your own works in fieldmon plan and simulate, on a plot, and in fieldmon "
+            "study run and samplers."
+        )
+    raise SettingError(sentence)
 
 
 def sampler(name: str, **settings: Any) -> Sampler:  # noqa: ANN401 - each sampler has its own
@@ -141,7 +150,8 @@ def sampler(name: str, **settings: Any) -> Sampler:  # noqa: ANN401 - each sampl
     """
     kind = kind_of(name)
     made = kind.load()
-    must_be_known(f"Settings of {name}", settings, list(signature(made).parameters))
+    if settings:  # to ask a class what it takes is most of what making one costs
+        must_be_known(f"Settings of {name}", settings, list(signature(made).parameters))
     return made(**{**kind.settings, **settings})
 
 
@@ -184,6 +194,13 @@ def sampler_maker(name: str) -> Callable[[], Sampler]:
         return partial(sampler, name)
     kind = own_class(name)
     return lambda: sampler_or_name(cast("Sampler", asked(kind.__name__, kind)))
+
+
+def sampler_with(name: str, every: int | None) -> Sampler:
+    """Return the sampler of a name, or one of a caller's own, with a given N if it takes one."""
+    if every is None or is_own(name):
+        return sampler_or_name(name)
+    return sampler(name, **kind_of(name).settings_for(every))
 
 
 def of_equal_times() -> dict[str, SamplerKind]:

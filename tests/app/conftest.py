@@ -9,6 +9,7 @@ import tempfile
 import time
 import tomllib
 import urllib.request
+from collections.abc import Mapping
 from datetime import UTC, date, datetime, timedelta
 from functools import cache
 from itertools import count
@@ -20,6 +21,7 @@ import streamlit as st
 from streamlit import config
 from streamlit.components.v2 import manifest_scanner
 from streamlit.runtime.scriptrunner.script_cache import ScriptCache
+from streamlit.runtime.state.safe_session_state import SafeSessionState
 from streamlit.testing.v1 import local_script_runner
 
 from app.words import language
@@ -62,6 +64,36 @@ def harness():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(local_script_runner, "ScriptCache", lambda: scripts)
         patch.setattr(local_script_runner, "require_widgets_deltas", wait)
+        yield
+
+
+class AsAsked(Mapping):
+    """A session's state of which only what is asked for is looked up.
+
+    Most boxes of Streamlit ask for one value, for which it puts together those of all others.
+    """
+
+    def __init__(self, safe, whole):
+        self.safe, self.whole = safe, whole
+
+    def __getitem__(self, key):
+        with self.safe._lock:
+            return self.safe._state[key]
+
+    def __iter__(self):
+        return iter(self.whole(self.safe))
+
+    def __len__(self):
+        return len(self.whole(self.safe))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def looks():
+    """Let a box look its own value up in the session's state, without all others."""
+    whole = SafeSessionState.filtered_state.fget
+    with pytest.MonkeyPatch.context() as patch:
+        of = property(lambda safe: AsAsked(safe, whole))
+        patch.setattr(SafeSessionState, "filtered_state", of)
         yield
 
 

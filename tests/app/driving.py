@@ -34,20 +34,39 @@ def until(is_so, within_s=180.0, every_s=0.005):
         time.sleep(every_s)
 
 
+class Session(AppTest):
+    """A session that begins once it is looked at: until then `go` can say where."""
+
+    has_begun = True
+
+    def __init__(self, address):
+        super().__init__(ROOT / "app" / "streamlit_app.py", default_timeout=120)
+        self.query_params = address
+        self.has_begun = False
+
+    def __getattribute__(self, name):
+        if name in {"_tree", "session_state", "query_params"} and not self.has_begun:
+            self.has_begun = True
+            self.run()
+        return super().__getattribute__(name)
+
+
 def opened(season=None, **address):
     """Return a new session of the app, with a season open if one is named."""
-    app = AppTest.from_file(str(ROOT / "app" / "streamlit_app.py"), default_timeout=120)
-    for word, value in ({} if season is None else {"season": season}).items() | address.items():
-        app.query_params[word] = value
-    return app.run()
+    return Session(({} if season is None else {"season": season}) | address)
 
 
 def go(app, page):
-    """Turn to a part of a room by its address: it says nothing else, the next run is its own."""
+    """Turn to a part of a room by its address: it says nothing else, the next run is its own.
+
+    A session that nobody has looked at begins there.
+    """
     room = rooms.room_of(page)
     app._page_hash = calc_hash("" if room == "today" else room)
-    app.session_state[rooms.key(room)] = page
-    app.query_params.clear()
+    if app.has_begun:
+        app.session_state[rooms.key(room)] = page
+        app.query_params.clear()
+    app.has_begun = True
     app.query_params[rooms.KEY] = page
     return app.run()
 

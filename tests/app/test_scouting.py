@@ -576,6 +576,7 @@ def test_texts_that_do_harm_are_text_on_the_page_too(season, line, phone):
     page.goto(invitation(line.address, "Harm", key, "2026-11-17", "en"))
     page.locator("#clean").wait_for(timeout=120_000)
     _holds_texts_only(page)
+    assert "Tue 17 Nov" in page.locator("#other_day").inner_text()
     page.locator("#open_menu").click()
     _holds_texts_only(page)
     page.keyboard.press("Escape")

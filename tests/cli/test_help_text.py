@@ -2,10 +2,12 @@
 
 import re
 import shlex
+from functools import cache
 
 import pytest
 import typer
 
+from fieldmon.cli import help_text
 from fieldmon.cli.help_text import Commands, flowing
 from fieldmon.cli.main import app
 
@@ -25,8 +27,13 @@ def test_what_is_said_of_a_command_goes_before_its_docstring():
     assert typer.main.get_command(commands).help == "Shown\nas it is."
 
 
+@cache
+def whole():
+    return typer.main.get_command(app)
+
+
 def every_help():
-    top = typer.main.get_command(app)
+    top = whole()
     for name, command in top.commands.items():
         yield name, command.help
         yield from (
@@ -46,7 +53,26 @@ def test_an_example_in_a_help_is_a_whole_command_and_nothing_else(name, said):
     for example in re.findall(r"^Example: (.*)$", said, re.MULTILINE):
         program, *words = shlex.split(example)
         assert program == "fieldmon", name
-        command = typer.main.get_command(app)
+        command = whole()
         while hasattr(command, "commands"):
             command = command.commands[words.pop(0)]
         command.make_context(name, words)
+
+
+@pytest.mark.parametrize("words", [["plan", "none.zip"], ["study", "prior", "--nope"]])
+def test_a_command_is_put_together_without_the_others(run, words, monkeypatch):
+    made, make = [], typer.main.get_command_from_info
+    help_text._put_together.cache_clear()
+    monkeypatch.setattr(
+        "typer.main.get_command_from_info",
+        lambda **told: made.append(told["command_info"].name) or make(**told),
+    )
+    assert run(*words)[0] == 2
+    assert made == [words[-2]]
+
+
+@pytest.mark.parametrize(
+    ("words", "meant"), [(["paln"], "'plan'"), (["study", "prio"], "'prior', 'no-prior'")]
+)
+def test_what_is_mistyped_is_answered_by_all_there_are(run, words, meant):
+    assert f"Did you mean {meant}?" in run(*words)[2]

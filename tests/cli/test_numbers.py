@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from fieldmon.cli.numbers import of_robot, refusing, within
 from fieldmon.cli.options import WorkerOptions
-from fieldmon.compute.arguments import RATE_L_HA
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
+from fieldmon.io.spray_rate import RATE_L_HA
 from fieldmon.monitoring import Application
 from fieldmon.planning.members import Teamwork
 from fieldmon.plot.planting import Planting

@@ -13,7 +13,6 @@ from fieldmon.cli.options import (
     sampler_of,
     sampler_settings,
 )
-from fieldmon.cli.sampler_names import SamplerName
 from fieldmon.errors import SettingError
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
@@ -79,10 +78,10 @@ def test_a_command_without_any_plot_says_what_to_give():
 def test_only_samplers_that_leave_plants_out_hear_of_every():
     assert sampler_settings("bouncy", 3) == {"every": 3}
     assert sampler_settings("random", None) == sampler_settings("naive", None) == {}
-    assert sampler_of(SamplerName.BOUNCY, 3).every == 3
+    assert sampler_of("bouncy", 3).every == 3
     refuse_idle_every(["naive", "bouncy"], 3)
-    for name in (SamplerName.ADAPTIVE, SamplerName.NAIVE):
-        with pytest.raises(SettingError, match=f"--every goes with .*but this is {name.value}"):
+    for name in ("adaptive", "naive", "my_sampler.py:Mine"):
+        with pytest.raises(SettingError, match=f"--every goes with .*but this is {name}"):
             sampler_of(name, 3)
 
 

@@ -9,7 +9,7 @@ from typer import main as typer_main
 from fieldmon.cli.main import app
 from fieldmon.cli.pest_options import PestName
 from fieldmon.cli.status import lines
-from fieldmon.io.readers.pest_file import shipped_names
+from fieldmon.io.packaged import pest_names
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, MITES, ZIP
 
@@ -164,7 +164,7 @@ def test_weather_of_a_season_without_a_pest_is_refused(run, season, station):
 
 def test_the_help_names_every_pest_that_comes_along():
     (told,) = PestName.__metadata__
-    assert all(name in told.help for name in shipped_names())
+    assert all(name in told.help for name in pest_names())
 
 
 def test_every_command_that_believes_or_simulates_nights_takes_a_pest():

@@ -81,6 +81,18 @@ def no_share(_):
     return ["simulate", ZIP, "--feature", "Gate", "--infested", "0"]
 
 
+def no_number(_):
+    return ["plan", ZIP, "--feature", "Gate", "--hours", "all day"]
+
+
+def no_whole_number(_):
+    return ["simulate", ZIP, "--feature", "Gate", "--days", "2.5"]
+
+
+def no_robot(_):
+    return ["drive", ZIP, "--feature", "Gate", "--robot", "real"]
+
+
 def bad_option(_):
     return ["plan", ZIP, "--feature", "Gate", "--plot-option", "crs"]
 
@@ -105,6 +117,9 @@ def bad_option(_):
         (no_time, "Give more --hours"),
         (no_share, "between 0 and 1"),
         (bad_option, "NAME=VALUE"),
+        (no_number, "--hours must be a number, but it is 'all day'."),
+        (no_whole_number, "--days must be a whole number, but it is '2.5'."),
+        (no_robot, "--robot must be one of charged, mujoco, vda5050, but it is 'real'."),
     ],
 )
 def test_bad_input_is_a_sentence_with_exit_code_2_and_nothing_written(run, tmp_path, make, says):

@@ -31,11 +31,18 @@ def test_one_inspection_alone_is_taken_back(run, season, tmp_path):
     run("plan", season, "--date", BEGINS, "-o", "r.csv")
     plants = filled_in(tmp_path / "r.csv", finds={0}, n=3)
     run("record", season, "r.csv", "--date", BEGINS)
-    code, _, err, _ = run("undo", season, "--inspection", 2)
+    code, out, err, _ = run("undo", season, "--inspection", 2)
     assert code == 0, err
+    assert out.splitlines()[1] == "This cannot be redone. If it was right, record it again."
     left = Season(season).history.inspections.plant.tolist()
     assert len(left) == 2
     assert set(left) < set(plants)
+    run("record", season, "r.csv", "--date", BEGINS)
+    assert set(Season(season).history.inspections.plant.tolist()) == set(plants)
+    # the only one left of its batch leads to a batch that can be redone
+    out = run("undo", season, "--inspection", 4)[1]
+    assert out.splitlines()[1] == f"To let it count again: fieldmon undo {season} --redo 2"
+    assert "Counts again" in run("undo", season, "--redo", 2)[1]
 
 
 def test_a_change_to_an_earlier_value_is_taken_back_and_no_other(run, season):

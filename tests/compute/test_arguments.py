@@ -1,13 +1,11 @@
 """What a program hands over: refused in a sentence where it is something else."""
 
 from datetime import date, datetime
-from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
-from shapely import MultiPolygon
 
 from fieldmon.compute.arguments import (
     array_of,
@@ -15,7 +13,6 @@ from fieldmon.compute.arguments import (
     day_of,
     days_of,
     entries_of,
-    lonlat_of,
     must_be,
     must_be_in,
     must_be_known,
@@ -26,9 +23,7 @@ from fieldmon.compute.arguments import (
     shown,
 )
 from fieldmon.compute.ranges import AllowedRange
-from fieldmon.errors import ObservationError, SettingError
-from fieldmon.io.writers.treatment_map import TreatmentMap
-from fieldmon.monitoring.advice import AdviceSettings
+from fieldmon.errors import SettingError
 
 
 def test_what_is_of_its_kind_passes_and_anything_else_is_said_with_what_to_do():
@@ -93,22 +88,6 @@ def test_days_are_dates_texts_or_numpys_and_no_numbers():
         assert days_of(bad) is None
 
 
-def test_positions_are_in_degrees_longitude_first():
-    assert lonlat_of("Plants", [[35.1, 30.3]]).tolist() == [[35.1, 30.3]]
-    assert lonlat_of("Plants", []).shape == (0, 2)
-    for bad in (
-        [[30.0, 135.0]],
-        [[np.nan, 30.0]],
-        [[1e30, 0]],
-        [35.1, 30.3],
-        3.0,
-        np.zeros((2, 3)),
-    ):
-        with pytest.raises(ObservationError, match=r"^Plants must be"):
-            lonlat_of("Plants", bad)
-    assert np.isnan(lonlat_of("Records", [[np.nan, np.nan]], nowhere=True)).all()
-
-
 def test_arrays_have_their_shapes():
     must_be_shaped(
         "A route's", {"plant": (np.zeros(3), (3,)), "line_m": (np.zeros((4, 2)), (4, 2))}
@@ -147,16 +126,6 @@ def test_an_array_of_true_and_false_takes_no_numbers():
     for bad in ([1, 0], ["a"], [[True], [True, False]], 3):
         with pytest.raises(SettingError, match=r"^A mask must hold True or False, but .* Do\.$"):
             array_of(np.bool_, "A mask", bad, "Do.")
-
-
-@pytest.mark.parametrize("rate", [0.0, -1.0, 100_000.0, np.nan, np.inf, "300", None])
-def test_a_rate_that_nobody_sprays_is_refused_alike_in_a_map_and_in_advice(rate):
-    said = []
-    for make in (AdviceSettings, partial(TreatmentMap, "plot", MultiPolygon(), [])):
-        with pytest.raises(SettingError, match="The rate in the zones must") as refused:
-            make(rate_l_ha=rate)
-        said.append(str(refused.value))
-    assert said[0] == said[1]
 
 
 def test_a_name_that_nobody_knows_is_said_with_those_that_are_known():

@@ -3,7 +3,7 @@
 import pytest
 
 from fieldmon.io import packaged
-from fieldmon.io.packaged import packaged_names, packaged_table, packaged_text
+from fieldmon.io.packaged import packaged_names, packaged_table, packaged_text, pest_names
 
 
 def test_a_text_is_that_of_the_file():
@@ -24,3 +24,9 @@ def test_remarks_are_no_rows_and_quoted_commas_no_columns(monkeypatch):
 
 def test_files_of_a_folder_are_found_by_their_ending():
     assert packaged_names("fieldmon/decisions", ".csv") == ["thresholds.csv"]
+
+
+def test_pests_are_named_by_their_files_the_thesis_first():
+    names = pest_names()
+    assert names[:2] == ("thesis", "spider-mite")
+    assert {f"{name}.toml" for name in names} == set(packaged_names(packaged.PESTS, ".toml"))

@@ -6,7 +6,7 @@ from contextlib import closing
 
 import pytest
 
-from fieldmon.monitoring import schema
+from fieldmon.monitoring import Season, schema
 from tests.monitoring.seasons import BEGINS, a_season, some_results
 
 
@@ -28,10 +28,16 @@ def path(recorded, tmp_path):
     return shutil.copy(recorded, tmp_path / "season.gpkg")
 
 
+@pytest.fixture(scope="session")
+def begun(tmp_path_factory):
+    """Begin a season, once; return its file."""
+    return a_season(tmp_path_factory.mktemp("begun") / "season.gpkg").path
+
+
 @pytest.fixture
-def season(tmp_path):
-    """Give a season in which nothing was done yet."""
-    return a_season(tmp_path / "season.gpkg")
+def season(begun, tmp_path):
+    """Give a season in which nothing was done yet, a copy for each test."""
+    return Season(shutil.copy(begun, tmp_path / "season.gpkg"))
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """Seasons for tests: a small plot with records, and what a day's work finds on it."""
 
 from datetime import UTC, date, datetime, time, timedelta
+from functools import cache
 
 import numpy as np
 from shapely import MultiPolygon, box
@@ -46,6 +47,7 @@ def logged_at(monkeypatch, moment):
     monkeypatch.setattr(season_log, "utc_text", lambda: local_clock.utc_text(moment))
 
 
+@cache
 def a_plot(width=0.0008, height=0.0007, **planting):
     hole = box(35.1503, 30.3603, 35.1504, 30.3604)
     boundary = MultiPolygon([box(35.15, 30.36, 35.15 + width, 30.36 + height).difference(hole)])

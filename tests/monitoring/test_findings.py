@@ -14,7 +14,14 @@ from fieldmon.errors import AccessError, LimitError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
 from fieldmon.io.readers.phone_file import PhoneFile, SavedRecord, fields_of
 from fieldmon.monitoring import Season, findings, photos, scouts
-from fieldmon.monitoring.findings import Finding, of_others, take, take_saved, taken_back
+from fieldmon.monitoring.findings import (
+    Finding,
+    of_others,
+    take,
+    take_saved,
+    taken_back,
+    taken_back_before,
+)
 from fieldmon.monitoring.photos import Photo
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.local_clock import local_clock
@@ -79,9 +86,14 @@ def test_whoever_told_what_the_season_took_back_learns_which_and_may_tell_it_aga
     season.undo(batch)
     assert taken_back(season, "ann", on) == (gone.id,)
     assert taken_back(season, "Ben", on) == taken_back(season, "Ann", on - timedelta(days=1)) == ()
+    days = [on + timedelta(days=k) for k in (0, 1, 7, 8)]
+    before = [taken_back_before(season, "ann", day) for day in days]
+    assert before == [{}, {str(on): (gone.id,)}, {str(on): (gone.id,)}, {}]
+    assert taken_back_before(season, "Ben", days[1]) == {}
     again = replace(gone, id="again")
     assert [one.new for one in take(season, key, [again], NOW)] == [True]
     assert taken_back(season, "Ann", on) == ()
+    assert taken_back_before(season, "Ann", days[1]) == {}
     assert [one.plant for one in photos.photos_of(season)] == [34]
     season.redo(batch)
     assert sorted(season.history.inspections.on(on).plant.tolist()).count(34) == 1

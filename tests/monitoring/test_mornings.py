@@ -57,6 +57,12 @@ def all_over(season):
     return mornings
 
 
+@pytest.fixture(scope="module")
+def from_the_first(long_season):
+    """Return the mornings of that season, worked out once."""
+    return all_over(Season(long_season))
+
+
 def kept(path):
     with closing(sqlite3.connect(path)) as db:
         return [day for (day,) in db.execute("SELECT day FROM mornings ORDER BY day")]
@@ -82,9 +88,9 @@ def test_the_file_keeps_the_first_the_newest_two_and_the_last_two_of_every_eight
     assert kept(path) == [0, 8, 16, LAST - 1, LAST]
 
 
-def test_mornings_from_the_file_are_those_from_the_first_to_the_last_bit(path):
+def test_mornings_from_the_file_are_those_from_the_first_to_the_last_bit(path, from_the_first):
     season = Season(path)
-    for day, morning in enumerate(all_over(season)):
+    for day, morning in enumerate(from_the_first):
         assert the_same(of_day(season, day), morning), day
 
 
@@ -109,8 +115,9 @@ def test_what_is_recorded_of_an_early_day_reaches_the_mornings_after_it(path):
     season.record(
         Inspections.of(np.array([3]), np.array([1]), np.datetime64(BEGINS + timedelta(days=4), "D"))
     )
-    for day, morning in enumerate(all_over(season)):
-        assert the_same(of_day(Season(path), day), morning), day
+    anew = all_over(season)
+    for day in (3, 4, 5, 7, 8, 15, 16, LAST - 1, LAST, LAST + 1):  # the last of each stretch: all
+        assert the_same(of_day(Season(path), day), anew[day]), day
     assert Season(path).status(BEGINS + timedelta(days=LAST)) != before
     assert Season(path).verify() == ()
     assert kept(path) == [0, 8, 16, LAST - 1, LAST]
@@ -134,10 +141,9 @@ def test_a_treatment_taken_back_leaves_the_mornings_of_before(path):
         "DELETE FROM mornings",
     ],
 )
-def test_a_kept_morning_that_is_not_what_it_was_is_worked_out_again(path, damage):
+def test_a_kept_morning_that_is_not_what_it_was_is_worked_out_again(path, from_the_first, damage):
     change(path, damage)
-    season = Season(path)
-    assert the_same(of_day(season, LAST), all_over(season)[LAST])
+    assert the_same(of_day(Season(path), LAST), from_the_first[LAST])
 
 
 def test_a_kept_morning_that_is_pressed_is_not_unpacked(path):
@@ -203,12 +209,12 @@ def test_the_last_estimate_is_not_drawn_again(path, monkeypatch):
         Season(path).status(BEGINS + timedelta(days=LAST - 1))
 
 
-def test_few_mornings_of_a_long_season_are_at_hand(path):
+def test_few_mornings_of_a_long_season_are_at_hand(path, from_the_first):
     season = Season(path)
     mornings = Mornings(season.history)
     mornings.of(LAST)
     assert len(mornings.known) <= 2 + LAST // 8 + 8
-    assert the_same(mornings.of(3), all_over(season)[3])
+    assert the_same(mornings.of(3), from_the_first[3])
 
 
 def test_who_inspected_matters_where_they_find_as_much_as_they_are_said_to(path):

@@ -11,7 +11,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings, History
 from fieldmon.plot.robot import Robot
-from tests.monitoring.seasons import BEGINS, on, some_results, three_results
+from tests.monitoring.seasons import BEGINS, a_season, on, some_results, three_results
 
 
 def test_two_windows_see_each_others_work(season):
@@ -55,10 +55,20 @@ def layers(season):
         }
 
 
-@pytest.fixture
-def three_weeks(season):
+@pytest.fixture(scope="module")
+def long_season(tmp_path_factory):
+    """Make a season of three weeks, once; return its file."""
+    season = a_season(tmp_path_factory.mktemp("three_weeks") / "season.gpkg")
     for day in range(0, 21, 3):
         season.record(some_results(season, day=day, found=[day % 5]), f"day {day}")
+    return season.path
+
+
+@pytest.fixture
+def three_weeks(long_season, tmp_path):
+    """Return a season of three weeks that is open, as whoever recorded it has it."""
+    season = Season(shutil.copy(long_season, tmp_path / "season.gpkg"))
+    season.status(on(20))
     return season
 
 

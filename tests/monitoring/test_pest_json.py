@@ -5,7 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from fieldmon.io.readers.pest_file import shipped_names, shipped_pest
+from fieldmon.io.packaged import pest_names
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.pest_json import (
     kept_weather,
     pest_json,
@@ -16,7 +17,7 @@ from fieldmon.monitoring.pest_json import (
 from fieldmon.pests.weather import HOUR_S, weather_of
 
 
-@pytest.mark.parametrize("name", shipped_names())
+@pytest.mark.parametrize("name", pest_names())
 def test_a_pest_comes_out_as_it_went_in(name):
     pest = shipped_pest(name)
     assert pest_of_json(json.loads(json.dumps(pest_json(pest)))) == pest

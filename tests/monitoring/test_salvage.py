@@ -132,14 +132,21 @@ def days_of(file):
     return [row[1:] for row in rows]
 
 
-@pytest.fixture
-def weeks(path):
-    """Return a season of three weeks."""
+@pytest.fixture(scope="module")
+def long_season(recorded, tmp_path_factory):
+    """Make a season of three weeks, once; return its file."""
+    path = shutil.copy(recorded, tmp_path_factory.mktemp("weeks") / "season.gpkg")
     season = Season(path)
     for day in range(1, 20, 3):
         at = np.arange(day, day + 5)
         season.record(Inspections.of(at, at % 2, np.datetime64(BEGINS) + day), f"day {day}")
     return path
+
+
+@pytest.fixture
+def weeks(long_season, tmp_path):
+    """Return a season of three weeks."""
+    return shutil.copy(long_season, tmp_path / "season.gpkg")
 
 
 def test_mornings_that_follow_from_what_was_saved_are_not_worked_out_again(

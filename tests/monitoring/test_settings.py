@@ -204,3 +204,11 @@ def test_a_season_has_its_days_from_the_first_to_the_last_and_a_harvest_among_th
     )
     with pytest.raises(SettingError, match="A season's settings"):
         settings_from({"begins": BEGINS, "colour": "green"})
+
+
+def test_what_a_caller_makes_of_settings_that_were_read_is_not_read_by_the_next():
+    written = as_json(MonitoringSettings(date(2026, 4, 6), sampler="dynamic"))
+    one, other = from_json(written), from_json(written)
+    assert one == other
+    one.sampler_settings["n"] = 5
+    assert other.sampler_settings == from_json(written).sampler_settings == {}

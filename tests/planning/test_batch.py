@@ -111,6 +111,13 @@ def test_a_task_is_told_from_any_other_and_known_again():
     assert again.digest(RECORDS.take(np.array([True]))) == task.digest(RECORDS)
 
 
+def test_another_text_of_an_own_sampler_is_another_task(tmp_path):
+    file = tmp_path / "mine.py"
+    task = Task(FIELD, None, {}, Orders(DAY, f"{file}:Mine"))
+    digests = [file.write_text(text) and task.digest(RECORDS) for text in ("a = 1", "a = 2")]
+    assert digests[0] != digests[1]
+
+
 def test_a_task_has_the_digest_that_folders_of_routes_hold():
     field = Field("Gate", MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)]), gate=(35.15, 30.36))
     records = Observations.of(

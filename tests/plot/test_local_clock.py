@@ -137,4 +137,5 @@ def test_seconds_of_a_day_skip_what_the_clock_skips(on, later_h, gone_h):
 def test_the_outline_of_a_zone_is_one_that_can_be_cut(zone):
     # as it is published, it crosses itself
     assert zone_outline(zone, 0.05).is_valid
+    assert zone_outline(zone, 0.05) is zone_outline(zone, 0.05)  # made once, by tens of ms
     assert zone_outline(zone, 0.05).intersection(box(-60, -30, -50, -20)).area > 0

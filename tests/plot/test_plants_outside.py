@@ -27,10 +27,14 @@ def test_plants_outside_by_more_than_gps_errs_are_left_out_or_as_said(far, left_
     assert split.left_out.tolist() == left_out
     assert bool(split.of_left_out()) == any(left_out)
     assert bool(split.of_beside()) == (far is None)
+    assert split.away_m == pytest.approx(OFF_M, rel=2e-3, abs=1e-6)
 
 
 def test_where_no_plant_is_near_the_plot_none_is_left_out():
-    assert not PlantsOutside.of(PLANTS[3:], FIELD).left_out.any()
+    split = PlantsOutside.of(PLANTS[3:], FIELD)
+    assert not split.left_out.any()
+    assert split.of_beside() == ""
+    assert split.away_m == pytest.approx(OFF_M[3:], rel=2e-3)
 
 
 def test_a_place_on_the_plot_is_no_way_off_and_others_as_far_as_they_are():

@@ -10,6 +10,7 @@ import { keepOneStep } from "./address.js";
 import { button, element, legendOf, Scale, signPicture } from "./chrome.js";
 import { takeDays } from "./days.js";
 import { takeCommas } from "./decimals.js";
+import { Dots, MARKS, dotUnder } from "./dots.js";
 import { Drawing } from "./draw.js";
 import { Drive, PITCH } from "./drive.js";
 import { Frames } from "./frames.js";
@@ -17,13 +18,14 @@ import { asked, moved } from "./keys.js";
 import { Labels, nameBoxes, rowBoxes, withHot } from "./labels.js";
 import { layersOf } from "./layers.js";
 import { letNoticesGo } from "./notice.js";
-import { nearestPlant, plantsWithin, rowUnder, tipOf } from "./pick.js";
+import { nearestPlant, plantsWithin, rowsUnder, tipOf } from "./pick.js";
 import { composed, freePart } from "./picture.js";
 import { Playback } from "./playback.js";
 import { ofRuns, runsOf, withRow } from "./select.js";
 import { covered, keepShape, listed } from "./shape.js";
 import * as store from "./store.js";
 import style from "./style.css";
+import { oneTapEach } from "./taps.js";
 import { waitForBoxes } from "./turning.js";
 import { keepUnfinished } from "./unfinished.js";
 import { besideBox, fitted, metresPerPixel } from "./view.js";
@@ -35,6 +37,8 @@ const DARK = matchMedia("(prefers-color-scheme: dark)");
 const FILM_PX = 1100, MOST_PICKED = 20000;
 // the legend stays so far from plants; so many of them are asked
 const MARGIN_PX = 8, MOST_ASKED = 4000;
+// so many of the plots under one dot are said where it is pointed at
+const MOST_SAID = 6;
 // from farther away a tap is no corner of a plot; nor is a position that is less exact
 const CORNER_M_A_PX = 5, CORNER_M = 30, WAIT_MS = 20000, NEAR_ZOOM = 18;
 
@@ -46,6 +50,7 @@ class MapPage {
     letNoticesGo();
     waitForBoxes();
     keepUnfinished();
+    oneTapEach();
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(style);
     const root = parent.getRootNode();
@@ -58,13 +63,15 @@ class MapPage {
     this.credit = element("div", { class: "credit", hidden: true });
     this.tools = element("div", { class: "tools", role: "toolbar" });
     this.card = element("div", { class: "card", hidden: true });
+    this.choice = element("div", { class: "choice", role: "group", hidden: true });
     this.legend = element("div", { class: "legend" });
     this.bar = element("div", { class: "drawbar", hidden: true });
     this.foot = element("div", { class: "foot" });
     this.root = parent.appendChild(element("div", { class: "map" }, [
-      this.canvasPlace, this.labelPlace, this.tools, this.card, this.legend, this.foot, this.bar, this.cross, this.tip, this.heard]));
+      this.canvasPlace, this.labelPlace, this.tools, this.card, this.legend, this.foot, this.bar, this.cross, this.tip, this.choice, this.heard]));
     this.scale = new Scale(this.foot);
     this.labels = new Labels(this.labelPlace);
+    this.dots = new Dots();
     this.playback = new Playback(this.foot, () => this.drawLayers());
     this.frames = new Frames(this.foot, { changed: () => this.drawLayers(), save: (blob, name) => saved(blob, name),
       shot: async (day) => { await this.rendered(); return this.shot(day, FILM_PX); },
@@ -87,6 +94,7 @@ class MapPage {
   async show({ data, setTriggerValue }) {
     this.data = data;
     this.tell = setTriggerValue;
+    this.choice.hidden = true;
     const turn = (this.turn = (this.turn ?? 0) + 1);
     this.speak(data);
     this.restore();
@@ -136,6 +144,7 @@ class MapPage {
     if (!this.deck) {
       this.open(bounds);
     } else if (place !== this.place) {
+      this.tip.hidden = true; // it is of what is no longer shown
       const view = this.fit();
       this.deck.setProps({ initialViewState: { ...view, maxZoom: 24, transitionDuration: this.place ? FLY_MS : 0,
         transitionInterpolator: new FlyToInterpolator({ speed: 4 }) } });
@@ -149,7 +158,7 @@ class MapPage {
 
   fit() {
     const rows = this.off().includes("rows") ? NONE : this.data.labels ?? NONE;
-    const words = (port) => [...rowBoxes(rows, port), ...nameBoxes(this.data.labels ?? NONE, port)];
+    const words = (port) => [...rowBoxes(rows, port), ...nameBoxes(new Dots().labels(this.data.labels ?? NONE, this.jsons, port), port)];
     const view = besideBox(this.data.bounds, this.size(), this.padding(), this.legendBox(), this.somePlaces(), words);
     this.whence = JSON.stringify(view);
     return this.data.drive ? { ...view, pitch: PITCH } : view;
@@ -225,7 +234,7 @@ class MapPage {
       getCursor: ({ isDragging }) => (isDragging ? "grabbing" : this.drawing.mode ? "crosshair" : "grab"),
       onViewStateChange: ({ viewState, interactionState }) => this.limited(viewState, interactionState),
       onAfterRender: () => {
-        if (this.drive.isStale(this.viewport())) this.drawLayers();
+        if (this.drive.isStale(this.viewport()) || this.dots.isStale(this.jsons, this.viewport())) this.drawLayers();
         this.follow();
         for (const done of this.waiting.splice(0)) done();
       },
@@ -262,7 +271,7 @@ class MapPage {
     const accent = this.data.dark || this.data.ground?.picture ? [255, 220, 90] : [0, 110, 70];
     const followed = this.viewport() && this.drive.view(this.viewport(), this.middle());
     if (followed) this.deck.setProps({ initialViewState: { ...followed, maxZoom: 24 } });
-    const jsons = [...this.drive.of(this.frames.of(this.jsons)), ...this.playback.layers(this.data.dark), ...this.drawing.layers(accent)];
+    const jsons = [...this.drive.of(this.dots.drawn(this.frames.of(this.jsons), this.viewport())), ...this.playback.layers(this.data.dark), ...this.drawing.layers(accent)];
     const hidden = new Set(this.off().flatMap((name) => this.switchOf(name)?.layers ?? []));
     for (const name of this.data.shades?.flatMap((one) => (one.key === this.shade() ? [] : one.layers)) ?? []) hidden.add(name);
     const ground = { ...this.data.ground, opacity: this.groundOpacity, failed: () => this.groundFailed() };
@@ -276,7 +285,7 @@ class MapPage {
     const viewport = this.viewport();
     if (!viewport) return;
     this.scale.draw(viewport, { lengths: this.data.lengths, alt: this.data.words.scale });
-    const labels = this.drawing.outlines ? this.drawing.labels() : withHot(this.data.labels ?? NONE, this.frames.of(this.jsons));
+    const labels = this.drawing.outlines ? this.drawing.labels() : this.dots.labels(withHot(this.data.labels ?? NONE, this.frames.of(this.jsons)), this.jsons, viewport);
     this.labels.draw(labels, viewport, new Set(this.off()), ...this.around());
     if (!this.cross.hidden) this.pointAtMiddle();
     const { longitude, latitude, zoom, width, height } = viewport;
@@ -285,6 +294,11 @@ class MapPage {
 
   viewport() {
     return this.deck?.isInitialized ? this.deck.getViewports()[0] : null;
+  }
+
+  // Return the layers as they are now: of the day that is shown, and with the dots of this zoom.
+  now() {
+    return this.dots.of(this.frames.of(this.jsons), this.viewport());
   }
 
   // -- switches
@@ -616,7 +630,7 @@ class MapPage {
     place.addEventListener("pointermove", (event) => this.hovered(event), true);
     place.addEventListener("pointerup", (event) => this.released(event), true);
     place.addEventListener("pointerleave", () => { this.tip.hidden = true; });
-    place.addEventListener("wheel", () => { this.moved = true; this.tip.hidden = true; }, { passive: true, capture: true });
+    place.addEventListener("wheel", () => { this.moved = true; this.tip.hidden = this.choice.hidden = true; }, { passive: true, capture: true });
     place.addEventListener("keydown", (event) => this.typed(event));
     place.addEventListener("focus", () => { if (place.matches(":focus-visible")) this.showCross(); });
     place.addEventListener("blur", () => { this.cross.hidden = true; this.tip.hidden = true; });
@@ -654,8 +668,11 @@ class MapPage {
 
   leave() {
     this.tip.hidden = true;
+    const chosen = !this.choice.hidden;
+    this.choice.hidden = true;
     // corners of a plot may have been walked to: they are dropped by their button only
-    if (this.drawing.mode && this.drawing.points.length && !this.drawing.outlines) this.drawing.drop();
+    if (chosen) this.showCross();
+    else if (this.drawing.mode && this.drawing.points.length && !this.drawing.outlines) this.drawing.drop();
     else if (["lasso", "rows"].includes(this.drawing.mode?.kind)) this.selecting(this.drawing.mode.kind);
     else if (!this.card.hidden) this.openCard();
     else this.cross.hidden = true;
@@ -690,6 +707,7 @@ class MapPage {
 
   pressed(event) {
     this.tip.hidden = true;
+    this.choice.hidden = true;
     this.down = event;
     const here = this.at(event);
     if (!here || !this.drawing.mode || event.button) return;
@@ -760,21 +778,55 @@ class MapPage {
       return;
     }
     const hit = this.under(here);
-    if (hit && this.data.taps) this.tell("tapped", { layer: hit.id, index: hit.index });
+    if (!hit || !this.data.taps) return;
+    if (hit.several) this.choose(hit.several, this.viewport().project(here));
+    else this.tell("tapped", { layer: hit.id, index: hit.index });
   }
 
-  // Return what lies under a place: {id, index, text}, the topmost first; null for the ground.
+  // Ask which of several plots under a place is meant.
+  choose(several, [x, y]) {
+    const all = this.jsons.find(({ id }) => id === MARKS).data, said = this.data.words.plots_here.replace("{n}", several.length);
+    this.tip.hidden = true;
+    this.choice.setAttribute("aria-label", said);
+    this.choice.replaceChildren(element("div", { class: "title", text: said }), ...several.map((index) =>
+      element("button", { type: "button", text: all[index].t, onclick: () => {
+        this.choice.hidden = true;
+        this.tell("tapped", { layer: MARKS, index });
+      } })));
+    this.choice.hidden = false;
+    const part = freePart(this.size(), covered()), { offsetWidth: wide, offsetHeight: tall } = this.choice;
+    const within = (at, low, high) => Math.max(low + MARGIN_PX, Math.min(at, high - MARGIN_PX));
+    const [left, top] = [within(x + TIP_PX, part.x, part.x + part.width - wide), within(y + TIP_PX, part.y, part.y + part.height - tall)];
+    this.choice.style.transform = `translate(${left}px, ${top}px)`;
+    this.choice.querySelector("button").focus({ preventScroll: true });
+  }
+
+  // Return what is pointed at where several plots are.
+  saidOf(several, all) {
+    const said = several.slice(0, MOST_SAID).map((k) => all[k].t), more = several.length > MOST_SAID ? ["…"] : [];
+    return [this.data.words.plots_here.replace("{n}", several.length), ...said, ...more].join("\n");
+  }
+
+  // Return what lies under a place: {id, index, text}, the topmost first, and `several` plots if there
+  // are; null for the ground.
   under(here, of = () => true) {
     const reachM = TIP_PX * metresPerPixel(this.viewport());
     const shown = new Set(this.deck.props.layers.filter((layer) => layer.props.visible).map((layer) => layer.id));
-    for (const json of this.frames.of(this.jsons).toReversed()) {
+    const jsons = this.now(), all = this.jsons.find(({ id }) => id === MARKS)?.data;
+    for (const json of jsons.toReversed()) {
       if (!shown.has(json.id) || !of(json)) continue;
       if (json.places) {
         const k = nearestPlant(json.places, here, Math.max(json.radius, Math.min(reachM, 0.6 * json.apart)));
         if (k >= 0) return { id: json.id, index: k, text: tipOf(json, k), row: json.places.row[k] };
+      } else if (json.id === MARKS) {
+        const dot = dotUnder(json.data, here, this.viewport(), TIP_PX);
+        if (dot?.of.length === 1) return { id: json.id, index: dot.of[0], text: dot.t };
+        if (dot) return { several: dot.of, text: this.saidOf(dot.of, all) };
       } else if (Array.isArray(json.data)) {
-        const k = rowUnder(json.data, here, reachM);
-        if (k >= 0) return { id: json.id, index: k, text: json.data[k].t };
+        const [k, ...below] = rowsUnder(json.data, here, reachM);
+        const plots = all && below.length ? [...new Set([k, ...below].map((one) => json.data[one].n))] : [];
+        if (plots.length > 1) return { several: plots.sort((a, b) => a - b), text: this.saidOf(plots, all) };
+        if (k !== undefined) return { id: json.id, index: k, text: json.data[k].t };
       }
     }
     return null;

@@ -50,20 +50,18 @@ export function plantsWithin(places, ring) {
   return found;
 }
 
-// Return what one row of a layer's data says, if the pointer is on it: a point, or an area.
-export function rowUnder(rows, here, reachM) {
-  const flat = Math.cos((here[1] * Math.PI) / 180);
+// Return the rows of a layer's data under the pointer that say something, the last drawn first: points, and
+// areas by their ring, or by their rings with holes.
+export function rowsUnder(rows, here, reachM) {
+  const flat = Math.cos((here[1] * Math.PI) / 180), found = [];
   for (let k = rows.length - 1; k >= 0; k--) {
     const { p, t } = rows[k];
     if (!t || !p) continue;
-    if (Array.isArray(p[0])) {
-      if (within(here, p)) return k;
-    } else {
-      const far = Math.hypot((p[0] - here[0]) * flat, p[1] - here[1]) * 111320;
-      if (far <= reachM) return k;
-    }
+    const rings = Array.isArray(p[0]) && (Array.isArray(p[0][0]) ? p : [p]);
+    const far = rings || Math.hypot((p[0] - here[0]) * flat, p[1] - here[1]) * 111320;
+    if (rings ? rings.filter((ring) => within(here, ring)).length % 2 : far <= reachM) found.push(k);
   }
-  return -1;
+  return found;
 }
 
 // Return what is said of a plant: where it stands, what is believed of it, and what is known of it.

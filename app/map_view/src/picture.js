@@ -44,8 +44,8 @@ function word(pen, { x, y, t, k }, { surface, ink, route, onRoute }, onPicture) 
   pen.font = `600 12px ${FONT}`;
   pen.textAlign = "center";
   const lines = t.split("\n"), wide = Math.max(...lines.map((one) => pen.measureText(one).width)) + 10, tall = 18 * lines.length;
-  if (onPicture || !["row", "place", "gate", "block"].includes(k)) box(pen, x - wide / 2, y - tall / 2, wide, tall, { leg: route, hot: ink }[k] ?? surface);
-  pen.fillStyle = { leg: onRoute, hot: surface }[k] ?? ink;
+  if (k !== "plots" && (onPicture || !["row", "place", "gate", "block"].includes(k))) box(pen, x - wide / 2, y - tall / 2, wide, tall, { leg: route, hot: ink }[k] ?? surface);
+  pen.fillStyle = { leg: onRoute, hot: surface, plots: "#fff" }[k] ?? ink;
   lines.forEach((one, n) => pen.fillText(one, x, y + (n - (lines.length - 1) / 2) * 18));
 }
 

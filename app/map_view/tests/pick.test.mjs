@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { nearestPlant, plantsWithin, rowUnder, within, tipOf } from "../src/pick.js";
+import { nearestPlant, plantsWithin, rowsUnder, within, tipOf } from "../src/pick.js";
 import { random, scattered } from "./plots.mjs";
 
 const METRES = 111320;
@@ -68,11 +68,18 @@ test("plants within a ring are those that the even-odd rule says, of any shape",
 test("of what lies on each other, the last drawn is under the pointer; areas hold, points reach", () => {
   const area = [[0, 0], [1e-3, 0], [1e-3, 1e-3], [0, 1e-3]];
   const rows = [{ p: area, t: "area" }, { p: [5e-4, 5e-4], t: "point" }, { p: area }, { p: null, t: "nowhere" }];
-  assert.equal(rowUnder(rows, [5e-4, 5e-4], 3), 1);
-  assert.equal(rowUnder(rows, [2e-4, 2e-4], 3), 0);
-  assert.equal(rowUnder(rows, [5e-4 + 2.9 / METRES, 5e-4], 3), 1);
-  assert.equal(rowUnder(rows, [5e-4 + 3.1 / METRES, 5e-4], 3), 0);
-  assert.equal(rowUnder(rows, [2e-3, 2e-3], 3), -1, "what says nothing is not pointed at");
+  assert.deepEqual(rowsUnder(rows, [5e-4, 5e-4], 3), [1, 0]);
+  assert.deepEqual(rowsUnder(rows, [2e-4, 2e-4], 3), [0]);
+  assert.deepEqual(rowsUnder(rows, [5e-4 + 2.9 / METRES, 5e-4], 3), [1, 0]);
+  assert.deepEqual(rowsUnder(rows, [5e-4 + 3.1 / METRES, 5e-4], 3), [0]);
+  assert.deepEqual(rowsUnder(rows, [2e-3, 2e-3], 3), [], "what says nothing is not pointed at");
+});
+
+test("an area with a hole is under the pointer, but not in its hole", () => {
+  const square = (low, high) => [[low, low], [high, low], [high, high], [low, high], [low, low]];
+  const rows = [{ p: [square(0, 1e-3), square(4e-4, 6e-4)], t: "with a pond" }];
+  assert.deepEqual(rowsUnder(rows, [2e-4, 2e-4], 3), [0]);
+  assert.deepEqual(rowsUnder(rows, [5e-4, 5e-4], 3), []);
 });
 
 test("what is said of a plant is where it stands, what is believed, and what is known of it", () => {

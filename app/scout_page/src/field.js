@@ -6,8 +6,8 @@ import { afterFind, results, secondsAhead, secondsLeft, secondsThrough, withAske
 import { fetchDay, fetchRest, isOf } from "./sync.js";
 import { wayAhead } from "./way.js";
 
-const KEPT = ["season", "plot", "day", "ahead", "draft", "begun", "last"];
-const EMPTY = { plot: null, day: null, ahead: [], draft: null, begun: null, last: null };
+const KEPT = ["season", "plot", "day", "ahead", "draft", "begun", "last", "saidBack"];
+const EMPTY = { plot: null, day: null, ahead: [], draft: null, begun: null, last: null, saidBack: [] };
 // a record that is on no disk yet
 const WRITING = "writing";
 // where one was longer ago is not where one is
@@ -228,6 +228,12 @@ export class Field {
     await this.#keep("day", "begun", ...(this.ahead === ahead ? [] : ["ahead"]), ...(this.draft === draft ? [] : ["draft"]));
   }
 
+  /** Whether what was found or taken back here changes what the season says, which it did not say yet. */
+  changedHere() {
+    const { heard = 0, day } = this.day ?? {}, gone = this.#gone();
+    return this.back.size > 0 || this.records.some((one) => one.day === day && one.result === "found" && one.state === "kept" && one.order > heard && !gone.has(one.id));
+  }
+
   /** Whether another plan was given out since, as when somebody else's rows are to be done, too. */
   hasNewer() {
     const { plan, newest = plan } = this.day ?? {};
@@ -284,6 +290,18 @@ export class Field {
     return this.records.filter((one) => gone.has(one.id) && !undone.has(one.id) && !one.answered);
   }
 
+  /** Of days before, how many records count no more that nobody was told of yet: `{day, n}` each. */
+  takenBackBefore() {
+    const said = new Set(this.saidBack), days = Object.entries(this.day?.taken_back_before ?? {});
+    return days.map(([day, ids]) => ({ day, n: ids.filter((one) => !said.has(one)).length })).filter(({ n }) => n);
+  }
+
+  /** That was read: it is not said again. */
+  readTakenBack() {
+    const saidBack = Object.values(this.day.taken_back_before ?? {}).flat();
+    return this.#step({ saidBack }, () => this.store.put({ saidBack }));
+  }
+
   /** Tell again what was taken back, or let it go. */
   async answer(again) {
     await this.settled();
@@ -291,6 +309,8 @@ export class Field {
     const told = some.map(({ answered, problem, ...one }, k) => ({ ...one, id: this.id(), order: order + k }));
     await this.store.answer(some.map((one) => one.id), again ? told : []);
     await this.reread();
+    this.saidBack = [...(this.saidBack ?? []), ...some.map((one) => one.id)]; // nor is it said on another day
+    await this.#keep("saidBack");
     if (!this.ahead.some((one) => this.done.has(one))) return;
     this.ahead = this.ahead.filter((one) => !this.done.has(one));
     this.draft = this.#keepDraft();

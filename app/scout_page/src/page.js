@@ -4,7 +4,7 @@ import { hasNames, plantAt, rowsCalled, shownEnds, signOf } from "./geo.js";
 import { PlotMap } from "./map.js";
 import { scaled } from "./photo.js";
 import { Held, KeyEnded, NotNow } from "./sync.js";
-import { LANGUAGES, own, say, speak } from "./words.js";
+import { LANGUAGES, dayOf, own, say, speak } from "./words.js";
 
 // a glove that bounces must say nothing of the next plant
 const REST_MS = 250;
@@ -226,7 +226,15 @@ export class Page {
   #old() {
     const { field } = this, wrong = field.time.isWrong() ? [h("p", { class: "tag", id: "clock" }, say("clock_wrong"))] : [];
     const newer = field.hasNewer() && !field.isOld() ? [h("button", { type: "button", class: "wide", id: "newer", onclick: () => this.load() }, say("newer_plan"))] : [];
-    return [...wrong, ...this.#otherDay(), ...newer, ...this.#takenBack()];
+    return [...wrong, ...this.#otherDay(), ...newer, ...this.#takenBack(), ...this.#takenBackBefore()];
+  }
+
+  /** The same of days before, once: the phone has these records no more. */
+  #takenBackBefore() {
+    const days = this.field.takenBackBefore().map(({ day, n }) => h("p", { class: "bad" }, say("taken_back_before", { day: dayOf(day), n })));
+    if (!days.length) return [];
+    const read = () => this.#act(() => this.field.readTakenBack());
+    return [h("div", { id: "taken_back_before" }, ...days, h("p", {}, say("taken_back_why")), h("button", { type: "button", class: "wide", id: "read", onclick: read }, say("ok")))];
   }
 
   /** That records count no more, as somebody took them back in the season: which, and what is to come of them. */
@@ -258,8 +266,8 @@ export class Page {
 
   #otherDay() {
     const { field } = this;
-    if (field.isOld()) return [h("button", { type: "button", class: "wide bad", id: "old", onclick: () => this.load() }, say("old_day", { day: field.day.day }))];
-    return field.meant() ? [h("p", { class: "tag", id: "other_day" }, say("other_day", { day: field.day.day }))] : [];
+    if (field.isOld()) return [h("button", { type: "button", class: "wide bad", id: "old", onclick: () => this.load() }, say("old_day", { day: dayOf(field.day.day) }))];
+    return field.meant() ? [h("p", { class: "tag", id: "other_day" }, say("other_day", { day: dayOf(field.day.day) }))] : [];
   }
 
   #drawPlace() {
@@ -290,7 +298,7 @@ export class Page {
   /** A local time as it is said: with its day where that is not the day of the route. */
   #time(local) {
     const [day, time] = local.split("T");
-    return day === this.field.day.day ? time : `${day} ${time}`;
+    return day === this.field.day.day ? time : `${dayOf(day)}, ${time}`;
   }
 
   #buttons() {
@@ -423,7 +431,7 @@ export class Page {
       ? `${say("place", { row: signOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}: ` : "");
     const part = field.day?.rows && shownEnds(field.plot, field.day.rows);
     const refused = this.left.refused.map((one) => h("li", {}, `${where(one)}${why(one)}`));
-    const inner = h("div", {}, h("h2", {}, field.day ? `${field.day.scout}, ${field.day.day}` : "fieldmon"),
+    const inner = h("div", {}, h("h2", {}, field.day ? `${own(field.day.scout)}, ${own(dayOf(field.day.day))}` : "fieldmon"),
       field.day && h("p", {}, say("ahead_takes", { minutes: Math.round(field.secondsAhead() / 60) })),
       part && h("p", {}, say("your_rows", { low: part[0], high: part[1] })),
       ...this.#closed(),

@@ -50,8 +50,8 @@ export class Runner {
     await this.field.reread();
     // a code was scanned without a network
     if (this.field.access && !this.field.day) return this.field.load();
-    // what was taken back here is asked for at once; a clock that was set back must not put it off
-    if (!this.field.back?.size && Math.abs(Date.now() - this.news) < NEWS_MS) return;
+    // what was found or taken back here is asked for at once; a clock that was set back must not put it off
+    if (!this.field.changedHere?.() && Math.abs(Date.now() - this.news) < NEWS_MS) return;
     this.news = Date.now();
     await this.field.refresh();
   }

@@ -3,12 +3,13 @@
 export const LANGUAGES = { en: "English", he: "עברית", ar: "العربية", es: "Español" };
 const RIGHT_TO_LEFT = ["he", "ar"];
 
-let words = {};
+let words = {}, spoken = "en";
 
 export async function speak(language) {
   const chosen = LANGUAGES[language] ? language : "en";
   const answer = await fetch(`words/${chosen}.json`);
   words = await answer.json();
+  spoken = chosen;
   document.documentElement.lang = chosen;
   document.documentElement.dir = RIGHT_TO_LEFT.includes(chosen) ? "rtl" : "ltr";
   return chosen;
@@ -21,6 +22,15 @@ export function say(name, values = {}) {
 
 /** What is put into a text, so that its script changes no other's order. */
 export const own = (value) => (typeof value === "string" && /\p{L}/u.test(value) ? `\u2068${value}\u2069` : value);
+
+/** A day as the app says it: short weekday, day and month, "Mon 16 Nov"; files have it as it comes, "2026-11-16". */
+export function dayOf(iso, language = spoken) {
+  const written = (parts) => new Intl.DateTimeFormat(language, { ...parts, timeZone: "UTC", calendar: "gregory", numberingSystem: "latn" }).format(new Date(iso));
+  const [weekday, day, month] = [{ weekday: "short" }, { day: "numeric" }, { month: "short" }].map(written);
+  if (language === "en") return `${weekday} ${day} ${month}`;
+  // Hebrew names "day A" to "day F", and a sentence says "on day" itself
+  return `${weekday.replace("יום ", "")} ${written({ day: "numeric", month: "short" })}`;
+}
 
 /** The language of the phone, where the page speaks it. */
 export const phones = () => (navigator.languages ?? []).map((one) => one.slice(0, 2)).find((one) => LANGUAGES[one]) ?? "en";

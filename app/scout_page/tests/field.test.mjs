@@ -50,6 +50,20 @@ test("what was taken back here is shown no more, though what the season said las
   assert.equal(field.back.size, 0, "the season says it itself");
 });
 
+test("a find changes what the season says, until it said so; what is clean does not", async () => {
+  const { field, sync } = await aField();
+  const heard = async () => { await sync.send(); await field.reread(); return field.changedHere(); };
+  await field.tell("clean");
+  assert.equal(await heard(), false);
+  await field.tell("found");
+  assert.equal(field.changedHere(), false, "it is not sent yet");
+  assert.equal(await heard(), true);
+  await field.refresh();
+  assert.equal(field.changedHere(), false);
+  await field.undo();
+  assert.equal(field.changedHere(), true);
+});
+
 test("records that somebody took back in the season are told by name, and told again or let go", async () => {
   for (const again of [true, false]) {
     const { season, store, field, sync } = await aField();
@@ -72,6 +86,26 @@ test("records that somebody took back in the season are told by name, and told a
     await field.refresh();
     assert.equal(field.kept(), 2);
   }
+});
+
+test("what was taken back of a day before is said once, and not where it was answered on its day", async () => {
+  const { season, field, sync, again } = await aField();
+  for (const result of ["found", "clean"]) await field.tell(result);
+  await sync.send();
+  const [first, second] = field.records.map((one) => one.id);
+  season.day = aDay(undefined, { taken_back: [first] });
+  await field.reread();
+  await field.refresh();
+  await field.answer(false);
+  season.day = aDay(undefined, { day: "2026-11-23", live: false, past: false, taken_back_before: { "2026-11-22": [first, second] } });
+  await field.load();
+  assert.deepEqual(field.takenBackBefore(), [{ day: "2026-11-22", n: 1 }]);
+  assert.deepEqual((await again()).takenBackBefore(), [{ day: "2026-11-22", n: 1 }], "until it was read");
+  await field.readTakenBack();
+  assert.deepEqual([field.takenBackBefore(), (await again()).takenBackBefore()], [[], []]);
+  season.day = { ...season.day, taken_back_before: { "2026-11-21": ["old"], "2026-11-22": [first, second] } };
+  await field.load();
+  assert.deepEqual(field.takenBackBefore(), [{ day: "2026-11-21", n: 1 }]);
 });
 
 test("a find brings its neighbours, and undo brings back what was before", async () => {

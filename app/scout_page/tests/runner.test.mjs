@@ -43,13 +43,13 @@ test("news is asked for each minute, though the clock is set back by an hour", a
   }
 });
 
-test("what was taken back here is asked for as soon as it is sent, not a minute later", async (t) => {
+test("what was found or taken back here is asked for as soon as it is sent, not a minute later", async (t) => {
   t.mock.timers.enable({ apis: ["setTimeout", "Date"], now: 1e12 });
   let asked = 0;
-  const field = { reread: async () => {}, refresh: async () => { asked += 1; }, day: {}, back: new Set() };
+  const field = { reread: async () => {}, refresh: async () => { asked += 1; }, day: {}, changedHere: () => false };
   const runner = new Runner({ send: async () => {}, stranded: new Map() }, field, () => {});
-  for (const [plants, times] of [[[], 1], [[], 1], [[3], 2]]) {
-    field.back = new Set(plants);
+  for (const [changed, times] of [[false, 1], [false, 1], [true, 2]]) {
+    field.changedHere = () => changed;
     runner.afterTap();
     t.mock.timers.tick(1000);
     await turns();

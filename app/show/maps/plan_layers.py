@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -113,7 +114,10 @@ def hatch(grid: PlantGrid, field: Field) -> list[shapely.LineString]:
 def _strips(
     name: str, lines_m: Iterator[Float], grid: PlantGrid, share: float, colour: colours.Colour
 ) -> Layer:
-    rows = [{"path": np.round(grid.frame.lonlat(line), 7).tolist()} for line in lines_m]
+    lines = [np.zeros((0, 2)), *lines_m]
+    corners = np.round(grid.frame.lonlat(np.concatenate(lines)), 7)
+    ends = np.cumsum([len(line) for line in lines])
+    rows = [{"path": corners[a:b].tolist()} for a, b in pairwise(ends)]
     return Layer(
         "PathLayer", rows, id=name, get_path="path", get_color=list(colour),
         get_width=share * grid.row_spacing_m, width_min_pixels=0, joint_rounded=True,

@@ -1,4 +1,4 @@
-"""Vector files that GDAL reads; `guard` has taken from it what leads to other files."""
+"""Vector files that GDAL reads; `process` keeps from it the drivers that lead to other files."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The doors for rasters: pictures of the ground, and values that plants stand on.
 
 A GeoTIFF in any coordinate system, turned or not, alone or in a zip archive. It is opened in a
-process of its own (`guard`), from a copy, and only by GDAL's GeoTIFF reader: what points at other
+process of its own (`sandbox`), from a copy, and only by GDAL's GeoTIFF reader: what points at other
 files or at the network is no raster here.
 """
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn, cast
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import Upload, source_name
-from fieldmon.io.packaged import packaged_names, packaged_text
+from fieldmon.io.packaged import PESTS, packaged_text, pest_names
 from fieldmon.pests.pest import Citation, Entry, Increase, Movement, Pest, Stage
 from fieldmon.plot.robot import Viewpoints
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from fieldmon.io.options import Source
 
-_FOLDER = "fieldmon/pests"
 _WORDS = ("name", "title", "species", "cutoff", "count_means", "not_found")
 _COURSE = ("latency_days", "hidden_days", "mortality_per_day")
 _DETECTION = ("viewpoints", "longer", "chance")
@@ -60,14 +59,14 @@ def pest_of(said: str) -> Pest:
     >>> pest_of("spider-mite").generation.degree_days
     146.48
     """
-    if said in shipped_names():
+    if said in pest_names():
         return shipped_pest(said)
     path = Path(said)
     if not path.is_file():
         raise FileProblem(
             worded(
                 "A pest must be a file, or one of {names}; but it is {said!r}.",
-                names=", ".join(shipped_names()),
+                names=", ".join(pest_names()),
                 said=said,
             )
         )
@@ -75,16 +74,17 @@ def pest_of(said: str) -> Pest:
 
 
 @cache
-def shipped_names() -> tuple[str, ...]:
-    """Return the names of the pests that come with fieldmon, the thesis's first."""
-    names = [name.removesuffix(".toml") for name in packaged_names(_FOLDER, ".toml")]
-    return tuple(sorted(names, key=lambda name: (name != "thesis", name != "spider-mite", name)))
+def shipped_pest(name: str) -> Pest:
+    """Return a pest that comes with fieldmon."""
+    return pest_from_text(packaged_text(f"{PESTS}/{name}.toml"), f"{name}.toml")
 
 
 @cache
-def shipped_pest(name: str) -> Pest:
-    """Return a pest that comes with fieldmon."""
-    return pest_from_text(packaged_text(f"{_FOLDER}/{name}.toml"), f"{name}.toml")
+def shipped_words() -> tuple[str, ...]:
+    """Return what those pests and their stages are called, each once: all is translated."""
+    pests = [shipped_pest(name) for name in pest_names()]
+    stages = [stage.name for pest in pests for stage in pest.stages]
+    return tuple(dict.fromkeys([*(pest.title for pest in pests), *stages]))
 
 
 def read_pest(source: Source) -> Pest:
@@ -133,6 +133,10 @@ class _At(NamedTuple):
     table: str
     number: int
     key: str
+
+    def having(self, value: object) -> dict[str, object]:
+        """Return what a sentence of a value names."""
+        return {"key": self.key, "value": value}
 
 
 _HEADER = re.compile(r"^\s*(\[{1,2})\s*([\w.-]+)\s*\]{1,2}")
@@ -216,14 +220,7 @@ class _PestText:
 
     def _table(self, part: str) -> dict[str, Any]:
         table = self.told.get(part, {})
-        if not isinstance(table, dict):
-            self._refuse(
-                _At(part, 0, ""),
-                worded(
-                    "{part} must be a table, as [{part}].",
-                    part=part,
-                ),
-            )
+        self._must_be_table(part, table)
         return self._checked(part, table, 0)
 
     def _checked(self, part: str, table: dict[str, Any], number: int) -> dict[str, Any]:
@@ -237,16 +234,10 @@ class _PestText:
         if at.key in _TEXTS:
             self._must_be_text(at, value)
             return value
+        said = at.having(value)
         if at.key in _FLAGS:
-            if not isinstance(value, bool):
-                self._refuse(
-                    at,
-                    worded(
-                        "{key} must be true or false, but it is {value!r}.",
-                        key=at.key,
-                        value=value,
-                    ),
-                )
+            rule = worded("{key} must be true or false, but it is {value!r}.", **said)
+            self._must(isinstance(value, bool), at, rule)
             return value
         is_list = at.key in _LISTS and (at.table, at.key) not in {
             ("movement", "at_c"),
@@ -254,14 +245,8 @@ class _PestText:
         }
         if is_list:
             if not isinstance(value, list):
-                self._refuse(
-                    at,
-                    worded(
-                        "{key} must be a list in brackets, but it is {value!r}.",
-                        key=at.key,
-                        value=value,
-                    ),
-                )
+                rule = worded("{key} must be a list in brackets, but it is {value!r}.", **said)
+                self._refuse(at, rule)
             return tuple(
                 tuple(self._number(at, inner) for inner in one)
                 if isinstance(one, list)
@@ -282,23 +267,19 @@ class _PestText:
                 at,
                 worded(
                     "{key} must be {kind}, without quotes, but it is {value!r}.",
-                    key=at.key,
                     kind=kind,
-                    value=value,
+                    **at.having(value),
                 ),
             )
         return float(value)
 
     def _must_be_text(self, at: _At, value: object) -> None:
-        if not isinstance(value, str):
-            self._refuse(
-                at,
-                worded(
-                    "{key} must be text in quotes, but it is {value!r}.",
-                    key=at.key,
-                    value=value,
-                ),
-            )
+        rule = worded("{key} must be text in quotes, but it is {value!r}.", **at.having(value))
+        self._must(isinstance(value, str), at, rule)
+
+    def _must_be_table(self, part: str, value: object) -> None:
+        rule = worded("{part} must be a table, as [{part}].", part=part)
+        self._must(isinstance(value, dict), _At(part, 0, ""), rule)
 
     def _must_know(self) -> None:
         known = (*_WORDS, *_TABLES, *_NOTES)
@@ -312,14 +293,7 @@ class _PestText:
         notes = {}
         for note in _NOTES:
             notes[note] = self.told.get(note, {})
-            if not isinstance(notes[note], dict):
-                self._refuse(
-                    _At(note, 0, ""),
-                    worded(
-                        "{note} must be a table, as [{note}].",
-                        note=note,
-                    ),
-                )
+            self._must_be_table(note, notes[note])
             for part, words in notes[note].items():
                 at = _At(note, 0, part)
                 if part not in self.told or part not in _TABLES:
@@ -372,6 +346,10 @@ class _PestText:
             closer = at._replace(key=at.key or key)
             where = closer if closer in self.lines else at
             self._refuse(where, sentence, error)
+
+    def _must(self, holds: bool, at: _At, rule: str) -> None:  # noqa: FBT001 - what must hold
+        if not holds:
+            self._refuse(at, rule)
 
     def _refuse(self, at: _At, sentence: str, cause: Exception | None = None) -> NoReturn:
         line = self.lines.get(at) or self.lines.get(at._replace(key="")) or 1

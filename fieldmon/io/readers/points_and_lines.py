@@ -82,8 +82,9 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         columns[role] = named
         messages.append(seen(worded("Column {named!r} names the {role}s.", named=named, role=role)))
         labels.append(np.array([text(v) for v in found.layer.column(named)], dtype=np.str_))
-    messages += _corners_among(found.layer, found.lonlat)
-    gone = _elsewhere(found.lonlat)
+    corners, said_of_corners = _corners_among(found.layer, found.lonlat, options)
+    messages += said_of_corners
+    gone = _elsewhere(found.lonlat) & ~corners
     if gone.any():
         said = worded(
             "{n} {n:plant lies|plants lie} in another part of the earth than the others and "
@@ -92,6 +93,7 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
             some=_some(found.lonlat[gone], labels[-1][gone]),
         )
         messages.append(dropped(said))
+    gone |= corners
     here = np.flatnonzero(~gone)
     kept = here[distinct(found.lonlat[here])]
     n_doubles = len(here) - len(kept)
@@ -121,8 +123,14 @@ def _is_constant(layer: Layer, column: str | None) -> bool:
     return column is not None and len(layer) > 1 and len({*map(text, layer.column(column))}) == 1
 
 
-def _corners_among(layer: Layer, lonlat: NDArray[np.float64]) -> list[ImportMessage]:
-    """Return what to say where a few positions, marked in a column, go round the others."""
+def _corners_among(
+    layer: Layer, lonlat: NDArray[np.float64], options: ReadOptions
+) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
+    """Return which of the plants ``(n,)`` are corners to leave out, and what to say of them.
+
+    They are a few positions, marked in a column, that go round the others.
+    """
+    none = np.zeros(len(lonlat), dtype=bool)
     for column, values in layer.columns.items():
         if not _has_few(values):
             continue
@@ -132,19 +140,30 @@ def _corners_among(layer: Layer, lonlat: NDArray[np.float64]) -> list[ImportMess
         for less, mark in by_number:
             corners = marks == mark
             others = [f"{column}={other}" for _, other in by_number if other not in {mark, ""}]
-            if others and _go_round(lonlat[corners], lonlat[~corners]):
+            if not others or not _go_round(lonlat[corners], lonlat[~corners]):
+                continue
+            n, all_, named = -less, len(marks), f"{column}={mark}"
+            if options.far == "keep":
                 said = worded(
                     "{n} of {all} plants, with {mark}, go round the others, as the corners of a "
                     "plot do. Say which are the plants if they are none.",
-                    n=-less,
-                    all=len(marks),
-                    mark=f"{column}={mark}",
+                    n=n,
+                    all=all_,
+                    mark=named,
                 )
                 remedy = Remedy(
                     "where", others[0], worded("Take the others alone"), tuple(others[1:])
                 )
-                return [doubtful(said, remedy=remedy)]
-    return []
+                return none, [doubtful(said, remedy=remedy)]
+            said = worded(
+                "{n} of {all} plants, with {mark}, go round the others, as the corners of a plot "
+                "do, and were left out.",
+                n=n,
+                all=all_,
+                mark=named,
+            )
+            return corners, [dropped(said, remedy=Remedy("far", "keep", worded("Keep them")))]
+    return none, []
 
 
 def _has_few(values: NDArray[np.object_]) -> bool:

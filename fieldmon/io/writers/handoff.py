@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.arguments import must_be
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import Worded, worded
 from fieldmon.errors import SettingError
 from fieldmon.io.atomic_write import write_whole
 
@@ -31,7 +31,7 @@ class HandoffFormat(NamedTuple):
     endings
         That tell it; the first is the usual one.
     reader
-        Who reads it, in a few words.
+        Who reads it, in a few words: the app says them.
     several
         Whether it takes several files; the function then returns their bytes by ending, the main
         one first.
@@ -39,7 +39,7 @@ class HandoffFormat(NamedTuple):
 
     writer: str
     endings: tuple[str, ...]
-    reader: str
+    reader: Worded
     several: bool = False
 
     def make(self, plan: HandoffPlan) -> dict[str, bytes]:
@@ -49,32 +49,32 @@ class HandoffFormat(NamedTuple):
         return dict(made) if self.several else {self.endings[0]: made}
 
 
-#: by name; one whose ending ends another's comes later
+#: by name, the commonest first
 FORMATS = {
+    "gpx": HandoffFormat("gpx:route_gpx", (".gpx",), worded("GPS handhelds and hiking apps")),
+    "kml": HandoffFormat("kml:route_kml", (".kml",), worded("Google Earth, map apps on phones")),
+    "sheet": HandoffFormat(
+        "field_sheet:route_sheet", (".html", ".htm"), worded("a printer: a scout without a phone")
+    ),
+    "csv": HandoffFormat("csv:route_csv", (".csv",), worded("spreadsheets")),
+    "geojson": HandoffFormat(
+        "geojson:handed_geojson", (".geojson", ".json"), worded("QGIS, phones, web maps")
+    ),
+    "gpkg": HandoffFormat("gis:route_gpkg", (".gpkg",), worded("QGIS, QField, ArcGIS")),
+    "shapefile": HandoffFormat(
+        "gis:route_shapefile", (".shp.zip", ".zip"), worded("older map programs and consoles")
+    ),
+    "waypoints": HandoffFormat(
+        "nav2:waypoints_yaml", (".waypoints.yaml", ".yaml", ".yml"), worded("robots of any kind")
+    ),
+    "nav2": HandoffFormat(
+        "nav2:nav2_files", (".nav2.geojson",), worded("robots with Nav2 (ROS 2)"), several=True
+    ),
     "nav2-pauses": HandoffFormat(
         "nav2:nav2_files_with_pauses",
         (".pauses.nav2.geojson",),
-        "robots with Nav2 and a plugin for pauses",
+        worded("robots with Nav2 and a plugin for pauses"),
         several=True,
-    ),
-    "nav2": HandoffFormat(
-        "nav2:nav2_files", (".nav2.geojson",), "robots with Nav2 (ROS 2)", several=True
-    ),
-    "waypoints": HandoffFormat(
-        "nav2:waypoints_yaml", (".waypoints.yaml", ".yaml", ".yml"), "robots of any kind"
-    ),
-    "geojson": HandoffFormat(
-        "geojson:handed_geojson", (".geojson", ".json"), "QGIS, phones, web maps"
-    ),
-    "gpkg": HandoffFormat("gis:route_gpkg", (".gpkg",), "QGIS, QField, ArcGIS"),
-    "shapefile": HandoffFormat(
-        "gis:route_shapefile", (".shp.zip", ".zip"), "older map programs and consoles"
-    ),
-    "csv": HandoffFormat("csv:route_csv", (".csv",), "spreadsheets"),
-    "kml": HandoffFormat("kml:route_kml", (".kml",), "Google Earth, map apps on phones"),
-    "gpx": HandoffFormat("gpx:route_gpx", (".gpx",), "GPS handhelds and hiking apps"),
-    "sheet": HandoffFormat(
-        "field_sheet:route_sheet", (".html", ".htm"), "a printer: a scout without a phone"
     ),
 }
 
@@ -127,11 +127,12 @@ def format_of(target: Path, name: str | None = None) -> HandoffFormat:
                 )
             )
         return FORMATS[name.lower()]
-    for chosen in FORMATS.values():
-        if target.name.lower().endswith(chosen.endings):
-            _refuse_packed(target)
-            return chosen
-    endings = ", ".join(ending for chosen in FORMATS.values() for ending in chosen.endings)
+    told = {ending: chosen for chosen in FORMATS.values() for ending in chosen.endings}
+    # the longest tells: .nav2.geojson ends in .geojson, too
+    if ends := [ending for ending in told if target.name.lower().endswith(ending)]:
+        _refuse_packed(target)
+        return told[max(ends, key=len)]
+    endings = ", ".join(told)
     raise SettingError(
         worded(
             "The name of a route file must end in one of {endings}, but it is "

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.compute.arguments import must_be_rate
 from fieldmon.compute.wording import worded
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import why_not_written, write_whole
+from fieldmon.io.spray_rate import must_be_rate
 from fieldmon.io.writers.isoxml import isoxml_taskdata
 from fieldmon.io.writers.zone_cells import ZoneCells, narrowest_m, rates_geotiff, zone_cells
 from fieldmon.plot.projection import Frame

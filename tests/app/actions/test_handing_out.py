@@ -3,12 +3,16 @@
 import io
 import zipfile
 from datetime import datetime
+from types import SimpleNamespace
 
 import pytest
 
+from app.actions import handing_out
 from app.actions.handing_out import made
+from fieldmon.compute.wording import worded
 from fieldmon.io.writers import FORMATS, HandoffPlan
 from fieldmon.io.writers.day_file import RouteNotes
+from fieldmon.io.writers.handoff import HandoffFormat
 from tests.app.chosen import a_plot, chosen
 
 
@@ -31,3 +35,23 @@ def test_several_files_come_as_one_archive(plan):
         packed = {name.removeprefix("route"): archive.read(name) for name in archive.namelist()}
     assert packed == nav2.make(plan)
     assert len(packed) == 3
+
+
+def test_a_new_format_is_offered_without_a_line_in_the_app(plan, monkeypatch):
+    new = HandoffFormat("gpx:route_gpx", (".new",), worded("whoever reads new files"))
+    monkeypatch.setitem(FORMATS, "new", new)
+    offered = {}
+
+    def box(_label, names, *_, format_func, **_more):
+        offered.update({name: format_func(name) for name in names})
+        return names[-1]
+
+    monkeypatch.setattr(handing_out.st, "selectbox", box)
+    told = []
+    monkeypatch.setattr(
+        handing_out.st, "download_button", lambda label, *_, **_m: told.append(label)
+    )
+    handing_out._files(SimpleNamespace(day="2026-11-16"), plan)
+    assert next(iter(offered)) == "gpx"  # the commonest first
+    assert offered["new"] == "whoever reads new files: new"
+    assert told == ["Download for whoever reads new files"]

@@ -5,6 +5,7 @@ from datetime import UTC, date, datetime
 
 import numpy as np
 
+from app.actions import scouting
 from app.state.choices import WHOSE_DAY
 from app.words import texts
 from fieldmon.errors import FileProblem
@@ -34,6 +35,18 @@ def test_each_tap_of_the_scout_is_kept_at_once_and_the_route_goes_on(season_app,
     assert done.result.tolist() == [0, 1, 2]
     assert (np.diff(done.second) > 0).all()
     assert season_app.number_input(key="scout_count").value is None
+
+
+def test_a_tap_that_was_answered_says_nothing_of_a_plant_again(season_app, season, monkeypatch):
+    go(season_app, "scout")
+    tap(season_app, "scout_clean")
+    with monkeypatch.context() as patch:  # a page as it was drawn before that tap
+        patch.setattr(scouting, "taps", lambda: 0)
+        season_app.run()
+    tap(season_app, "scout_clean")
+    assert len(season().history.inspections) == 1
+    tap(season_app, "scout_clean")
+    assert len(season().history.inspections) == 2
 
 
 def test_a_reload_of_the_page_goes_on_where_the_scout_stood(season_app):

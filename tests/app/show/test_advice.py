@@ -9,9 +9,10 @@ from app.show import advice as shown
 from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.compute.units import Units
-from fieldmon.compute.wording import litres_figure, share_figure
+from fieldmon.compute.wording import share_figure
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.io.spray_rate import litres_figure
 from fieldmon.monitoring.advice import AdviceSettings, advice
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting

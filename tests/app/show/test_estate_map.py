@@ -51,18 +51,30 @@ def test_every_part_of_a_plot_is_drawn_where_it_is_and_leads_to_it():
     assert estate_map.plot_tapped(PLOTS, -1) is None
 
 
-def test_a_plot_too_small_to_be_seen_among_all_has_a_mark_that_leads_to_it():
-    tiny = PlotState("tiny", "tiny", shapely.MultiPolygon([shapely.box(55.0, 30.0, 55.01, 30.01)]))
-    plots = [PLOTS[0], tiny, PLOTS[2]]
+def test_every_plot_has_a_dot_that_leads_to_it_also_where_others_lie_on_it():
+    same = PlotState("again", "again", PLOTS[0].outline, expected=1.0)
+    plots = [*PLOTS, same]
     content = estate_map.content(plots)
-    (marks,) = (one for one in content.layers if one.id == estate_map.MARKS)
-    (row,) = marks.data
-    assert tiny.outline.contains(shapely.Point(row["p"]))
-    assert tuple(row["c"][:3]) == tuple(content.layers[-1].data[1]["c"][:3]), "as its area"
-    assert estate_map.plot_tapped(plots, 0, estate_map.MARKS) is tiny
+    (areas,) = (one for one in content.layers if one.id == estate_map.PLOTS)
+    dots = content.layers[-1]
+    assert dots.id == estate_map.MARKS
+    for number, (plot, row) in enumerate(zip(plots, dots.data, strict=True)):
+        assert plot.outline.contains(shapely.Point(row["p"]))
+        assert row["around"] == list(plot.outline.bounds)
+        assert estate_map.plot_tapped(plots, number, estate_map.MARKS) is plot
+        own = next(one for one in areas.data if one["n"] == number)
+        assert row["c"][:3] == own["c"][:3], "as its area"
     assert estate_map.plot_tapped(plots, 0, "route") is None
-    assert ["away" in label for label in content.labels] == [False, True, False]
-    assert len(estate_map.content(PLOTS).layers) == 1
+    assert [label["plot"] for label in content.labels] == [0, 1, 2, 3, 4]
+
+
+def test_the_dot_of_several_plots_is_of_the_one_that_waits_most():
+    ((new, never, today, late),) = (
+        [row["urgent"] for row in one.data]
+        for one in estate_map.content(PLOTS).layers
+        if one.id == estate_map.MARKS
+    )
+    assert never == late < today < new
 
 
 def test_all_plots_are_in_view_with_their_names():

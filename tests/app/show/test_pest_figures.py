@@ -7,7 +7,8 @@ import streamlit as st
 
 from app.show import pest_figures
 from app.words import language, texts
-from fieldmon.io.readers.pest_file import shipped_names, shipped_pest
+from fieldmon.io.packaged import pest_names
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.pests.pest import Citation, Pest, Stage
 from tests.app.test_hostile_texts import LEADS, NAMES
 
@@ -22,13 +23,15 @@ def said(monkeypatch):
     return lines
 
 
-@pytest.mark.parametrize("name", shipped_names())
+@pytest.mark.parametrize("name", pest_names())
 def test_every_pest_that_comes_along_has_words_of_the_page_in_each_language(name, said):
     pest = shipped_pest(name)
+    names = [stage.name for stage in pest.stages]
     for code in language.LANGUAGES:
         language.use(code)
-        assert pest_figures.title(pest) == texts.PEST_TITLES[name]
-        assert all(stage.name in texts.PEST_STAGES for stage in pest.stages)
+        told = [pest_figures.title(pest), *map(pest_figures.stage_name, names)]
+        assert (told == [pest.title, *names]) is (code == language.ENGLISH)
+        assert "English" not in "".join(told)
     language.use(language.ENGLISH)
     pest_figures.show(pest)
     shown = "\n".join(said)

@@ -9,7 +9,7 @@ from app.state import brought_files, chosen_pest
 from app.state.brought_files import File
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.options import Upload
-from fieldmon.io.readers.pest_file import shipped_names
+from fieldmon.io.packaged import pest_names
 
 TODAY = date(2026, 11, 18)
 TOML = b'name = "own"\n[movement]\nper_day = 0.3\n[sources]\nmovement = "A test, 2026"\n'
@@ -29,7 +29,7 @@ def bring(kind, name, data):
 
 
 def test_a_pest_is_none_one_that_comes_along_or_ones_own(session):
-    assert chosen_pest.options() == (chosen_pest.NONE, *shipped_names(), chosen_pest.OWN)
+    assert chosen_pest.options() == (chosen_pest.NONE, *pest_names(), chosen_pest.OWN)
     assert chosen_pest.pest() is None
     choose(session, "whitefly")
     assert chosen_pest.pest().name == "whitefly"

@@ -25,6 +25,7 @@ def test_a_room_shows_its_first_part_first_and_another_by_a_click(app, name):
 
 
 def test_the_part_that_was_shown_is_shown_again_after_another_room(app):
+    assert not app.exception  # it has begun, on Today
     go(app, "field")
     go(app, "today")
     app.segmented_control(key=rooms.key("today")).set_value("scout").run()

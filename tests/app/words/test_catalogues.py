@@ -50,7 +50,7 @@ _ELSEWHERE = {
     "decisions/leaves.py", "decisions/taylor.py", "infestation/belief.py",
     "infestation/hotspots.py", "infestation/inspections.py", "infestation/kernels.py",
     "infestation/observations.py", "infestation/spread.py", "monitoring/monitor.py",
-    "planning/routes", "plot/frames.py",
+    "planning/routes", "plot/frames.py", "plot/positions.py",
 }  # fmt: skip
 _SAYS = {"seen", "repaired", "guessed", "dropped", "doubtful", "ask_for_crs"}
 _LABEL = {"Remedy": 2, "ask_for_crs": 2}

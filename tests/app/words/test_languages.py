@@ -3,16 +3,18 @@
 import gettext
 import os
 import re
+import shutil
 import string
 from functools import cache
+from io import BytesIO
 from pathlib import Path
 
 import pytest
+from babel.messages.pofile import read_po
 
 import fieldmon
 from app.state import chosen_language
-from app.words import language, texts
-from fieldmon.io.writers import FORMATS
+from app.words import catalogues, language, texts
 from tests.app.driving import PAGES, go, map_of, opened, texts_of
 from tests.app.words.known_texts import catalogue, entries
 
@@ -85,18 +87,53 @@ def test_a_plural_has_as_many_forms_as_the_language_tells_apart(code):
             assert len(strings(held, entry)) == held.num_plurals, entry
 
 
+def says_who_made_it(held):
+    """Return whether a catalogue says so, and of a machine at its head too."""
+    by = held.last_translator
+    return bool(by) and ("machine" in by) == ("MADE BY A MACHINE" in held.header_comment)
+
+
 @pytest.mark.parametrize("code", OTHERS)
 def test_a_catalogue_says_who_made_it_and_holds_the_words_of_the_field(code):
-    head = catalogue(code).header_comment
-    assert "MADE BY A MACHINE" in head
-    assert "hot spot = " in head
+    held = catalogue(code)
+    assert says_who_made_it(held)
+    assert "hot spot = " in held.header_comment
 
 
-# -- texts
+@pytest.mark.parametrize("code", OTHERS)
+def test_who_corrects_a_catalogue_takes_out_a_paragraph_and_says_so(code):
+    read = BytesIO(catalogues.path_of(code).read_bytes())
+    held = read_po(read, locale=code)
+    head = held.header_comment
+    paragraph = head[head.index("#\n# MADE BY") : head.index("# This file is all")]
+    assert "MACHINE_MADE" in paragraph
+    assert "Last-Translator" in paragraph
+    held.header_comment = head.replace(paragraph, "")
+    assert not says_who_made_it(held)
+    held.last_translator = "Ana Ruiz, agronomist"
+    assert says_who_made_it(held)
 
 
-def test_who_reads_a_format_is_said_as_the_library_says_it():
-    assert {name: one.reader for name, one in FORMATS.items()} == texts.READERS
+def test_a_draft_is_spoken_by_its_address_with_english_where_it_has_no_words(
+    tmp_path, monkeypatch, speaking
+):
+    lines = catalogues.path_of("es").read_text(encoding="utf-8").split("\n\n", maxsplit=1)[0]
+    texts_ = (("LANGUAGE", "Language", "Sprache"), ("DISPLAY", texts.DISPLAY, ""))
+    more = [f'msgctxt "{key}"\nmsgid "{said}"\nmsgstr "{new}"\n' for key, said, new in texts_]
+    for code in OTHERS:
+        shutil.copy(catalogues.path_of(code), tmp_path)
+    (tmp_path / "de.po").write_text("\n".join([lines, "", *more]), encoding="utf-8")
+    monkeypatch.setattr(language, "FOLDER", tmp_path)
+    assert opened(lang="de").selectbox(key=chosen_language.KEY).value == "en"
+    monkeypatch.setattr(language, "DRAFTS", {"de": "Deutsch"})
+    app = opened(lang="de")
+    speaking("de")
+    box = app.selectbox(key=chosen_language.KEY)
+    assert not app.exception
+    assert (box.label, box.value, box.options[-1]) == ("Sprache", "de", "Deutsch")
+    assert texts.DRAFT in [one.value for one in app.caption]
+    assert texts.CHANGED_TREATED.format(n=1, day="x") == "1 plant was treated on x."
+    assert "Deutsch" not in opened().selectbox(key=chosen_language.KEY).options
 
 
 # -- the library's sentences

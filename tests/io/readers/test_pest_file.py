@@ -5,13 +5,8 @@ import re
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.io.readers.pest_file import (
-    pest_from_text,
-    pest_of,
-    read_pest,
-    shipped_names,
-    shipped_pest,
-)
+from fieldmon.io.packaged import pest_names
+from fieldmon.io.readers.pest_file import pest_from_text, pest_of, read_pest, shipped_pest
 from fieldmon.plot.robot import Robot
 from tests.docs.pages import PAGES, the_fence
 
@@ -143,7 +138,7 @@ def test_a_name_that_is_neither_file_nor_pest_lists_the_pests(tmp_path):
         read_pest(path)
 
 
-@pytest.mark.parametrize("name", shipped_names())
+@pytest.mark.parametrize("name", pest_names())
 def test_each_pest_that_comes_along_says_its_sources_and_is_called_as_its_file(name):
     pest = shipped_pest(name)
     assert pest.name == name

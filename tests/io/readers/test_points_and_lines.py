@@ -1,5 +1,7 @@
 """Plants out of points and tables, rows and paths out of lines."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pyproj import Transformer
@@ -104,9 +106,17 @@ CORNERS = [Point(5.0, 45.0), Point(5.001, 45.0), Point(5.001, 45.001), Point(5.0
 WITHIN = [Point(5.0001 + 0.0001 * (i % 5), 45.0001 + 0.0001 * (i // 5)) for i in range(15)]
 
 
-def test_corners_of_a_plot_among_its_plants_are_doubted_and_the_answer_is_named():
+def test_corners_of_a_plot_among_its_plants_are_no_plants_until_somebody_says_that_they_are():
     layer = layer_of([*CORNERS, *WITHIN], marker=["polygon"] * 4 + ["planta"] * 15)
-    (said,) = (one for one in plants_of(layer, ANY).messages if one.remedy is not None)
+    imported = plants_of(layer, ANY)
+    (said,) = (one for one in imported.messages if one.remedy is not None)
+    assert said.severity == Severity.DROPPED
+    assert "4 of 19 plants, with marker=polygon, go round the others" in said.sentence
+    assert len(imported.value) == 15
+    (option, value) = said.remedy.setting.split("=")
+    kept = plants_of(layer, replace(ANY, **{option: value}))
+    assert len(kept.value) == 19
+    (said,) = (one for one in kept.messages if one.remedy is not None)
     assert said.severity == Severity.DOUBTFUL
     assert "4 of 19 plants, with marker=polygon, go round the others" in said.sentence
     assert said.remedy.setting == "where=marker=planta"

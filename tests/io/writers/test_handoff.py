@@ -16,6 +16,7 @@ import pyogrio
 import pytest
 import yaml
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.readers.inspections import read_inspections
@@ -125,7 +126,9 @@ def test_a_new_format_is_a_file_and_a_line(tmp_path, monkeypatch):
     module = ModuleType("fieldmon.io.writers.plain")
     module.route_plain = lambda plan: " ".join(stop.label for stop in plan.stops).encode()
     monkeypatch.setitem(sys.modules, module.__name__, module)
-    monkeypatch.setitem(FORMATS, "plain", HandoffFormat("plain:route_plain", (".txt",), "people"))
+    monkeypatch.setitem(
+        FORMATS, "plain", HandoffFormat("plain:route_plain", (".txt",), worded("people"))
+    )
     plan = usual()
     (path,) = write_handoff(plan, tmp_path / "day.txt")
     assert path.read_text("utf-8").startswith(plan.stops[0].label)
@@ -142,7 +145,7 @@ def test_the_ending_or_the_name_tells_the_format(tmp_path):
             write_handoff(plan, tmp_path / name)
     with pytest.raises(SettingError, match="must end in one of"):
         write_handoff(plan, tmp_path / "a.docx")
-    with pytest.raises(SettingError, match=r"written as nav2-pauses, nav2, .* not as 'docx'"):
+    with pytest.raises(SettingError, match=r"written as gpx, kml, .* not as 'docx'"):
         write_handoff(plan, tmp_path / "a.csv", "docx")
 
 

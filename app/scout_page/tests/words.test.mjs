@@ -1,0 +1,19 @@
+// Days are said as the app says them.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { dayOf } from "../src/words.js";
+
+const SAID = {
+  en: ["Mon 16 Nov", "Sat 21 Nov", "Mon 21 Sep"],
+  he: ["ב׳ 16 בנוב׳", "שבת 21 בנוב׳", "ב׳ 21 בספט׳"],
+  ar: ["الاثنين 16 نوفمبر", "السبت 21 نوفمبر", "الاثنين 21 سبتمبر"],
+  es: ["lun 16 nov", "sáb 21 nov", "lun 21 sept"],
+};
+
+for (const [language, said] of Object.entries(SAID)) {
+  test(`a day has its weekday, day and month in ${language}`, () => {
+    assert.deepEqual(["2026-11-16", "2026-11-21", "2026-09-21"].map((day) => dayOf(day, language)), said);
+  });
+}

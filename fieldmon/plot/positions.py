@@ -1,0 +1,59 @@
+"""Positions on the map, as a program hands them over."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.arguments import array_of
+from fieldmon.errors import ObservationError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+_FARTHEST_DEG = (360.0, 90.0)
+
+
+def lonlat_of(
+    what: str, given: object, instead: str = "", *, nowhere: bool = False
+) -> NDArray[np.float64]:
+    """Return positions ``(m, 2)`` in degrees, longitude first; raise an error for anything else.
+
+    Parameters
+    ----------
+    what
+        Whose they are, in the sentence: ``"Positions of records"``.
+    given
+        What was handed over.
+    instead
+        What else to do.
+    nowhere
+        Whether NaN will do: of what nobody says where it was.
+
+    Examples
+    --------
+    >>> lonlat_of("Plants", [[30.0, 135.0]])
+    Traceback (most recent call last):
+    ...
+    fieldmon.errors.ObservationError: Plants must be longitude and latitude in degrees, but one is 30, 135. Give longitude first.
+    """  # noqa: E501 - a sentence
+    import numpy as np  # noqa: PLC0415 - commands that only print their help do not wait for it
+
+    points = array_of(np.float64, what, given)
+    if points.size == 0 and points.ndim:
+        return points.reshape(-1, 2)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ObservationError(
+            f"{what} must be pairs of longitude and latitude, but they have the shape "
+            f"{points.shape}."
+        )
+    wrong = (np.abs(points) > _FARTHEST_DEG).any(axis=1)
+    if not nowhere:
+        wrong |= np.isnan(points).any(axis=1)
+    if wrong.any():
+        lon, lat = points[wrong][0]
+        raise ObservationError(
+            f"{what} must be longitude and latitude in degrees, but one is {lon:g}, {lat:g}. "
+            f"Give longitude first{instead}."
+        )
+    return points

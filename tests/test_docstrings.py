@@ -1,0 +1,70 @@
+"""What docstrings name in backquotes is there: a module, a class, a field, a file of the house."""
+
+import ast
+import builtins
+import re
+
+from tests.paths import ROOT
+
+#: of other programs, and of anybody
+FOREIGN = {
+    "FPDF", "polyline", "PCD_ED", "concurrent", "futures", "asdict", "layer_styles", "markupsafe",
+    "Markup", "SeedSequence", "NAME", "dataclasses", "numpy", "random",
+}  # fmt: skip
+OWN_SAMPLERS = {"my_sampler.py", "mine.py"}
+_NAMED = re.compile(r"(?<!`)`([A-Za-z_][\w.]*)`(?!`)")
+_FILE = re.compile(r"[\w-]+\.py\b")
+_DEFINED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+
+
+def sources():
+    """Return the code of library and app by file."""
+    paths = [path for room in ("fieldmon", "app") for path in (ROOT / room).rglob("*.py")]
+    return {
+        path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
+        for path in sorted(paths)
+        if "_app" not in path.parts
+    }
+
+
+def names_in(tree):
+    """Yield every name that code gives or uses."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name):
+            yield node.id
+        elif isinstance(node, ast.Attribute):
+            yield node.attr
+        elif isinstance(node, _DEFINED):
+            yield node.name
+        elif isinstance(node, ast.arg | ast.keyword):
+            yield node.arg
+        elif isinstance(node, ast.alias):
+            yield from (node.asname or node.name).split(".")
+
+
+def untrue(code):
+    """Return what docstrings name and there is not, by file."""
+    trees = {path: ast.parse(text) for path, text in code.items()}
+    files = {path.rpartition("/")[2] for path in code} | OWN_SAMPLERS
+    known = {*dir(builtins), *FOREIGN, *(part for path in code for part in path[:-3].split("/"))}
+    known |= {name for tree in trees.values() for name in names_in(tree)}
+    found = {}
+    for path, tree in trees.items():
+        nodes = [node for node in ast.walk(tree) if isinstance(node, (ast.Module, *_DEFINED))]
+        said = "\n".join(ast.get_docstring(node) or "" for node in nodes)
+        named = {name for name in _NAMED.findall(said) if not known.issuperset(name.split("."))}
+        if gone := named | set(_FILE.findall(said)) - files:
+            found[path] = gone
+    return found
+
+
+def test_docstrings_name_nothing_that_is_gone():
+    assert untrue(sources()) == {}
+
+
+def test_what_is_gone_is_noticed():
+    code = {
+        "io/read.py": '"""Only here (and in project.py), see `guard` and `io.gone`, not ``x``."""',
+        "io/write.py": 'def write(plan):\n    """Write `plan` as `read` and write.py say."""',
+    }
+    assert untrue(code) == {"io/read.py": {"project.py", "guard", "io.gone"}}

@@ -26,18 +26,18 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import OneSampler
-from fieldmon.cli.season_files import refuse_what_was_chosen
+from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED
-from fieldmon.errors import FieldmonError, SettingError
+from fieldmon.errors import SettingError
 from fieldmon.samplers import USUAL
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from datetime import date
 
-    from fieldmon.drive.day import DrivenDay, DrivenStop
-    from fieldmon.drive.errand import DayToDrive, DrivingRobot, Errand
+    from fieldmon.drive.day import DrivenDay
+    from fieldmon.drive.errand import DayToDrive, DrivingRobot
     from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.vda5050.wire import RobotName
@@ -173,7 +173,7 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
     its finds, so a season accepts them only with --made-up. A team's robots drive at once by VDA
     5050, each with its name as serial number; its scouts are left out.
 
-    Example: fieldmon drive estate.zip --feature Gate --rover --hours 1 --robot mujoco -o day.csv
+    Example: fieldmon drive estate.zip --feature Gate --rover --hours 1 --robot mujoco -o driven.csv
     Example: fieldmon drive estate.zip --feature Gate --rover --robot mujoco --steering ackermann
     Example: fieldmon drive season.gpkg --robot vda5050 --broker farm.local --serial robot1
     """
@@ -202,6 +202,7 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     from fieldmon.planning.assumptions import assumed_by
     from fieldmon.plot.local_clock import local_clock
 
+    _refuse_written_over(None, (options.output,))
     worker = options.worker.robot()
     if options.steering == "ackermann":
         from fieldmon.drive.robot_body import with_turning_radius
@@ -235,6 +236,7 @@ def _season(options: DriveOptions, file: Path) -> None:
             "Drive a copy of the season with --made-up, or a robot with --robot vda5050."
         )
     season = Season(file)
+    _refuse_written_over(season, (options.output,))
     on = day_on(season.plot.field, day(options.on))
     settings = season.planned_by(on)
     worker = settings.robot
@@ -289,7 +291,7 @@ def _team(context: typer.Context, options: DriveOptions, file: Path) -> bool:
         )
     from fieldmon.drive.one_drive import one_drive
 
-    with one_drive(file, f"a team ({options.manufacturer})"):
+    with one_drive(file, f"a team ({options.manufacturer})", is_team=True):
         _team_day(options, season, on, settings)
     return True
 
@@ -300,13 +302,16 @@ def _team_day(
     """Let a season's team drive what is left of its day, and write what came of it."""
     from fieldmon.cli.team_files import files_of_each
     from fieldmon.drive.recording import Recording
-    from fieldmon.drive.team_season import TeamSeason
+    from fieldmon.drive.team_season import TeamSeason, robots_of
     from fieldmon.drive.vda5050.team import drive_team
     from fieldmon.drive.vda5050.wire import Broker
 
     asked = [path for path in (options.output, options.bag) if path is not None]
+    robots = robots_of(settings.team)
+    files = files_of_each(asked, robots) if asked else [[] for _ in robots]
+    if options.output is not None:
+        _refuse_written_over(season, (first for first, *_ in files))
     today = TeamSeason(season, on, options.manufacturer)
-    files = files_of_each(asked, today.robots) if asked else [[] for _ in today.robots]
     tell_assumed(season.assumed(settings))
     tell_past_midnight(on, settings)
     _tell_left_out([one.name for one in today.team if one not in today.robots])
@@ -324,9 +329,10 @@ def _team_day(
     missing: dict[str, None] = {}
     for one, paths in zip(today.robots, files, strict=True):
         each = driven[one.name]
-        if isinstance(each, FieldmonError):
-            missing[str(each)] = None
-            continue
+        if each.broken:
+            missing[each.broken] = None
+            if not each.stops:
+                continue
         own = [*paths]
         output = own.pop(0) if options.output is not None else None
         bag = own.pop(0) if options.bag is not None else None
@@ -334,7 +340,7 @@ def _team_day(
         _write_bag(recordings[one.name], begins[one.name], mine)
         _write(each, on, mine, one.name, before[one.name])
     _tell_replanned(today.replanned - 1)
-    if today.stopped:
+    if today.stops:
         _tell_stopped(season, on, today.batch)
         raise KeyboardInterrupt
     if missing:
@@ -423,17 +429,12 @@ def _driven(
     begins: datetime,
     so_far: DrivenDay | None = None,
 ) -> DrivenDay:
-    """Drive a day; each stop that was told is also put into `so_far`."""
+    """Drive a day; it is noted in `so_far`, which stays where the day breaks off."""
     from fieldmon.drive.day import drive_day
 
     robot, (driver, recording) = who
 
-    def watch(stop: DrivenStop, errand: Errand) -> None:
-        if so_far is not None:
-            so_far.stops.append(stop)
-        recording.note(stop, errand)
-
-    driven = drive_day(today, aisles, (robot, driver), watch)
+    driven = drive_day(today, aisles, (robot, driver), recording.note, so_far)
     _write_bag(recording, begins, options)
     return driven
 
@@ -521,6 +522,17 @@ def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before
     write_whole(options.output, day_table(driven, on, name, before))
     write_whole(stops_path(options.output), stop_table(driven))
     typer.echo(f"Written to {options.output} and {stops_path(options.output)}")
+
+
+def _refuse_written_over(season: Season | None, outputs: Iterable[Path | None]) -> None:
+    """Refuse tables that cannot be written, or would replace what somebody filled in."""
+    from fieldmon.drive.account import is_driven_table, stops_path
+    from fieldmon.io.atomic_write import require_place
+
+    files = [file for path in outputs if path is not None for file in (path, stops_path(path))]
+    for file in files:
+        require_place(file)
+    refuse_unrecorded(season, [file for file in files if not is_driven_table(file)])
 
 
 def _robot_name(options: DriveOptions) -> RobotName:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
-from datetime import datetime
+from datetime import datetime, time, timedelta
 from functools import cache
+from math import isfinite
 from typing import TYPE_CHECKING, NamedTuple
 
 import typer
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.plan import DayPlan
 
+# times are told to the minute
+_MINUTE_S = 60.0
 # what a plan of a season may be told; all else was chosen when it began
 _OF_A_PLAN = {"plot", "output", "on", "now", "as_now", "enter_treated", "chance_map", "bound"}
 
@@ -50,11 +53,14 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     from fieldmon.planning.route import with_forecast
     from fieldmon.reports.words import DAY_OF_NOBODY
 
-    now, settings, field = options.now, season.planned_by(on), season.plot.field
+    settings, field = season.planned_by(on), season.plot.field
+    now = None if options.now is None else clock(options.now, "--now")
     _tell_settings_of_then(season, on, settings)
     hours = max(one.hours for one in (settings.robot, *(m.robot for m in settings.team)))
     tell_clock_change(datetime.combine(on, settings.starts), hours, field)
     tell_past_midnight(on, settings)
+    if now is not None:
+        _refuse_worked(season, on, now, [one.name for one in settings.team])
     if settings.team:
         _plan_team(season, options, on, settings)
         return
@@ -62,7 +68,7 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     if now is None:
         today = plan_ahead(season, on, keep=True, anew=options.enter_treated or options.as_now)
     else:
-        today = season.plan(on, clock(now, "--now"))
+        today = season.plan(on, now)
     if options.bound and len(today.route):
         today = with_bound(today)
     route = today.route
@@ -89,6 +95,23 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     _tell_detection(season, on)
     write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
     write_chance_map(options.chance_map, season.plot, season.evening(on))
+
+
+def _refuse_worked(season: Season, on: date, now: time, team: list[str]) -> None:
+    """Refuse a time before somebody's last result: hours already worked are no hours left."""
+    for name in team or [""]:
+        second = season.worked(on, name).second
+        if not len(second) or not isfinite(second[-1]):
+            continue
+        if season.left_s(on, now, name) < season.left_s(on, None, name) + _MINUTE_S:
+            continue
+        last = datetime.combine(on, time()) + timedelta(seconds=float(second[-1]))
+        whose = f"{name}'s last result" if name else "the last result"
+        raise SettingError(
+            f"--now must not be before what was found, but it is {now:%H:%M} and {whose} of {on} "
+            f"is of {last:%H:%M}: hours already worked are no hours left. Give a later --now, or "
+            "none to go on from there."
+        )
 
 
 def _refuse_nothing_left(days: Sequence[DayPlan]) -> None:

@@ -67,3 +67,12 @@ def in_words(driven: DrivenDay) -> str:
             f"{100 * driven.strayed_m:.0f} cm off the way."
         )
     return "\n".join([said, *driven.stuck])
+
+
+def is_driven_table(path: Path) -> bool:
+    """Tell whether a file is a table of a driven day or of its stops, which nobody fills in."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        head = file.readline(1000).decode(errors="replace").strip()
+    return head in {DAY_COLUMNS, STOP_COLUMNS}

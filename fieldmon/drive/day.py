@@ -55,12 +55,15 @@ class DrivenDay:
         Seconds of the way back to the gate.
     home
         What came of it; None: there was none, or as charged.
+    broken
+        What broke it off, in a sentence; "": nothing.
     """
 
     stops: list[DrivenStop] = field(default_factory=list)
     home_charged_s: float = 0.0
     home_driven_s: float = 0.0
     home: Visit | None = None
+    broken: str = ""
 
     def __repr__(self) -> str:
         return f"<DrivenDay: {counted(len(self.stops), 'stop')}, {self.found} found>"
@@ -111,6 +114,7 @@ def drive_day(
     aisles: Aisles,
     who: tuple[Robot, DrivingRobot],
     watch: Callable[[DrivenStop, Errand], None] | None = None,
+    driven: DrivenDay | None = None,
 ) -> DrivenDay:
     """Drive what is left of a day.
 
@@ -124,6 +128,8 @@ def drive_day(
         The robot's numbers, by which seconds are charged, and whoever drives.
     watch
         Told of every stop once it is told to the day.
+    driven
+        Where it is noted, which stays where the day breaks off; None: in one of its own.
 
     A robot that is stuck ends the day; of a plant that it did not get to nothing is told.
 
@@ -139,14 +145,16 @@ def drive_day(
     (True, frozenset())
     """
     robot, driver = who
-    clock = robot_clock(aisles.worked_by(robot), robot.day_s)
-    driven = DrivenDay()
+    worked = aisles.worked_by(robot)
+    clock = robot_clock(worked, robot.day_s)
+    driven = DrivenDay() if driven is None else driven
     driver.begin(aisles, place_m(aisles, day.at), day.gone_s)
     while (stop := day.ask()) is not None:
         at, since_s = day.at, day.gone_s
         plants = [stop.plant, *day.ahead(_AHEAD)]
         after = tuple((b, aisles.path(a, b)) for a, b in pairwise(plants))
-        errand = Errand(len(driven.stops) + 1, stop, way_m(aisles, at, stop.plant), after)
+        line_m = way_m(aisles, at, stop.plant)
+        errand = Errand(len(driven.stops) + 1, stop, line_m, after, worked.stop_s)
         visit = driver.visit(errand)
         charged_s = travel_s(aisles.travel, clock, at, stop.plant) + stop.inspect_s
         driven_s = charged_s if visit.done_s is None else visit.done_s - since_s

@@ -27,15 +27,23 @@ class Errand(NamedTuple):
         ``(k, 2)`` the way from where the robot stands, metres of the plot's frame.
     ahead
         What comes after it if nothing is found: plants, each with the way to it.
+    stop_s
+        Seconds of those at the plant that are charged for stopping.
     """
 
     number: int
     stop: PlantToInspect
     line_m: Float
     ahead: tuple[tuple[int, Float], ...] = ()
+    stop_s: float = 0.0
 
     def __repr__(self) -> str:
         return f"<Errand {self.number}: row {self.stop.row}, plant {self.stop.number}>"
+
+    @property
+    def look_s(self) -> float:
+        """Return the seconds of looking: whoever drives also stops, and so takes as charged."""
+        return max(self.stop.inspect_s - self.stop_s, 0.0)
 
 
 class Visit(NamedTuple):

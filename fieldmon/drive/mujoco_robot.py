@@ -95,7 +95,6 @@ class MujocoRobot:
         """Stand at a place of a plot; where to point is chosen on the first way."""
         mujoco = _mujoco()
         grid = aisles.grid
-        self._stop_s = aisles.worked_by(self._robot).stop_s
         self._ground = self._physics.ground
         world = mujoco.MjSpec.from_string(world_xml(grid, _STEP_S, self._ground))
         self._body.put_into(world, mujoco)
@@ -159,7 +158,7 @@ class MujocoRobot:
             return driven._replace(there=False)
         self._note()
         # it stands still: no physics needed
-        self._data.time += max(errand.stop.inspect_s - self._stop_s, 0.0)
+        self._data.time += errand.look_s
         self._note()
         found = self._look(errand.stop)
         return driven._replace(found=found, done_s=float(self._data.time))

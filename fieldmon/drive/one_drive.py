@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def one_drive(season: Path, name: str) -> Iterator[None]:
+def one_drive(season: Path, name: str, *, is_team: bool = False) -> Iterator[None]:
     """Hold a season for a drive, as long as its process lives.
 
     Parameters
@@ -30,6 +30,8 @@ def one_drive(season: Path, name: str) -> Iterator[None]:
         The season's file.
     name
         Who drives.
+    is_team
+        Whether those are the robots of a team.
 
     Raises
     ------
@@ -41,7 +43,7 @@ def one_drive(season: Path, name: str) -> Iterator[None]:
     >>> with one_drive(Path("season.gpkg"), "fieldmon/robot1"):
     ...     pass
     """
-    held = -1 if fcntl is None else _held(season, name)
+    held = -1 if fcntl is None else _held(season, name, is_team=is_team)
     try:
         yield
     finally:
@@ -49,7 +51,7 @@ def one_drive(season: Path, name: str) -> Iterator[None]:
             os.close(held)
 
 
-def _held(season: Path, name: str) -> int:
+def _held(season: Path, name: str, *, is_team: bool) -> int:
     """Return what holds a season; -1 where nothing can be held."""
     told = hashlib.sha256(os.fsencode(season.resolve())).hexdigest()[:16]
     file = Path(tempfile.gettempdir()) / f"fieldmon-drives-{told}"
@@ -63,10 +65,15 @@ def _held(season: Path, name: str) -> int:
     except BlockingIOError:
         other = os.read(held, 200).decode(errors="replace")
         os.close(held)
+        instead = (
+            "Wait for its end: one command drives all robots of the team."
+            if is_team
+            else "Wait for its end, or give the season a team (fieldmon change --robots), whose "
+            "robots are driven at once."
+        )
         raise SettingError(
             f"A season must be driven by one command at a time, but {other or 'another one'} "
-            f"drives {season.name} now. Wait for its end, or give the season a team (fieldmon "
-            "change --robots), whose robots are driven at once."
+            f"drives {season.name} now. {instead}"
         ) from None
     except OSError:
         return held

@@ -61,18 +61,15 @@ class TeamSeason:
         if not self.team:
             raise SettingError("A day of several robots needs a season with a team (--robots).")
         #: who of the team drives: people walk their own routes
-        self.robots = tuple(one for one in self.team if not one.robot.on_foot)
-        if not self.robots:
-            names = ", ".join(one.name for one in self.team)
-            raise SettingError(f"A day is driven by robots, but the team has none: {names}.")
+        self.robots = robots_of(self.team)
         self.season, self.on = season, on
         self.keeper = AisleKeeper()
         self.lock = threading.RLock()
         self.source = f"{source} {on}"
         #: plans that it went by, the one it began or went on with included
         self.replanned = 0
-        #: whether somebody stopped it: nobody is given another plant
-        self.stopped = False
+        #: how often somebody stopped it: nobody is given another plant
+        self.stops = 0
         #: plants that somebody has set out for
         self.errands: dict[str, int] = {}
         grid = season.plot.grid
@@ -121,6 +118,15 @@ class TeamSeason:
         return len(self.days) == len(left) and any(len(one.route) for one in self.days.values())
 
 
+def robots_of(team: tuple[TeamMember, ...]) -> tuple[TeamMember, ...]:
+    """Return who of a team drives; raise `SettingError` if nobody does."""
+    robots = tuple(one for one in team if not one.robot.on_foot)
+    if not robots:
+        names = ", ".join(one.name for one in team)
+        raise SettingError(f"A day is driven by robots, but the team has none: {names}.")
+    return robots
+
+
 class MemberDay(AskedDay):
     """The day of one of a team, asked for the next plant and told what was seen there."""
 
@@ -156,7 +162,7 @@ class MemberDay(AskedDay):
         """
         team, name = self._team, self._member.name
         with team.lock:
-            if team.stopped:
+            if team.stops:
                 return None
             if self._asked is None and (left := self._left()):
                 team.errands[name] = left[0]

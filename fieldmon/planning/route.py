@@ -59,6 +59,8 @@ class Route:
     found_bound
         What no route of these hours can expect to find, see `fieldmon.planning.day_bound`; None:
         it is not known.
+    stop_s
+        Seconds at each stop that are charged for stopping; the others are for looking.
 
     Examples
     --------
@@ -81,6 +83,7 @@ class Route:
     end_s: float
     notes: RouteNotes | None = None
     found_bound: float | None = None
+    stop_s: float = 0.0
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A route's")
@@ -215,6 +218,7 @@ def route_of(scene: Scene, work: Workday) -> Route:
         line_stop=leg_end[: len(work)],
         line_s=line_s,
         end_s=work.end_s,
+        stop_s=scene.robot.stop_s,
     )
 
 

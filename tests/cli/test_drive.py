@@ -5,12 +5,14 @@ from datetime import date
 import pytest
 
 from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.day import DrivenDay, DrivenStop
+from fieldmon.drive.errand import Visit
 from fieldmon.drive.one_drive import one_drive
 from fieldmon.drive.season_day import SeasonDay
 from fieldmon.errors import ObservationError
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.scouts import let_in
-from tests.cli.estate import BEGINS, ZIP, table
+from tests.cli.estate import BEGINS, ZIP, filled_in, table
 
 PLOT = ("drive", ZIP, "--feature", "Nursery", "--hours", "0.3", "--date", BEGINS)
 
@@ -23,6 +25,40 @@ def test_a_day_is_driven_as_charged_and_its_tables_written(run, tmp_path):
     (day,) = table(tmp_path / "day.csv")
     assert (day["robot"], day["stuck"], day["charged_s"]) == ("charged", "0", day["driven_s"])
     assert len(table(tmp_path / "day.stops.csv")) == int(day["stops"]) > 10
+
+
+def test_a_sheet_that_was_filled_in_is_not_written_over_by_a_season_that_is_driven(
+    run, season, tmp_path
+):
+    run("plan", season, "--date", BEGINS, "--no-bound", "-o", "day.csv")
+    filled_in(tmp_path / "day.csv", {0}, 1)
+    held, kept = (tmp_path / "day.csv").read_bytes(), season.read_bytes()
+    code, _, err, made = run("drive", season, "--date", BEGINS, "--made-up", "-o", "day.csv")
+    assert (code, made) == (2, set())
+    assert "day.csv would be written over, but it was filled in and holds 1 result" in err
+    assert ((tmp_path / "day.csv").read_bytes(), season.read_bytes()) == (held, kept)
+    run("change", season, "--robots", "2")
+    (tmp_path / "day.csv").rename(tmp_path / "day-robot-2.csv")
+    words = ("--robot", "vda5050", "--broker", "127.0.0.1:1", "-o", "day.csv")
+    code, _, err, made = run("drive", season, "--date", BEGINS, *words)
+    assert (code, made) == (2, set())
+    assert "day-robot-2.csv would be written over, but it was filled in" in err
+    assert (tmp_path / "day-robot-2.csv").read_bytes() == held
+
+
+def test_a_driven_day_writes_over_its_own_tables_only(run, tmp_path):
+    sheet = tmp_path / "day.stops.csv"
+    sheet.write_text("order,row,number,found\n1,1,1,yes\n")
+    code, _, err, made = run(*PLOT, "-o", "day.csv")
+    assert (code, made) == (2, set())
+    assert "day.stops.csv would be written over, but was filled in" in err
+    sheet.unlink()
+    for _ in range(2):
+        code, _, err, _ = run(*PLOT, "-o", "day.csv")
+        assert code == 0, err
+    code, _, err, _ = run(*PLOT, "-o", "nowhere/day.csv")
+    assert code == 2
+    assert "The folder nowhere must exist" in err
 
 
 def test_a_day_is_driven_with_wheels_and_kept_as_a_bag(run, tmp_path):
@@ -116,8 +152,13 @@ def test_a_season_that_another_command_drives_is_refused(run, season):
     with one_drive(season, "fieldmon/A"):
         code, _, err, _ = run("drive", season, "--date", BEGINS, "--made-up")
     assert code == 2
-    assert "but fieldmon/A drives season.gpkg now" in err
+    assert "but fieldmon/A drives season.gpkg now. Wait for its end, or give the season a" in err
     assert len(Season(season).history.inspections) == 0
+    run("change", season, "--robots", "2")
+    with one_drive(season, "a team (fieldmon)", is_team=True):
+        code, _, err, _ = run("drive", season, "--date", BEGINS, "--robot", "vda5050")
+    assert code == 2
+    assert "but a team (fieldmon) drives season.gpkg now. Wait for its end: one command" in err
 
 
 def test_a_robot_that_goes_on_for_another_is_told_where_it_is_taken_to_stand(run, season):
@@ -148,6 +189,25 @@ def test_a_teams_robots_have_their_own_serial_numbers_and_none_is_given(run, sea
     code, _, err, _ = run("drive", season, "--date", BEGINS, *words)
     assert code == 2
     assert "names as serial numbers (robot-1, robot-2), but --serial was given too" in err
+
+
+@pytest.mark.parametrize("stops", [0, 1])
+def test_a_team_that_breaks_off_writes_the_tables_of_those_that_drove(
+    run, season, monkeypatch, stops
+):
+    def drive_team(day, *_):
+        stop, day.stops = day.member("robot-1").ask(), stops
+        driven = DrivenDay([DrivenStop(stop, Visit(found=False), 40.0, 40.0)])
+        return {"robot-1": driven, "robot-2": DrivenDay(broken="It has no order.")}
+
+    monkeypatch.setattr("fieldmon.drive.vda5050.team.drive_team", drive_team)
+    run("change", season, "--robots", "2")
+    words = ("--date", BEGINS, "--robot", "vda5050", "-o", "day.csv")
+    code, out, err, made = run("drive", season, *words)
+    assert code == (130 if stops else 2), err
+    assert ("It has no order." in err) == (not stops)
+    assert {one.name for one in made} == {"day-robot-1.csv", "day-robot-1.stops.csv"}
+    assert (f"0 results of {BEGINS} in the season" in out) == bool(stops)
 
 
 def test_a_team_of_scouts_has_nobody_who_drives(run, season, tmp_path):

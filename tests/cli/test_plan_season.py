@@ -155,6 +155,20 @@ def test_half_way_the_rest_of_the_day_is_planned(run, season, tmp_path):
     assert not {f["properties"].get("plant") for f in features} & set(plants)
 
 
+@pytest.mark.parametrize(("who", "whose"), [("", "the"), ("robot-2", "robot-2's")])
+def test_hours_that_are_worked_already_are_no_hours_left(run, season, who, whose):
+    if who:
+        run("change", season, "--robots", "2")
+    kept, on = Season(season), date.fromisoformat(BEGINS)
+    for plant, second in enumerate((22_000, 23_430)):
+        kept.record(Inspections.of([plant], [0], on, second=[second], who=[who]))
+    words = ["plan", season, "--date", BEGINS, "--no-bound", "-o", "r.csv"]
+    code, _, err, made = run(*words, "--now", "06:10")
+    assert (code, made) == (2, set())
+    assert f"it is 06:10 and {whose} last result of {BEGINS} is of 06:30: hours already" in err
+    assert run(*words, "--now", "06:30")[0] == 0  # 30 seconds earlier: times are told to the minute
+
+
 def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
     """The app calls the library: the same findings give the same belief and the same routes."""
     begun = Season(season)

@@ -5,7 +5,7 @@ import io
 from datetime import date
 from pathlib import Path
 
-from fieldmon.drive.account import day_table, in_words, stop_table, stops_path
+from fieldmon.drive.account import day_table, in_words, is_driven_table, stop_table, stops_path
 from fieldmon.drive.day import DrivenDay, DrivenStop
 from fieldmon.drive.errand import Visit
 from fieldmon.monitoring.monitor import PlantToInspect
@@ -57,3 +57,12 @@ def test_the_day_in_words_says_what_went_wrong():
     assert "2 plants touched; at worst 12 cm" in said
     assert said.endswith("Stuck.")
     assert "+0.0 %" in in_words(DrivenDay())
+
+
+def test_its_own_tables_are_known_from_sheets_to_fill_in(tmp_path):
+    for name, data in (("day", day_table(DAY, date(2026, 4, 6), "x")), ("stops", stop_table(DAY))):
+        (tmp_path / name).write_bytes(data)
+        assert is_driven_table(tmp_path / name)
+    (tmp_path / "sheet").write_bytes(b"\xef\xbb\xbforder,row,number,found\n1,1,1,yes\n")
+    assert not is_driven_table(tmp_path / "sheet")
+    assert not is_driven_table(tmp_path / "nothing")

@@ -50,6 +50,8 @@ def test_every_way_begins_where_the_last_one_ended_and_says_what_comes_after(mon
         assert at_m == pytest.approx(aisles.stop_m[errand.stop.plant])
         if errand.ahead:
             assert errand.ahead[0][1][0] == pytest.approx(at_m)
+    looks = [errand.look_s for errand in asked]
+    assert looks == pytest.approx([robot.look_s] * len(asked))
     ahead = [errand.ahead[0][0] for errand in asked if errand.ahead]
     assert ahead == [one.stop.plant for one in asked[1:]]
 

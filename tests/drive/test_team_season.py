@@ -164,7 +164,7 @@ def test_past_midnight_each_goes_on_at_its_own_place_and_no_plant_is_given_twice
 
 
 def test_nobody_is_given_another_plant_once_it_is_stopped(team):
-    team.stopped = True
+    team.stops = 1
     assert team.member("robot-1").ask() is None
 
 

@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from fieldmon.compute.ranges import AllowedRange
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.vda5050.crossing import Crossing
@@ -24,7 +26,9 @@ from fieldmon.drive.vda5050.messages import (
     sent_at,
 )
 from fieldmon.drive.vda5050.wire import Wire
-from fieldmon.errors import ObservationError, SettingError
+from fieldmon.errors import FieldmonError, ObservationError, SettingError
+from fieldmon.plot.clearance import STRAY_M
+from fieldmon.plot.grid import row_label
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -40,6 +44,8 @@ _AGAIN_S = 5.0
 _POLL_S = 0.2
 # so often, heard each time, a robot may leave a thing undone
 _MOST_TRIES = 24
+# how far from a node it may pass where nobody said how wide it is, and nothing more is known
+_FREE_M = 0.3
 _OVER = {"FINISHED", "FAILED"}
 # errors with which a robot cannot go on with its order; 2.1 has only the last
 _ENDS = {"CRITICAL", "FATAL"}
@@ -86,6 +92,10 @@ class Vda5050Robot:
         self._actions_header = header_of(*wire.robot)
         self._known: dict[str, Any] = {"orderId": order_id, "orderUpdateId": -1, "node": None}
         self._patience_s, self._least_battery = patience_s, least_battery
+        #: returns how often somebody asked for a stop: once, a robot that has no order is not
+        #: waited for; twice, no robot is
+        self.stops: Callable[[], int] = lambda: 0
+        self._has_order = False
         self._state: dict[str, Any] | None = None
         self._told, self._odd_clock = "", False
         self._traffic = traffic
@@ -95,6 +105,8 @@ class Vda5050Robot:
         frame = aisles.grid.frame
         east_north = frame.turned(90.0)
         self._places = lambda line_m: east_north.xy_m(frame.lonlat(line_m))
+        self._east_north, self._grid = east_north, aisles.grid
+        self._known["strays_m"] = _FREE_M if aisles.clearance is None else STRAY_M
         self._gone_s, self._begun = gone_s, time.monotonic()
         self._began = datetime.now(UTC)
         self._own_clock, self._heard_at = False, time.monotonic()
@@ -178,10 +190,26 @@ class Vda5050Robot:
         return Visit(None, self._now_s(), stuck=self._ended(why), there=False)
 
     def _ended(self, why: str) -> str:
-        """Say that the robot moves no more today, if there is a reason."""
-        if why and self._traffic is not None:
-            self._traffic.end(self._name)
+        """Say at once that the robot moves no more today, and where, if there is a reason."""
+        if why:
+            self._say(f"{why} {self._where()}")
+            if self._traffic is not None:
+                self._traffic.end(self._name)
         return why
+
+    def _where(self) -> str:
+        """Return where the robot stands by its own word, in a sentence."""
+        place = None if self._state is None else self._state.get("agvPosition")
+        if place is None or not place["positionInitialized"]:
+            return "It does not say where it stands."
+        lonlat = self._east_north.lonlat(np.array([[place["x"], place["y"]]]))
+        near = self._grid.tree.query(self._grid.frame.xy_m(lonlat))[1]
+        label, (lon, lat) = row_label(self._grid, near), lonlat[0].tolist()
+        row = f"row {label.line[0]}, " if self._grid.in_rows else ""
+        return (
+            f"It stands near {row}plant {label.number[0]}, by its own word: latitude {lat:.6f}, "
+            f"longitude {lon:.6f}."
+        )
 
     def _done(
         self, order: dict[str, Any], wanted: Callable[[dict[str, Any]], dict[str, Any] | None]
@@ -193,6 +221,7 @@ class Vda5050Robot:
         def send(in_vain: int) -> None:
             if in_vain and self._is_busy():  # what was left of an order of before was heard late
                 self._ask("cancelOrder", f"cancel-{in_vain}")
+            self._has_order = True
             self._wire.send("order", encoded("order", self._header, order))
 
         return self._had(send, "taken its order", lambda: self._taken(order), wanted)
@@ -289,7 +318,14 @@ class Vda5050Robot:
         return f"; it reports: {', '.join(told)}" if told else ", and does not say why"
 
     def _wait(self) -> str:
-        """Hear the robot, or nothing for a moment; return why the day ends, if it does."""
+        """Hear the robot, or nothing for a moment; return why the day ends, if it does.
+
+        Raise `FieldmonError` where somebody stopped the day and the robot is not waited for.
+        """
+        if (stops := self.stops()) and not self._has_order:
+            raise FieldmonError("It has no order and is not waited for.")
+        if stops > 1:
+            raise FieldmonError("It is not waited for, but still ends what it was ordered last.")
         if self._hear():
             self._heard_at = time.monotonic()
             return self._broken()

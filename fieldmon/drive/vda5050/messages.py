@@ -26,7 +26,6 @@ ACTION = "inspectPlant"
 MAP = "map"
 #: what was sent so much before what was heard last is not late: a clock was put back
 LATE_S = 60.0
-_DEVIATION_M = 0.3
 # words for true and false
 _PLAIN = {"true": 1, "yes": 1, "1": 1, "false": 0, "no": 0, "0": 0}
 
@@ -114,8 +113,8 @@ def order_of(
     places
         Plot's metres ``(k, 2)`` to metres east and north of the datum.
     known
-        ``orderId``, ``orderUpdateId``, and as ``node`` the last released node of the order before;
-        None: there was none.
+        ``orderId``, ``orderUpdateId``, as ``strays_m`` how far from a node the robot may pass, and
+        as ``node`` the last released node of the order before; None: there was none.
     action_id
         Name of the inspection.
     """
@@ -127,7 +126,7 @@ def order_of(
             {"key": "plant", "value": errand.stop.plant},
             {"key": "row", "value": errand.stop.row},
             {"key": "number", "value": errand.stop.number},
-            {"key": "seconds", "value": round(errand.stop.inspect_s, 3)},
+            {"key": "seconds", "value": round(errand.look_s, 3)},
         ],
     }
     return _order([(errand.line_m, [look]), *((line, []) for _, line in errand.ahead)],
@@ -160,7 +159,8 @@ def _order(
     for k, (line_m, actions) in enumerate(legs):
         corners = places(line_m).tolist()
         for corner in corners[begins if k == 0 else 1 :]:
-            nodes.append(_node(corner, nodes[-1]["sequenceId"] + 2 if nodes else 0, k == 0))
+            sequence = nodes[-1]["sequenceId"] + 2 if nodes else 0
+            nodes.append(_node(corner, known["strays_m"], sequence, k == 0))
         nodes[-1]["actions"] = [*nodes[-1]["actions"], *actions]
         if k == 0:
             base_ends = len(nodes) - 1
@@ -173,7 +173,12 @@ def _order(
     return order, nodes[base_ends]
 
 
-def _node(place: list[float], sequence: int, released: bool) -> dict[str, Any]:  # noqa: FBT001
+def _node(
+    place: list[float],
+    strays_m: float,
+    sequence: int,
+    released: bool,  # noqa: FBT001
+) -> dict[str, Any]:
     x, y = place
     return {
         "nodeId": f"n{sequence}",
@@ -183,7 +188,7 @@ def _node(place: list[float], sequence: int, released: bool) -> dict[str, Any]: 
             "x": round(x, 3) + 0.0,
             "y": round(y, 3) + 0.0,
             "mapId": MAP,
-            "allowedDeviationXY": _DEVIATION_M,
+            "allowedDeviationXY": strays_m,
         },
         "actions": [],
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
-from fieldmon.drive.day import drive_day
+from fieldmon.drive.day import DrivenDay, drive_day
 from fieldmon.drive.vda5050.fleet import live_robot
 from fieldmon.drive.vda5050.wire import RobotName
 from fieldmon.errors import FieldmonError
@@ -13,16 +13,18 @@ from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from concurrent.futures import Future
 
-    from fieldmon.drive.day import DrivenDay
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.team_season import TeamSeason
     from fieldmon.drive.vda5050.wire import Broker
     from fieldmon.planning.members import TeamMember
 
-
-#: a day as it was driven, or why it was not
-TeamDays = dict[str, "DrivenDay | FieldmonError"]
+#: said at the first and the second Ctrl-C
+_STOPPING = (
+    "Stopping: each robot ends the plant in hand and drives home. Ctrl-C again ends at once.",
+    "Ending at once: what is recorded is kept.",
+)
 
 
 def drive_team(
@@ -31,12 +33,15 @@ def drive_team(
     names: RobotName,
     say: Callable[[str], None] = lambda _: None,
     recordings: Mapping[str, Recording] | None = None,
-) -> TeamDays:
+) -> dict[str, DrivenDay]:
     """Drive what is left of a team's day; return each robot's day by its name.
 
     A find by one is planned for by all. No two are in one aisle at once: who comes second waits at
     the end of its own. A robot that never comes, or whose day breaks off, takes nothing from the
-    others, and has the error instead of a day. People of the team are left out.
+    others; its day says why. People of the team are left out.
+
+    At Ctrl-C each ends the plant in hand and drives home, and who has no order is not waited for;
+    at a second one nobody is.
 
     Parameters
     ----------
@@ -52,7 +57,8 @@ def drive_team(
         What each one's day is noted in.
     """
 
-    def one(member: TeamMember) -> DrivenDay | FieldmonError:
+    def one(member: TeamMember) -> DrivenDay:
+        driven = DrivenDay()
         own, noted = day.member(member.name), (recordings or {}).get(member.name)
         robot = RobotName(names.manufacturer, member.name, names.version)
 
@@ -62,22 +68,29 @@ def drive_team(
         watch = None if noted is None else noted.note
         try:
             with live_robot(broker, robot, str(day.on), tell, day.keeper) as live:
-                return drive_day(own, own.aisles, (member.robot, live), watch)
+                live.stops = lambda: day.stops
+                drive_day(own, own.aisles, (member.robot, live), watch, driven)
         except FieldmonError as error:
-            tell(str(error))
+            driven.broken = str(error)
+            tell(driven.broken)
             if own.at == GATE:
                 day.keeper.keep_only(member.name, [])
-            return error
         finally:
             # it stays where it is: at the gate, or in its aisle
             day.keeper.end(member.name)
             own.leave()
+        return driven
 
     with ThreadPoolExecutor(len(day.robots), "robot") as threads:
         running = {member.name: threads.submit(one, member) for member in day.robots}
-        try:
-            return {name: each.result() for name, each in running.items()}
-        except KeyboardInterrupt:
-            day.stopped = True
-            say("Stopping: each robot ends the plant in hand and drives home.")
-            return {name: each.result() for name, each in running.items()}
+        for told in _STOPPING:
+            try:
+                return _results(running)
+            except KeyboardInterrupt:
+                day.stops += 1
+                say(told)
+        return _results(running)
+
+
+def _results(running: Mapping[str, Future[DrivenDay]]) -> dict[str, DrivenDay]:
+    return {name: each.result() for name, each in running.items()}

@@ -37,7 +37,8 @@ class Stop(NamedTuple):
     ``order``, ``block``, ``row``, ``number`` and ``face`` count from 1; ``plant`` is the plant's
     number in the grid, from 0. ``row_name`` is what the plot's file calls the row, where that is
     more than its number. ``vertex`` tells where on the driven line the robot stands, ``detects``
-    how likely it sees an infested plant there.
+    how likely it sees an infested plant there. ``inspect_s`` is all that is charged there,
+    ``look_s`` what is left of it for looking.
     """
 
     order: int
@@ -55,6 +56,7 @@ class Stop(NamedTuple):
     block: int
     row_name: str
     detects: float
+    look_s: float
 
     @property
     def plant_label(self) -> str:
@@ -123,6 +125,11 @@ class DrivenRoute(Protocol):
     @property
     def end_s(self) -> float:
         """Return seconds at the end of the line."""
+        ...
+
+    @property
+    def stop_s(self) -> float:
+        """Return the seconds at each stop that are charged for stopping."""
         ...
 
     @property
@@ -247,7 +254,7 @@ class HandoffPlan:
     def stops(self) -> tuple[Stop, ...]:
         """Stops in order; ``face`` is 0 where plants have but one, ``row`` where there are none."""
         route = self.route
-        label = row_label(self.grid, route.plant)
+        label, there_s = row_label(self.grid, route.plant), route.leave_s - route.arrive_s
         lonlat = route.stops_lonlat().round(DECIMALS)
         columns = zip(
             range(1, len(route) + 1),
@@ -259,12 +266,13 @@ class HandoffPlan:
             lonlat[:, 1].tolist(),
             [self.clock(s) for s in route.arrive_s.tolist()],
             np.round(route.arrive_s, 3).tolist(),
-            np.round(route.leave_s - route.arrive_s, 3).tolist(),
+            np.round(there_s, 3).tolist(),
             np.round(route.chance, 6).tolist(),
             route.line_stop.tolist(),
             block_label(self.grid, route.plant).tolist(),
             [plain_text(self.grid.row_names.get(line, "")) for line in label.line.tolist()],
             np.round(route.detects, 6).tolist(),
+            np.round(np.maximum(there_s - route.stop_s, 0.0), 3).tolist(),
             strict=True,
         )
         return tuple(Stop(*values) for values in columns)

@@ -62,7 +62,7 @@ def _styles(document: ET.Element) -> None:
 
 def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
     _text(placemark, "name", stop.label)
-    _text(placemark, "description", f"stay {stop.inspect_s:g} s; chance {stop.chance:.1%}")
+    _text(placemark, "description", f"stay {stop.look_s:g} s; chance {stop.chance:.1%}")
     if stop.arrive:
         _text(ET.SubElement(placemark, "TimeStamp"), "when", stop.arrive)
     _text(placemark, "styleUrl", "#stop")

@@ -176,7 +176,7 @@ def waypoints_yaml(plan: HandoffPlan) -> bytes:
             *([f"    row: {stop.row}"] if plan.in_rows else []),
             f"    number: {stop.number}",
             f"    arrive_s: {stop.arrive_s}",
-            f"    pause_s: {stop.inspect_s}",
+            f"    pause_s: {stop.look_s}",
             f"    detects: {stop.detects}",
         ]
     return "\n".join([*lines, ""]).encode()
@@ -238,7 +238,7 @@ def _stops_by_node(plan: HandoffPlan, graph: RouteGraph) -> dict[int, dict[str, 
         here = found.setdefault(node, {"stops": [], "plants": [], "pause_s": 0.0})
         here["stops"].append(stop.order)
         here["plants"].append(stop.plant)
-        here["pause_s"] = max(here["pause_s"], stop.inspect_s)
+        here["pause_s"] = max(here["pause_s"], stop.look_s)
     return found
 
 

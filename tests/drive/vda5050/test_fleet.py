@@ -1,8 +1,10 @@
 """Asked and told over a broker: nothing lost, nothing twice, whatever the line does."""
 
 import json
+import re
 import threading
 from contextlib import nullcontext
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
 from typing import ClassVar
@@ -109,6 +111,23 @@ def test_a_clock_that_counts_no_day_is_said_once_and_ours_goes_on(plot, odd):
     assert [odd in one for one in said] == [True]
 
 
+@pytest.mark.parametrize("is_wide", [True, False])
+def test_a_robot_may_pass_as_far_from_a_node_as_its_ways_keep_off_plants(
+    broker, plot, robot, is_wide
+):
+    """Ways of a robot whose width is known keep 0.1 m more off plants than it needs."""
+    own = robot if is_wide else replace(robot, width_m=None, length_m=None)
+    said = set()
+
+    class Listens(StandIn):
+        def _take(self, order):
+            said.update(one["nodePosition"]["allowedDeviationXY"] for one in order["nodes"])
+            super()._take(order)
+
+    drive(broker, plot, own, Monitor(plot, robot=own), f"wide {is_wide}", kind=Listens)
+    assert said == {0.1 if is_wide else 0.3}
+
+
 @pytest.mark.parametrize(("charge", "told"), [(14.97, "14.9"), (9, "9")])
 def test_a_battery_that_is_too_low_is_never_rounded_to_one_that_would_do(charge, told):
     driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "low")
@@ -133,9 +152,12 @@ def test_a_fatal_error_ends_the_day_in_its_own_words(broker, plot, robot, monito
         if errand.number == 2:
             other.self.errors = [MOTOR]
 
-    driven, day, _ = drive(broker, plot, robot, monitor, "fatal", fail)
+    driven, day, said = drive(broker, plot, robot, monitor, "fatal", fail)
     assert len(driven.stops) == 3
     assert "left wheel" in driven.stuck[0]
+    number = driven.stops[1].stop.number
+    where = rf"It stands near row \d, plant {number}, by its own word: latitude 30\.359"
+    assert re.match(f"{driven.stuck[0]} {where}", said[0])
     assert len(day.plants) == 2
 
 

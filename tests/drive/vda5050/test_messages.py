@@ -21,7 +21,7 @@ from fieldmon.errors import ObservationError
 from fieldmon.monitoring.monitor import PlantToInspect
 
 STOP = PlantToInspect(7, 2, 3, (35.0, 30.0), 100.0, 41.0, 0.84)
-FIRST = {"orderId": "day", "orderUpdateId": 0, "node": None}
+FIRST = {"orderId": "day", "orderUpdateId": 0, "node": None, "strays_m": 0.1}
 
 
 def line(*corners):
@@ -52,15 +52,17 @@ def test_the_way_to_the_plant_is_released_and_what_comes_after_is_not():
 
 def test_an_order_says_seconds_as_people_do():
     stop = STOP._replace(inspect_s=130.0 - 88.87)
-    order, _ = order_of(errand()._replace(stop=stop), as_it_is, FIRST, "a1")
-    told = order["nodes"][-1]["actions"][0]["actionParameters"]
     assert stop.inspect_s != 41.13
-    assert [one["value"] for one in told if one["key"] == "seconds"] == [41.13]
+    for stop_s, seconds in ((0.0, 41.13), (1.13, 40.0)):  # it stops besides
+        asked = errand()._replace(stop=stop, stop_s=stop_s)
+        order, _ = order_of(asked, as_it_is, FIRST, "a1")
+        told = order["nodes"][-1]["actions"][0]["actionParameters"]
+        assert [one["value"] for one in told if one["key"] == "seconds"] == [seconds]
 
 
 def test_an_update_begins_at_the_last_released_node_and_goes_on_counting():
     _, last = order_of(errand(), as_it_is, FIRST, "a1")
-    known = {"orderId": "day", "orderUpdateId": 1, "node": {**last, "actions": []}}
+    known = FIRST | {"orderUpdateId": 1, "node": {**last, "actions": []}}
     order, _ = home_order(line((5, 3), (0, 3)), as_it_is, known)
     assert order["nodes"][0]["nodeId"] == last["nodeId"]
     assert [node["sequenceId"] for node in order["nodes"]] == [4, 6]

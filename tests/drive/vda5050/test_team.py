@@ -1,11 +1,13 @@
 """Several robots in one day: each its own order, one season, and nobody in another's aisle."""
 
 import threading
+import time
 
 import numpy as np
 import pytest
 
 from fieldmon.drive.team_season import MemberDay, TeamSeason
+from fieldmon.drive.vda5050 import team
 from fieldmon.drive.vda5050.fleet import Vda5050Robot
 from fieldmon.drive.vda5050.stand_in import StandIn
 from fieldmon.drive.vda5050.team import drive_team
@@ -123,7 +125,7 @@ def test_scouts_do_not_drive_and_a_robot_that_never_comes_takes_nothing(
     driven = drive_team(day, broker, ROBOT)
     other.stop()
     assert [*driven] == ["robot-1", "robot-2"]
-    assert "called fieldmon/robot-2 must be at the broker" in str(driven["robot-2"])
+    assert "called fieldmon/robot-2 must be at the broker" in driven["robot-2"].broken
     assert len(driven["robot-1"].stops) > 3
     assert {*season.history.inspections.who.tolist()} == {"robot-1"}
     assert not day.errands
@@ -146,7 +148,7 @@ def test_a_day_that_breaks_off_takes_nothing_from_the_others(broker, season, mon
     driven = drive_team(TeamSeason(season, ON), broker, ROBOT)
     for one in robots:
         one.stop()
-    assert str(driven[NAMES[0]]) == "The file is full."
+    assert (driven[NAMES[0]].broken, driven[NAMES[0]].stops) == ("The file is full.", [])
     assert all(len(driven[name].stops) > 3 for name in NAMES[1:])
 
 
@@ -158,10 +160,80 @@ def test_a_robot_that_breaks_down_blocks_its_aisle_and_the_others_go_on(broker, 
     ]
     for one in robots:
         one.start()
-    driven = drive_team(TeamSeason(season, ON), broker, ROBOT)
+    day, said = TeamSeason(season, ON), {}
+    driven = drive_team(day, broker, ROBOT, lambda told: said.setdefault(told, len(day.done)))
     for one in robots:
         one.stop()
     assert "left wheel" in driven[NAMES[0]].stuck[0]
+    # at once, not when all are home
+    told = f"{NAMES[0]}: {driven[NAMES[0]].stuck[0]} It does not say where it stands."
+    assert said[told] < len(day.done)
     for name in NAMES[1:]:
         assert len(driven[name].stops) > 3
         assert driven[name].stuck == []
+
+
+def stop_when(monkeypatch, *whens):
+    """Let somebody press Ctrl-C as soon as each of these holds, in turn."""
+    results, left = team._results, [*whens]
+
+    def interrupted(running):
+        if not left:
+            return results(running)
+        is_time, until = left.pop(0), time.monotonic() + 60
+        while not is_time():
+            assert time.monotonic() < until
+            time.sleep(0.01)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(team, "_results", interrupted)
+
+
+def patient(monkeypatch, seconds):
+    told = {**Vda5050Robot.__init__.__kwdefaults__, "patience_s": seconds}
+    monkeypatch.setattr(Vda5050Robot.__init__, "__kwdefaults__", told)
+
+
+def test_at_a_stop_nobody_waits_for_a_robot_that_has_no_order(broker, season, monkeypatch):
+    patient(monkeypatch, 20.0)
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._AGAIN_S", 0.1)
+    other = StandIn(broker, RobotName(ROBOT.manufacturer, NAMES[0]), seen, 0.7, 1e6)
+    other.start()
+    day, said = TeamSeason(season, ON), []
+    waits = [f"{name}: Waiting for the robot fieldmon/{name}, which has not been heard yet."
+             for name in NAMES[1:]]  # fmt: skip
+    stop_when(monkeypatch, lambda: day.done and {*waits} <= {*said})
+    driven = drive_team(day, broker, ROBOT, said.append)
+    other.stop()
+    assert driven[NAMES[0]].stops
+    assert driven[NAMES[0]].home is not None
+    for name in NAMES[1:]:
+        assert driven[name].broken == "It has no order and is not waited for."
+
+
+def test_at_a_second_stop_nobody_is_waited_for_and_what_was_driven_is_kept(
+    broker, season, monkeypatch
+):
+    class Pauses(StandIn):
+        """Is paused for ever after its second plant."""
+
+        def drive_to(self, there):
+            super().drive_to(there)
+            self.self.paused = sum(one["actionStatus"] == "FINISHED"
+                                   for one in self.self.actions.values()) > 0  # fmt: skip
+
+    patient(monkeypatch, 3.0)
+    robots = [Pauses(broker, RobotName(ROBOT.manufacturer, name), seen, 0.7, 1e6)
+              for name in NAMES]  # fmt: skip
+    for one in robots:
+        one.start()
+    day, said = TeamSeason(season, ON), []
+    stop_when(monkeypatch, lambda: len(day.done) == 6, lambda: day.stops)
+    driven = drive_team(day, broker, ROBOT, said.append)
+    for one in robots:
+        one.stop()
+    assert "Ending at once: what is recorded is kept." in said
+    plants = [stop.stop.plant for one in driven.values() for stop in one.stops]
+    assert len(plants) == 6
+    assert sorted(season.history.inspections.plant.tolist()) == sorted(plants)
+    assert all(one.broken.startswith("It is not waited for") for one in driven.values())

@@ -55,7 +55,7 @@ def ordered(wire, plot):
     east_north = plot.grid.frame.turned(90.0)
     places = lambda m: east_north.xy_m(plot.grid.frame.lonlat(m))  # noqa: E731
     errand = Errand(1, STOP, line((0, 0), (5, 0)), ((9, line((5, 0), (5, 8))),))
-    first = {"orderId": "day", "orderUpdateId": 0, "node": None}
+    first = {"orderId": "day", "orderUpdateId": 0, "node": None, "strays_m": 0.3}
     wire.put("order", order_of(errand, places, first, "a1")[0])
 
 

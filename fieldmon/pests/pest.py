@@ -61,6 +61,9 @@ class Citation:
     source: str
     doubt: str = ""
 
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "A citation's")
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -131,6 +134,7 @@ class Increase:
     per_day: tuple[float, ...]
 
     def __post_init__(self) -> None:
+        must_hold_kinds(self, "An increase's")
         if not self.at_c or len(self.at_c) != len(self.per_day):
             raise SettingError(
                 worded(

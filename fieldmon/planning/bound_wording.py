@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 
 from fieldmon.compute.wording import digits_of_estimate, figure, worded
 
@@ -12,8 +13,34 @@ PROVED = 1e-6
 _SMALL = 0.01
 
 
+def sound_bound(held: float, bound: float) -> float:
+    """Return a bound no less than what a route holds: sums of the same may be rounded otherwise.
+
+    A route that holds more by over a millionth proves that the bound is none: that is a fault of
+    ours, of which is warned, and nothing is known, which is infinite.
+    """
+    if _is_false(held, bound):
+        warnings.warn(
+            f"A bound must be no less than what any route holds, but it is {bound:.9g} where one "
+            f"holds {held:.9g}: a fault of fieldmon, please report it.",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+        return math.inf
+    return max(bound, held)
+
+
+def _is_false(held: float, bound: float) -> bool:
+    return bound < held * (1.0 - PROVED)
+
+
 def share_above(held: float, bound: float) -> float:
-    """Return by how much a bound is above what is held, as a share; infinite where that is 0."""
+    """Return by how much a bound is above what is held, as a share.
+
+    Infinite where nothing is held, and where the bound is false, which proves nothing.
+    """
+    if _is_false(held, bound):
+        return math.inf
     if bound <= held:
         return 0.0
     return bound / held - 1.0 if held > 0.0 else math.inf
@@ -41,6 +68,11 @@ def bound_sentence(held: float, bound: float, what: str = FINDS, routes: str = "
 
 def _of_route(held: float, bound: float, what: str) -> str:
     gap = share_above(held, bound)
+    if math.isinf(bound) or _is_false(held, bound):
+        return worded(
+            "{held} {what} expected; what other routes can expect at most is not known.",
+            held=figure(held, f",.{_digits(held)}f"), what=what,
+        )  # fmt: skip
     digits = _digits_for(held, bound, gap)
     values = {"held": figure(held, f",.{digits}f"), "what": what}
     most = figure(_up(bound, digits), f",.{digits}f")

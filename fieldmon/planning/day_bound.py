@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.planning.bound_wording import sound_bound
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -40,8 +41,8 @@ def found_bound(day: DayPlan, within_s: float = WITHIN_S) -> float | None:
         return None
     finds = np.where(scene.last_inspected == scene.day, 0.0, scene.chance * scene.robot.detects)
     most = bound(scene.aisles, finds, scene.robot, scene.seconds_left, within_s)
-    # sums of the same finds in another order
-    return max(most, day.route.expected_found)
+    most = sound_bound(day.route.expected_found, most)
+    return most if np.isfinite(most) else None
 
 
 def _chooses_time(scene: Scene, work: Workday) -> bool:

@@ -14,7 +14,7 @@ from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.planning.bound_wording import bound_sentence
+from fieldmon.planning.bound_wording import bound_sentence, sound_bound
 from fieldmon.planning.headlands import HeadOn, head_on
 from fieldmon.planning.meetings import Meeting, meetings
 from fieldmon.planning.members import must_differ, refuse_far_gates
@@ -233,7 +233,7 @@ def plan_team(
         for member, day, s in zip(members, days, starts_s, strict=True)
     )
     held = _expected(days)
-    most = max(team_bound(tasks, held, search.proving), held)
+    most = sound_bound(held, team_bound(tasks, held, search.proving))
     search.proving(PRICES)  # it may have ended sooner
     return TeamPlan(tuple(members), days, timed.late_s, most, passing_m)
 
@@ -254,7 +254,7 @@ def bound_of_days(days: Sequence[DayPlan]) -> str:
         return ""
     tasks = [_task_of(day.scene) for day in days]
     held = _expected(days)
-    return bound_sentence(held, max(team_bound(tasks, held), held), routes="routes")
+    return bound_sentence(held, sound_bound(held, team_bound(tasks, held)), routes="routes")
 
 
 def _task_of(scene: Scene) -> MemberTask:

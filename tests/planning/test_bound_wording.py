@@ -3,11 +3,12 @@
 import math
 import re
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.compute.wording import estimate
-from fieldmon.planning.bound_wording import bound_sentence, share_above
+from fieldmon.planning.bound_wording import bound_sentence, share_above, sound_bound
 
 
 def test_it_says_what_is_expected_what_is_the_most_and_the_share():
@@ -46,6 +47,23 @@ def test_where_nothing_can_be_found_that_is_the_bound():
 def test_of_nothing_no_share_is_said():
     assert share_above(0.0, 0.5) == math.inf
     assert bound_sentence(0.0, 0.5).endswith("more than 0.50.")
+
+
+def test_a_bound_below_what_a_route_holds_is_none_and_is_warned_of_unless_it_is_rounding():
+    assert sound_bound(5.0, 5.0 - 1e-9) == 5.0
+    assert sound_bound(5.0, 5.5) == 5.5
+    with pytest.warns(
+        RuntimeWarning, match=r"but it is 4\.9 where one holds 5: a fault of fieldmon"
+    ):
+        assert sound_bound(5.0, 4.9) == math.inf
+
+
+@pytest.mark.parametrize("bound", [math.inf, 4.9])
+def test_of_a_bound_that_is_none_nothing_is_said(bound):
+    assert share_above(5.0, bound) == math.inf
+    assert bound_sentence(5.0, bound) == (
+        "5.0 finds expected; what other routes can expect at most is not known."
+    )
 
 
 @given(st.floats(1.0, 1e5))

@@ -82,20 +82,22 @@ def _put(
 
 @loop
 def value_ways(
-    ladder: Ladder, reward: Float, costs: Costs, state: tuple[float, bool], room: LadderRoom
+    ladder: Ladder, reward: Float, costs: Costs, state: tuple[float, bool, bool], room: LadderRoom
 ) -> None:
     """Work out what each way of driving each aisle is worth at a price.
 
-    `state`: the price, and whether each way must be one that can be driven just so; if not, it
-    may be worth more than that.
+    `state`: the price; whether each way must be one that can be driven just so (if not, it may be
+    worth more than that); and whether each way there is must be valued, though none of its plants
+    pays at the price. The best drive of all has no use for such a way, but one that must begin
+    there may have no other.
     """
-    price, feasible = state
+    price, feasible, every = state
     room.worth[:] = IMPOSSIBLE
     room.reward[:] = 0.0
     for k in range(ladder.across_m.size):
         if k != ladder.gate:
             _value_through(ladder, reward, costs, (k, price, feasible), room)
-            _value_in(ladder, reward, costs, (k, price), room)
+            _value_in(ladder, reward, costs, (k, price, every), room)
             if ladder.hangs[k] > 0:
                 _hang(room, k, ladder.hangs[k] - 1)
 
@@ -207,10 +209,13 @@ def _once(
 
 @part
 def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its speed
-    ladder: Ladder, reward: Float, costs: Costs, state: tuple[int, float], room: LadderRoom
+    ladder: Ladder, reward: Float, costs: Costs, state: tuple[int, float, bool], room: LadderRoom
 ) -> None:
-    """Value an aisle that is entered and left by the same end, or in which the day ends."""
-    k, price = state
+    """Value an aisle that is entered and left by the same end, or in which the day ends.
+
+    Of plants that do not pay, if they count at all, an end is entered for one at most.
+    """
+    k, price, every = state
     metre, stop, change = price * costs.metre_s, price * costs.stop_s, price * costs.change_s
     both_sides = min(price * costs.turn_s, change)
     first, end = ladder.start[k], ladder.start[k + 1]
@@ -225,15 +230,39 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
     in_left, in_left_held, in_sides, in_cut = IMPOSSIBLE, 0.0, 0, first
     end_left, end_left_held, end_sides, end_cut = IMPOSSIBLE, 0.0, 0, first
     for i in range(first, end):
+        side = 1 if ladder.upper[i] else 0
         if reward[i] <= stop:
+            if not every or reward[i] <= 0.0:
+                continue
+            gains, held = reward[i] - stop - change, reward[i]
+            deep = metre * (ladder.across_m[k] - ladder.in_m[i])
+            cut = (first, i, _NONE, side + 1)
+            _put(room, k, FROM_RIGHT, (gains - 2.0 * deep, held), cut)
+            _put(room, k, END_RIGHT, (gains - deep, held), cut)
+            if in_cut > first:
+                cut = (in_cut, i, in_sides, side + 1)
+                what = in_left + gains - 2.0 * deep, in_left_held + held
+                _put(room, k, FROM_BOTH, what, cut)
+                what = in_left + gains - deep, in_left_held + held
+                _put(room, k, END_RIGHT_AND, what, cut)
+                cut = (end_cut, i, end_sides, side + 1)
+                what = end_left + gains - 2.0 * deep, end_left_held + held
+                _put(room, k, END_LEFT_AND, what, cut)
+            deep = metre * ladder.in_m[i]
+            if gains - 2.0 * deep > in_left:
+                in_left, in_left_held = gains - 2.0 * deep, held
+                in_cut, in_sides = i + 1, side + 1
+            if gains - deep > end_left:
+                end_left, end_left_held = gains - deep, held
+                end_cut, end_sides = i + 1, side + 1
             continue
         deep = metre * (ladder.across_m[k] - ladder.in_m[i])
         for sides in range(1, 4):
             gains, held = -change, 0.0
-            for side in range(2):
-                if sides & (side + 1):
-                    gains += gains_of[side] - left_of[side]
-                    held += held_of[side] - left_held_of[side]
+            for of in range(2):
+                if sides & (of + 1):
+                    gains += gains_of[of] - left_of[of]
+                    held += held_of[of] - left_held_of[of]
             if held == 0.0:
                 continue
             if sides == 3:
@@ -250,7 +279,6 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
                 cut = (end_cut, i, end_sides, sides)
                 what = end_left + gains - 2.0 * deep, end_left_held + held
                 _put(room, k, END_LEFT_AND, what, cut)
-        side = 1 if ladder.upper[i] else 0
         left_of[side] += reward[i] - stop
         left_held_of[side] += reward[i]
         deep = metre * ladder.in_m[i]

@@ -14,7 +14,13 @@ from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
-from fieldmon.planning.bound_wording import FINDS, PROVED, bound_sentence, share_above
+from fieldmon.planning.bound_wording import (
+    FINDS,
+    PROVED,
+    bound_sentence,
+    share_above,
+    sound_bound,
+)
 from fieldmon.planning.routes.binned import proposals
 from fieldmon.planning.routes.blocks import Blocks, blockings
 from fieldmon.planning.routes.improve import Tour, fit, ruin
@@ -181,7 +187,7 @@ def best(
         stops.astype(np.int32),
         held,
         _seconds(aisles, clock, stops),
-        max(bounds[0].value, held),
+        sound_bound(held, bounds[0].value),
         bounds[0].below.how,
     )
 

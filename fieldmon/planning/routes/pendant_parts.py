@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.planning.routes.aisle_ways import IMPOSSIBLE
 from fieldmon.planning.routes.frontier import END_LEFT, END_RIGHT, FROM_LEFT, FROM_RIGHT
 from fieldmon.planning.routes.priced import Priced
 from fieldmon.planning.routes.relaxation import Rungs
@@ -34,8 +35,9 @@ if TYPE_CHECKING:
 _LESS = 1.0 - 1e-9
 # drives are told apart by whether they visit so many of the parts farthest from where they hang
 _TOLD_APART = 2
-# more than any drive is worth, times all rewards
-_BONUS = 1e4
+# what a part that must be visited brings besides, so many times all rewards and the seconds of all
+# ways: more than it costs to visit, whatever else a kind of drive must do
+_BONUS = 4.0
 
 
 class PendantPart(NamedTuple):
@@ -69,7 +71,7 @@ class LadderWithParts(Priced):
         super().__init__(ladder, reward, robot)
         self.robot = robot
         self.parts: dict[int, PendantPart] = parts
-        self._bonus = _BONUS * float(reward.sum())
+        self._bonus = 0.0
         self._must: dict[int, bool] = {}
 
     @property
@@ -89,22 +91,36 @@ class LadderWithParts(Priced):
         Drives are also told apart by which of the f farthest parts they visit.
         """
         far = sorted(self._all_parts(), key=lambda part: -part.away_m)[:_TOLD_APART]
+        bonus = _BONUS * (float(self.of_all.sum()) + price * self._all_s())
         found = []
         for chosen in product((False, True), repeat=len(far)):
-            self._ask(dict(zip((part.number for part in far), chosen, strict=True)))
+            self._ask(dict(zip((part.number for part in far), chosen, strict=True)), bonus)
             worth, reward = super().kinds(price)
-            found.append((worth - sum(chosen) * self._bonus, reward))
-        self._ask({})
+            worth -= sum(chosen) * bonus
+            # none of that kind comes by all that it must
+            worth[worth < -0.5 * bonus] = IMPOSSIBLE
+            found.append((worth, reward))
+        self._ask({}, 0.0)
         worths, rewards = zip(*found, strict=True)
         return np.array(worths), np.array(rewards)
 
-    def _ask(self, must: dict[int, bool]) -> None:
-        """Ask that parts be visited, or not, from now on."""
-        self._must = must
+    def _all_s(self) -> float:
+        """Return the seconds of all ways there and back, and of what a kind must do in an aisle."""
+        ladder, costs = self.ladder, self.costs
+        across_m = np.delete(ladder.across_m, ladder.gate)
+        own_m = 2.0 * float(ladder.up_m.sum() + ladder.stub_m.sum() + across_m.sum())
+        own_s = own_m * costs.metre_s + 2.0 * (costs.stop_s + costs.change_s + costs.turn_s)
+        for part in self.parts.values():
+            own_s += 2.0 * part.away_m * costs.metre_s + part.back._all_s()  # noqa: SLF001 - of its kind
+        return own_s
+
+    def _ask(self, must: dict[int, bool], bonus: float) -> None:
+        """Ask that parts be visited for so much more, or not, from now on."""
+        self._must, self._bonus = must, bonus
         for part in self.parts.values():
             for priced in (part.back, part.ends):
                 if priced is not None:
-                    priced._ask(must)  # noqa: SLF001 - of its kind
+                    priced._ask(must, bonus)  # noqa: SLF001 - of its kind
 
     def _value_rest(self, price: float) -> None:
         """Let each part be worth what the best drive in it is."""

@@ -28,10 +28,13 @@ if TYPE_CHECKING:
 
 # drives are told apart by which of so many stretches they begin in, and end in, up the ladder
 _STRETCHES = 16
-#: prices of a kind of drives are looked for so far from that of all at most
+#: a price of a kind of drives is so much more, or less, as long as none to the other side is known
 REACH = 30.0
-# so many prices are tried for a bound of each kind of drive; those of one so near each other end it
-_PRICES, _CLOSE = 40, 1.01
+# of a kind of drives without any, the best is worth less than this
+_NONE = 0.5 * IMPOSSIBLE
+# so many prices are tried for a bound of each kind of drive, until the one with the most cannot
+# come lower by more than this share; every so many, prices between those tried are halved
+_PRICES, _CLOSE, _HALVED = 40, 1e-7, 5
 
 
 class Offered(NamedTuple):
@@ -111,7 +114,7 @@ class Priced:
     def best(self, price: float) -> Drawn:
         """Return the best drive at a price of reward a second."""
         room, ladder, tables = self._room, self.ladder, self.tables
-        value_ways(ladder, self.reward, self.costs, (price, False), room)
+        value_ways(ladder, self.reward, self.costs, (price, False, False), room)
         self._value_rest(price)
         way, passes = (
             np.zeros(len(ladder.across_m), np.int64),
@@ -125,7 +128,7 @@ class Priced:
 
     def ways(self, price: float) -> Offered:
         """Return what each way of driving each element comes to, if driven just so."""
-        value_ways(self.ladder, self.reward, self.costs, (price, True), self._room)
+        value_ways(self.ladder, self.reward, self.costs, (price, True, False), self._room)
         self._value_rest(price)
         room = self._room
         return Offered(room.worth.copy(), room.reward.copy(), room.cut.copy())
@@ -155,7 +158,7 @@ class Priced:
         gate, end = self.ladder.gate, len(self.ladder.across_m)
         low, high = _stretches(0, gate + 1), _stretches(gate, end)
         worth, reward = np.empty((2, len(low) - 1, len(high) - 1))
-        value_ways(self.ladder, self.reward, self.costs, (price, False), self._room)
+        value_ways(self.ladder, self.reward, self.costs, (price, False, True), self._room)
         self._value_rest(price)
         metre = price * self.costs.metre_s
         _sweep_kinds(self.ladder, self.tables, metre, self._room, (low, high, worth, reward))
@@ -193,19 +196,37 @@ def least_by_kind(
     """
     worth, reward = kinds(price)
     shape = worth.shape
-    low, high = np.full(shape, price / REACH), np.full(shape, price * REACH)
+    low, high = np.zeros(shape), np.full(shape, np.inf)
+    # what the last drives too long, and in time, hold, and the seconds that they leave
+    held, left_s = np.zeros((2, *shape)), np.zeros((2, *shape))
     least = np.full(shape, np.inf)
     for k in range(_PRICES):
         if k:
             worth, reward = kinds(price)
-        least = np.minimum(least, worth + price * seconds)
-        too_long = reward - worth > price * seconds
-        low = np.where(too_long, np.maximum(low, price), low)
-        high = np.where(too_long, high, np.minimum(high, price))
+        here = worth + price * seconds
+        least = np.minimum(least, here)
+        over = reward > here
+        nearer = np.where(over, price >= low, price <= high) & (worth > _NONE)
+        for side in range(2):
+            met = nearer & (over == (side == 0))
+            held[side, met], left_s[side, met] = reward[met], (here - reward)[met] / price
+        low = np.where(over, np.maximum(low, price), low)
+        high = np.where(over, high, np.minimum(high, price))
         at = np.unravel_index(np.argmax(least), shape)
-        if high[at] < _CLOSE * low[at] or FIRST_USE.work_clock() > until_s:
+        of, by = (low[at], high[at]), -left_s[0][at]
+        # nothing is less than where the lines of its two drives cross, or what one in time holds
+        cross, floor = np.inf, held[1][at]
+        if of[0] > 0.0 and of[1] < np.inf:
+            cross = (held[0][at] - held[1][at]) / (left_s[1][at] + by)
+            floor = held[0][at] - cross * by
+        is_least = least[at] <= floor * (1.0 + _CLOSE) or of[1] < (1.0 + _CLOSE) * of[0]
+        if is_least or FIRST_USE.work_clock() > until_s:
             break
-        price = float(np.sqrt(low[at] * high[at]))
+        if of[0] > 0.0 and of[1] < np.inf:
+            crosses = of[0] < cross < of[1] and k % _HALVED < _HALVED - 1
+            price = float(cross if crosses else np.sqrt(of[0] * of[1]))
+        else:
+            price = float(of[0] * REACH if of[0] > 0.0 else of[1] / REACH)
     return least
 
 

@@ -1,6 +1,7 @@
 """Routes with a bound: nothing exceeds the bound, and the route is what it says."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ from fieldmon.samplers.dynamic import Dynamic
 from fieldmon.samplers.sweeps import Naive
 from fieldmon.samplers.without_prior import RandomShare
 from tests.crooked import crooked_grids
-from tests.planning.routes.tiny import best_of_all
+from tests.planning.routes.tiny import best_of_all, earliest_of_each
 
 ROBOTS = st.builds(
     Robot,
@@ -90,6 +91,37 @@ def test_no_order_of_few_plants_exceeds_the_bound_nor_is_missed_by_much(data):
     most = best_of_all(aisles, reward, robot, seconds)
     assert route.reward <= most + 1e-9
     assert most <= route.bound + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_with_the_gate_at_the_side_no_set_exceeds_a_bound_and_none_falls_as_time_grows(seed):
+    """Drives that must begin below the gate begin in an aisle, though no plant of it may pay."""
+    rng = np.random.default_rng(seed)
+    grid = rectangle(int(rng.integers(1, 5)), 14, Planting(faces=1 + seed % 2))
+    y = rng.uniform(grid.lane_y_m.min(), grid.lane_y_m.max() + 2.0)
+    aisles = Aisles.of(grid, gate_xy_m=(grid.lane_x_m.min() - 2.0, y))
+    reward = np.zeros(len(grid))
+    reward[rng.permutation(len(grid))[:5]] = rng.random(5)
+    robot = Robot(returns=seed % 4 > 0, row_change_s=(0.0, 25.0)[seed % 2])
+    held, earliest_s = earliest_of_each(aisles, reward, robot)
+    before = 0.0
+    for seconds in np.linspace(0.1, 1.05, 16) * earliest_s[-1]:
+        found = bound(aisles, reward, robot, seconds)
+        assert found >= held[earliest_s <= seconds].max()
+        assert found >= before * (1.0 - 1e-6)
+        before = found
+
+
+def test_a_route_that_holds_more_than_its_bound_proves_nothing(monkeypatch):
+    aisles, reward = Aisles.of(rectangle(3, 5)), np.ones(15)
+    found = best(aisles, reward, Robot(), 900.0)
+    least = best_route._bounds(best_route._posed(aisles, reward, Robot(), 900.0))[0]
+    low = replace(least, value=0.9 * found.reward)
+    monkeypatch.setattr(best_route, "_bounds", lambda _: [low])
+    with pytest.warns(RuntimeWarning, match="a fault of fieldmon"):
+        route = best(aisles, reward, Robot(), 900.0)
+    assert route.bound == np.inf
+    assert not route.proved
 
 
 @settings(max_examples=12)

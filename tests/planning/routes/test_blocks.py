@@ -32,6 +32,7 @@ from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
 from tests.planning.routes.test_best_route import ROBOTS, crooked_aisles, rewards
+from tests.planning.routes.tiny import no_line_above
 
 
 def below(aisles, reward, robot):
@@ -334,3 +335,23 @@ def test_a_bound_by_kinds_is_no_less_than_any_drive_of_these_hours(returns):
             least = below.bound_by_kind(seconds, price, np.inf)
             assert found.reward <= least * (1 + 1e-9)
             assert least <= below.bound(below.best(price), price, seconds) * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_drive_of_a_kind_is_worth_more_at_any_price_than_the_kind(seed):
+    """However dear time is, on each ladder: alone, hanging, of each part, or with parts on it."""
+    rng = np.random.default_rng(seed)
+    area = MultiPolygon([box(0, 0, 25, 20), box(50, 4, 80, 14), box(4, 60, 30, 75)])
+    area = area.difference(box(8, 6, 14, 14))
+    field = Field("parts", Frame(35.15, 30.36).geometry_lonlat(area))
+    aisles = Aisles.of(
+        lay(field, Planting(row_bearing_deg=90.0, faces=1 + seed % 2)),
+        tuple(rng.uniform((-20.0, -20.0), (40.0, 40.0))),
+    )
+    reward = np.zeros(len(aisles.grid))
+    reward[rng.permutation(len(reward))[:12]] = rng.random(12)
+    robot = Robot(returns=seed < 3, row_change_s=(0.0, 20.0)[seed % 2])
+    usual = float(reward.max()) / robot.visit_s
+    for one in below(aisles, reward, robot):
+        kinds = one._kinds if isinstance(one, Blocks) else one.kinds
+        no_line_above(kinds, usual * np.geomspace(1e-3, 1e3, 7))

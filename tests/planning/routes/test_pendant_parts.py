@@ -25,7 +25,7 @@ from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock
-from tests.planning.routes.tiny import best_of_all
+from tests.planning.routes.tiny import best_of_all, no_line_above
 
 
 def parts(*boxes):
@@ -216,3 +216,13 @@ def test_parts_are_taken_the_nearest_first_and_hang_on_what_they_are_nearest_to(
                 if block[a] in known and block[b] not in known}  # fmt: skip
         nearest = min(ways)
         assert (order[place], onto[order[place]]) == nearest[1:]
+
+
+@pytest.mark.parametrize("returns", [True, False])
+def test_a_part_that_must_be_visited_is_however_dear_the_way_to_it(returns):
+    """A kilometre away, at prices at which nothing there pays the way."""
+    aisles = parts((0, 0, 20, 12), (1000, 0, 1020, 12), (1060, 0, 1080, 12))
+    reward = np.zeros(len(aisles.grid))
+    reward[[0, -1]] = 1.0
+    for one in taken(aisles, reward, Robot(returns=returns, look_s=1.0)):
+        no_line_above(one.kinds, np.geomspace(1e-4, 30.0, 7))

@@ -129,7 +129,7 @@ class MujocoRobot:
         corners[:, 0] -= self._wheels.axle_m
         turning_m = self._turning_m(self._wheels.turning_m)
         apart_m = half_canopy_m(aisles.grid) + STRAY_M / 2
-        area = shapely.buffer(aisles.grid.drivable_m, _BEYOND_M)
+        area = shapely.buffer(aisles.grid.ground_m, _BEYOND_M)
         shapely.prepare(area)
         return TurningRoom(turning_m, corners, aisles.grid.tree, apart_m, area)
 

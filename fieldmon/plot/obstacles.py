@@ -81,11 +81,13 @@ class Obstacles:
     ) -> Obstacles:
         """Return the obstacles on a plot, to a robot that needs some clearance."""
         if clearance is None:
-            ends_x = grid.along_m[end_plants(grid)]
-            clearance_m = min(_CLEARANCE_M, 0.4 * float(np.abs(grid.lane_x_m - ends_x).min()))
+            beyond_m = beyond_plants_m(grid)
+            # where a lane ends at its last plant nobody turns
+            least_m = float(beyond_m.min(where=beyond_m > 0.0, initial=np.inf))
+            clearance_m = min(_CLEARANCE_M, 0.4 * least_m)
         else:
             clearance_m = clearance.way_m
-        drivable_m: shapely.Geometry = grid.drivable_m
+        drivable_m: shapely.Geometry = grid.ground_m
         if not shapely.is_valid(drivable_m):  # laid on a plane, parts by a hair may cross
             drivable_m = shapely.make_valid(drivable_m, method="structure", keep_collapsed=False)
         parts = shapely.get_parts(drivable_m)
@@ -116,6 +118,12 @@ class Obstacles:
         else:
             good[kept] = ~np.asarray(shapely.intersects(self._off_limits(where), lines))
         return good
+
+    def within(self, from_m: Float, to_m: Float) -> Mask:
+        """Tell of k straight ways, whatever plants stand there, whether they are on the plot."""
+        lines = shapely.linestrings(np.stack([from_m, to_m], axis=1))
+        inside: Mask = np.asarray(shapely.covers(self.drivable_m, lines))
+        return inside
 
     def corners(self, where: Where) -> Float:
         """Return corners that ways may have to go round, ``(k, 2)``; of crowded ones a choice."""
@@ -213,6 +221,12 @@ def _corner_plants(grid: PlantGrid) -> Index:
     inner[1:-1] = level[1:] & level[:-1]
     inner[end_plants(grid)] = False
     return np.flatnonzero(~inner)
+
+
+def beyond_plants_m(grid: PlantGrid) -> Float:
+    """Return how far each lane reaches beyond the first and the last plant, ``(r, 2)`` metres."""
+    beyond_m: Float = np.abs(grid.lane_x_m - grid.along_m[end_plants(grid)])
+    return beyond_m
 
 
 def end_plants(grid: PlantGrid) -> Index:

@@ -93,7 +93,7 @@ def with_gate(net: Net, gate_m: Float, obstacles: Obstacles, grid: PlantGrid) ->
     n, k = len(net.xy_m), min(_GATE_NEAREST, len(net.xy_m))
     entry_m = gate_m
     if not shapely.intersects_xy(obstacles.drivable_m, *gate_m[0]):
-        line = shapely.shortest_line(shapely.points(gate_m[0]), grid.drivable_m)
+        line = shapely.shortest_line(shapely.points(gate_m[0]), grid.ground_m)
         entry_m = shapely.get_coordinates(line)[1:]
     near = cKDTree(net.xy_m).query(entry_m[0], k=k)[1].reshape(-1)
     seen = near[obstacles.clear(np.repeat(entry_m, k, axis=0), net.xy_m[near])]

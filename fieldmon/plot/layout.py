@@ -16,6 +16,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
 from fieldmon.plot.block_layout import lay_blocks
+from fieldmon.plot.clear_lanes import measured_clear
 from fieldmon.plot.ends_within import lanes_within
 from fieldmon.plot.grid import PlantGrid
 from fieldmon.plot.line_layout import copies, is_straight, lay_along
@@ -191,7 +192,8 @@ def grid_from_plants(
         bent = bent_rows(xy_m, line, planting.row_spacing_m, said)
     if bent is not None:
         area = None if field is None else held_area(field, frame, xy_m)
-        return measured_grid(frame, xy_m, (bent, called), Ground(area, obstacles), planting)
+        grid = measured_grid(frame, xy_m, (bent, called), Ground(area, obstacles), planting)
+        return measured_clear(grid, obstacles)
     order = np.lexsort((xy_m[:, 0], line))
     xy_m, line = xy_m[order], line[order]
     pieces = _pieces(xy_m, line, _aisles(xy_m[:, 1], line, planting), obstacles, planting)
@@ -200,7 +202,7 @@ def grid_from_plants(
         return assemble(frame, pieces, _polygons(reach), planting)
     area = held_area(field, frame, xy_m)
     pieces, shut = _within(pieces, area, planting)
-    grid = assemble(frame, pieces, area, planting)
+    grid = measured_clear(assemble(frame, pieces, area, planting), obstacles)
     if not shut.any():
         return grid
     reach = shapely.difference(_reach(pieces, planting, shut), obstacles)

@@ -76,6 +76,7 @@ def find_roads(
     gate_xy_m: tuple[float, float] | None = None,
     no_go_m: MultiPolygon | None = None,
     clearance: Clearance | None = None,
+    shut: Mask | None = None,
 ) -> RoadNetwork:
     """Return the network of ways between the lane ends of a plot and its gate.
 
@@ -86,13 +87,16 @@ def find_roads(
     part to part and are no short cuts between places of one; never over `no_go_m`. Without a gate,
     work starts at the low-x lane end of the first row that is not too narrow, if it is on the plot.
 
-    With a `clearance`, ways keep so far off plants, nothing leads along aisles that are too narrow,
-    and nobody need reach their rows. Raise `PlotError` if some row cannot be reached.
+    With a `clearance`, ways keep so far off plants, holes and no-go areas, and off the boundary
+    where there is room; nothing leads along aisles that are too narrow, or of rows ``(r,)`` that
+    are `shut`, and nobody need reach these. Raise `PlotError` if some row cannot be reached.
     """
     obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m, clearance)
     if not grid.in_rows:
         return _find_from_tree_to_tree(grid, gate_xy_m, obstacles)
     narrow = _Narrow.of(grid, clearance)
+    if shut is not None and shut.any() and not (narrow.rows | shut).all():
+        narrow = narrow._replace(rows=narrow.rows | shut)
     if grid.aisles_m is not None:
         return _find_bent(grid, gate_xy_m, obstacles, narrow)
     xy_m, place = _merged(_row_end_places(grid))

@@ -185,7 +185,8 @@ class Aisles:
         Which plants cannot be come near, how much of it lies outside the plot, and where a robot's
         body reaches over its boundary.
         """
-        return tuple(one for one in (self.narrow_sentence(), *line_said(self, line_m)) if one)
+        left = line_said(self.grid, self.gate_m, self.clearance, line_m)
+        return tuple(one for one in (self.narrow_sentence(), *left) if one)
 
     def __repr__(self) -> str:
         return f"<Aisles: {self.grid.counts}, {counted(len(self.roads.xy_m), 'node')}>"

@@ -15,7 +15,8 @@ from fieldmon.plot.obstacles import filled
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.plot.travel import Aisles
+    from fieldmon.plot.clearance import Clearance
+    from fieldmon.plot.grid import PlantGrid
 
     Float = NDArray[np.float64]
 
@@ -26,16 +27,19 @@ _LEAST_M = 0.1
 _LOOKS_M = 0.25
 
 
-def line_said(aisles: Aisles, line_m: Float) -> tuple[str, ...]:
+def line_said(
+    grid: PlantGrid, gate_m: Float, needs: Clearance | None, line_m: Float
+) -> tuple[str, ...]:
     """Return in sentences how a driven line ``(m, 2)``, or the body on it, leaves the plot.
 
     The way from a gate outside to the plot is not meant.
     """
     if len(line_m) < 2 or not np.ptp(line_m, axis=0).any():
         return ()
-    area, line = aisles.grid.drivable_m, LineString(line_m)
-    entry = shapely.shortest_line(Point(aisles.gate_m), area)
-    said = (_outside(area, line, entry), _body_over(aisles, line, entry))
+    area, line = grid.drivable_m, LineString(line_m)
+    entry = shapely.shortest_line(Point(gate_m), area)
+    half_m = 0.0 if needs is None else needs.half_m
+    said = (_outside(area, line, entry), _body_over(area, half_m, line, entry))
     return tuple(one for one in said if one)
 
 
@@ -54,21 +58,21 @@ def _outside(area: shapely.Geometry, line: LineString, entry: shapely.Geometry) 
     )
 
 
-def _body_over(aisles: Aisles, line: LineString, entry: shapely.Geometry) -> str:
+def _body_over(
+    area: shapely.Geometry, half_m: float, line: LineString, entry: shapely.Geometry
+) -> str:
     """Return how far a robot's body reaches over the boundary, in a sentence; "" if nowhere."""
-    needs = aisles.clearance
-    if needs is None or not needs.half_m:
+    if not half_m:
         return ""
-    area = aisles.grid.drivable_m
     edge = shapely.boundary(filled(area))
     on_plot = shapely.intersection(line, area)
-    on_plot = shapely.difference(on_plot, shapely.buffer(entry, needs.half_m + _EDGE_M))
-    tight = shapely.intersection(on_plot, shapely.buffer(edge, needs.half_m - _EDGE_M))
+    on_plot = shapely.difference(on_plot, shapely.buffer(entry, half_m + _EDGE_M))
+    tight = shapely.intersection(on_plot, shapely.buffer(edge, half_m - _EDGE_M))
     if tight.length < _LEAST_M:
         return ""
     return worded(
         "The robot's body reaches up to {far_m:.2f} m over the plot's boundary, on {metres} of the "
         "way: there it has no room for its width.",
-        far_m=needs.half_m - float(shapely.distance(tight, edge)),
+        far_m=half_m - float(shapely.distance(tight, edge)),
         metres=distance_figure(float(tight.length)),
     )

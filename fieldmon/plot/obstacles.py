@@ -70,6 +70,8 @@ class Obstacles:
         Its holes, and where driving is never fine.
     no_go_m
         Where driving is never fine.
+    bare_m
+        The same without what a robot keeps off it.
     edge_m
         The boundary, which ways keep `half_m` off if their ends do.
     half_m
@@ -82,6 +84,7 @@ class Obstacles:
     drivable_m: shapely.Geometry
     off_limits_m: shapely.Geometry
     no_go_m: shapely.Geometry
+    bare_m: shapely.Geometry
     edge_m: shapely.Geometry
     half_m: float = 0.0
 
@@ -105,24 +108,26 @@ class Obstacles:
             drivable_m = shapely.make_valid(drivable_m, method="structure", keep_collapsed=False)
         whole = filled(drivable_m)
         holes_m = shapely.difference(whole, drivable_m)
-        half_m, off_m = (0.0, 0.0) if clearance is None else (clearance.half_m, clearance.off_m)
+        half_m, off_m = 0.0, 0.0
+        if clearance is not None and grid.in_rows:  # who stands beside a tree may be near a hole
+            half_m, off_m = clearance.half_m, clearance.off_m
         off_limits_m = _wider(shapely.union(holes_m, no_go_m), off_m)
         inside_m: shapely.Geometry = shapely.buffer(drivable_m, _EDGE_M, join_style="mitre")
         off_limits_m = shapely.buffer(off_limits_m, -_EDGE_M, join_style="mitre")
         if off_m:
             inside_m = shapely.difference(inside_m, off_limits_m)
         never_m = shapely.buffer(_wider(no_go_m, off_m), -_EDGE_M, join_style="mitre")
+        bare_m = shapely.buffer(no_go_m, -_EDGE_M, join_style="mitre")
         edge_m = shapely.boundary(whole)
-        for area in (inside_m, off_limits_m, never_m, edge_m):
+        for area in (inside_m, off_limits_m, never_m, bare_m, edge_m):
             shapely.prepare(area)
         row_box_m, row_step_m = (
             (_row_boxes(grid, clearance_m), None)
             if grid.aisles_m is None
             else row_steps(grid, clearance_m)
         )
-        return cls(
-            row_box_m, row_step_m, clearance_m, inside_m, off_limits_m, never_m, edge_m, half_m
-        )
+        areas = inside_m, off_limits_m, never_m, bare_m, edge_m
+        return cls(row_box_m, row_step_m, clearance_m, *areas, half_m)
 
     def clear(self, from_m: Float, to_m: Float, where: Where = Where.INSIDE) -> Mask:
         """Tell of k straight ways, ``(k, 2)`` to ``(k, 2)``, whether they can be driven."""
@@ -153,6 +158,12 @@ class Obstacles:
         off = np.ones(len(lines), np.bool_)
         off[near] = shapely.distance(self.edge_m, lines[near]) >= least_m - _EDGE_M
         return off
+
+    def among_plants(self, at_m: Float) -> bool:
+        """Tell whether a place ``(1, 2)`` is in a row of plants, or on a no-go area."""
+        off = np.ones(1, np.bool_)
+        _off_boxes(self.row_box_m, at_m, at_m, off)
+        return bool(not off[0] or shapely.intersects_xy(self.bare_m, *at_m[0]))
 
     def within(self, from_m: Float, to_m: Float) -> Mask:
         """Tell of k straight ways, whatever plants stand there, whether they are on the plot."""

@@ -85,6 +85,8 @@ class Aisles:
         try:
             _ = aisles.travel
         except CutOffError:
+            if not grid.in_rows:
+                raise
             off_m, needs_m = (clearance.off_m, clearance.way_m) if clearance else (0.0, ROOM_M)
             wider = opened(grid, needs_m, off_limits(grid, no_go_m, off_m))
             if wider is grid:

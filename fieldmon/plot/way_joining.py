@@ -91,7 +91,7 @@ def with_gate(net: Net, gate_m: Float, obstacles: Obstacles, grid: PlantGrid) ->
     A gate outside the drivable area is first linked to the nearest point of that area; a gate
     among the plants of a row is moved to that row's lane.
     """
-    if grid.aisles_m is None and not obstacles.clear(gate_m, gate_m, Where.ANYWHERE)[0]:
+    if grid.aisles_m is None and obstacles.among_plants(gate_m):
         row = grid.row[np.argmin(np.hypot(*(grid.xy_m - gate_m).T))]
         gate_m = np.array([[np.clip(gate_m[0, 0], *grid.lane_x_m[row]), grid.lane_y_m[row]]])
     n, k = len(net.xy_m), min(_GATE_NEAREST, len(net.xy_m))

@@ -10,6 +10,7 @@ from fieldmon.plot.field import Field
 from fieldmon.plot.layout import grid_from_plants, lay
 from fieldmon.plot.obstacles import Obstacles, Where
 from fieldmon.plot.planting import Planting
+from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
@@ -114,3 +115,21 @@ def test_ways_keep_half_the_width_off_the_boundary_where_there_is_room():
     # where a lane ends nearer to it, its way may come as near
     start = corner_m + 0.2 * ahead
     assert far.clear(start[None], (start + 2.0 * ahead)[None])[0]
+
+
+def test_a_gate_beside_a_no_go_area_stays_where_it_is():
+    grid, no_go_m, shed_m = measured(0.0, box(-5, -5, -3, -3), no_go=True)
+    gate_m = shapely.get_coordinates(shed_m).max(axis=0) + np.array([0.2, -1.0])
+    aisles = Aisles.of(grid, tuple(gate_m), no_go_m).for_robot(WIDE)
+    assert aisles.gate_m == pytest.approx(gate_m)
+    beyond = shapely.difference(driven(aisles), Point(gate_m).buffer(0.7))
+    assert shapely.distance(beyond, shed_m) > 0.65 - 0.03
+
+
+def test_a_robot_of_known_width_goes_to_trees_beside_a_no_go_area():
+    x, y = np.meshgrid(np.arange(0, 20, 4.0), np.arange(0, 20, 4.0))
+    lonlat = FRAME.lonlat(np.stack([x.ravel(), y.ravel()], axis=1))
+    no_go = on_plot(box(8.1, 0.5, 11.5, 11.5))
+    field = Field("trees", on_plot(AREA), plants=lonlat, no_go=no_go, in_rows=False)
+    aisles = Plot.of_trees(field).aisles
+    assert not aisles.for_robot(Robot(width_m=0.2)).too_narrow.any()

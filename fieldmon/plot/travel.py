@@ -187,7 +187,7 @@ class Aisles:
         Which plants cannot be come near, how much of it lies outside the plot, and where a robot's
         body reaches over its boundary.
         """
-        left = line_said(self.grid, self.gate_m, self.clearance, line_m)
+        left = line_said(self.grid, (self.gate_m, self.no_go_m), self.clearance, line_m)
         return tuple(one for one in (self.narrow_sentence(), *left) if one)
 
     def __repr__(self) -> str:

@@ -10,7 +10,7 @@ from shapely import LineString, Point
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
-from fieldmon.plot.obstacles import filled
+from fieldmon.plot.obstacles import filled, off_limits
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,18 +28,30 @@ _LOOKS_M = 0.25
 
 
 def line_said(
-    grid: PlantGrid, gate_m: Float, needs: Clearance | None, line_m: Float
+    grid: PlantGrid,
+    places: tuple[Float, shapely.Geometry | None],
+    needs: Clearance | None,
+    line_m: Float,
 ) -> tuple[str, ...]:
     """Return in sentences how a driven line ``(m, 2)``, or the body on it, leaves the plot.
 
-    The way from a gate outside to the plot is not meant.
+    `places` are the gate, and where nobody may drive. The way from a gate outside to the plot is
+    not meant.
     """
+    gate_m, no_go_m = places
     if len(line_m) < 2 or not np.ptp(line_m, axis=0).any():
         return ()
     area, line = grid.drivable_m, LineString(line_m)
     entry = shapely.shortest_line(Point(gate_m), area)
     half_m = 0.0 if needs is None else needs.half_m
-    said = (_outside(area, line, entry), _body_over(area, half_m, line, entry))
+    said = [_outside(area, line, entry), _body_over(area, half_m, line, entry)]
+    if needs is not None and needs.off_m:
+        off = off_limits(grid, no_go_m, needs.off_m)
+        said.append(
+            _near_holes(
+                shapely.difference(off, shapely.buffer(entry, needs.off_m)), needs.off_m, line
+            )
+        )
     return tuple(one for one in said if one)
 
 
@@ -55,6 +67,19 @@ def _outside(area: shapely.Geometry, line: LineString, entry: shapely.Geometry) 
         "all rows can be reached.",
         metres=distance_figure(float(away.length)),
         far=distance_figure(float(shapely.distance(area, looks).max())),
+    )
+
+
+def _near_holes(off: shapely.Geometry, off_m: float, line: LineString) -> str:
+    """Return how much of a line comes too near to holes, in a sentence; "" if nothing."""
+    near = shapely.intersection(line, shapely.buffer(off, -2 * _EDGE_M))
+    if near.length < _LEAST_M:
+        return ""
+    return worded(
+        "On {metres} of the way the robot comes nearer than {off_m:.2f} m to a hole or a no-go "
+        "area, or over a hole: no other way leads there.",
+        metres=distance_figure(float(near.length)),
+        off_m=off_m,
     )
 
 

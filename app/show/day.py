@@ -126,9 +126,9 @@ def _bound(route: Route) -> str:
 def said_of_day(choices: Choices, plan: DayPlan) -> None:
     """Say what was recorded of the day, and why there is no route where there is none.
 
-    And which rows the robot is too wide for.
+    And which rows the robot is too wide for, and where its way leaves the plot.
     """
-    if told := plan.route.aisles.narrow_sentence():
+    for told in plan.route.ways_said:
         st.warning(in_words(told))
     is_said = len(plan.route) or cautions.are_all_closed(choices, plan)
     known = nothing_left_in_words(plan.scene)

@@ -101,5 +101,5 @@ def day_in_words(route: Route, infested: float | None = None) -> str:
         f"{route.drive_m / 1000:.2f} km; {among}, "
         f"about {estimate(route.expected_found)} of these would be found."
     )
-    more = (route.bound_sentence, route.aisles.narrow_sentence())
+    more = (route.bound_sentence, *route.ways_said)
     return "\n".join([said, *(one for one in more if one)])

@@ -127,6 +127,8 @@ def tell_member(name: str, start: datetime, route: Route) -> None:
         f"{name}: from {start:%H:%M}, {plants} in {route.end_s / 3600:.1f} h, "
         f"{route.drive_m / 1000:.2f} km; about {estimate(route.expected_found)} finds."
     )
+    for said in route.ways_said:
+        typer.echo(f"{name}: {said}")
 
 
 def write_member(name: str, route: Route, paths: list[Path]) -> None:

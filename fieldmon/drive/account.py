@@ -16,6 +16,8 @@ DAY_COLUMNS = (
     "date,robot,stops,found,touched,stuck,charged_s,driven_s,worst_cross_track_m,"
     "skipped,stops_before"
 )
+# less is not worth a word
+_SEEN_M = 0.005
 STOP_COLUMNS = "stop,plant,row,number,found,done_s,charged_s,driven_s,cross_track_m,touched,stuck"
 
 
@@ -65,6 +67,11 @@ def in_words(driven: DrivenDay) -> str:
         said += (
             f" {counted(len(driven.touched), 'plant')} touched; at worst "
             f"{100 * driven.strayed_m:.0f} cm off the way."
+        )
+    if driven.over_m > _SEEN_M:
+        said += (
+            f" Its outline reached {100 * driven.over_m:.0f} cm over the plot's boundary, or into "
+            "a hole or a no-go area."
         )
     return "\n".join([said, *driven.stuck])
 

@@ -108,6 +108,11 @@ class DrivenDay:
         """The furthest that the robot was from its way."""
         return max((one.strayed_m for one in self.visits), default=0.0)
 
+    @property
+    def over_m(self) -> float:
+        """How far its outline reached over the plot's boundary, or into a hole or no-go area."""
+        return max((one.over_m for one in self.visits), default=0.0)
+
 
 def drive_day(
     day: DayToDrive,

@@ -63,6 +63,8 @@ class Visit(NamedTuple):
         Why the robot moves no more today, in a sentence; "" where it does.
     there
         Whether it got there: what nobody stood before is no inspection.
+    over_m
+        How far its outline reached over the plot's boundary, or into a hole or a no-go area.
     """
 
     found: bool | None
@@ -71,6 +73,7 @@ class Visit(NamedTuple):
     touched: frozenset[int] = frozenset()
     stuck: str = ""
     there: bool = True
+    over_m: float = 0.0
 
     def done_at_s(self, stop: PlantToInspect) -> float:
         """Return when a plant was done: as told, or as charged where nobody told it."""

@@ -103,6 +103,7 @@ class MujocoRobot:
             lay_ground(self._model, self._ground)
         self._wheels = self._body.wheels(self._model, mujoco)
         self._room = self._measured(aisles, mujoco)
+        self._free = _free(aisles, float(np.hypot(*self._room.corners_m.T).max()))
         self._data = mujoco.MjData(self._model)
         self._step, self._at_m = mujoco.mj_step, at_m
         names = [mujoco.mj_id2name(self._model, mujoco.mjtObj.mjOBJ_GEOM, g) or ""
@@ -128,7 +129,7 @@ class MujocoRobot:
         corners[:, 0] -= self._wheels.axle_m
         turning_m = self._turning_m(self._wheels.turning_m)
         apart_m = half_canopy_m(aisles.grid) + STRAY_M / 2
-        area = shapely.buffer(aisles.grid.drivable_m, _BEYOND_M)
+        area = shapely.buffer(aisles.grid.ground_m, _BEYOND_M)
         shapely.prepare(area)
         return TurningRoom(turning_m, corners, aisles.grid.tree, apart_m, area)
 
@@ -173,7 +174,7 @@ class MujocoRobot:
         if not self._placed:
             self._point(line_m)
         way, no_room = self._way(line_m)
-        touched, strayed_m = set[int](), 0.0
+        touched, strayed_m, over_m = set[int](), 0.0, 0.0
         length_m = float(np.hypot(*np.diff(line_m, axis=0).T).sum())
         each_s = 40.0 if self._wheels.base_m else 10.0
         until_s = data.time + 30.0 + 3.0 * length_m / self._pace.speed_m_s + each_s * len(line_m)
@@ -188,14 +189,27 @@ class MujocoRobot:
             self._step(self._model, data, every)
             self._note()
             strayed_m = max(strayed_m, way.off_m(self.pose[:2]))
+            over_m = max(over_m, self._over_m())
             plants = self._plant_of[data.contact.geom]
             touched.update(plants[plants >= 0].tolist())
             if data.time > until_s:
                 x, y, _ = self.pose
                 where = f"at {x:.1f}, {y:.1f} m of the plot's frame"
                 said = f"It did not get on {where} (touching {sorted(touched) or 'nothing'})."
-                return Visit(None, float(data.time), strayed_m, frozenset(touched), said)
-        return Visit(None, float(data.time), strayed_m, frozenset(touched), no_room)
+                touches = strayed_m, frozenset(touched)
+                return Visit(None, float(data.time), *touches, said, over_m=over_m)
+        return Visit(None, float(data.time), strayed_m, frozenset(touched), no_room, over_m=over_m)
+
+    def _over_m(self) -> float:
+        """Return how far its outline reaches over what is free now."""
+        x, y, yaw = self.pose
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        corners_m = self._room.corners_m @ np.array([[cos, sin], [-sin, cos]]) + [x, y]
+        outline = shapely.polygons(corners_m)
+        if shapely.covers(self._free, outline):
+            return 0.0
+        over = shapely.get_coordinates(shapely.difference(outline, self._free))
+        return float(shapely.distance(self._free, shapely.points(over)).max(initial=0.0))
 
     def _way(self, line_m: Float) -> tuple[Pursuit | SteeredPursuit, str]:
         """Return what follows a line, and why it cannot be followed to its end."""
@@ -252,3 +266,13 @@ def _mujoco() -> Any:  # noqa: ANN401 - a module without types
             'Install it with: pip install "fieldmon[sim]"'
         ) from error
     return mujoco
+
+
+def _free(aisles: Aisles, reach_m: float) -> shapely.Geometry:
+    """Return where the outline of a robot of such reach may be: on the plot, or at its gate."""
+    area = aisles.grid.drivable_m
+    entry: Any = shapely.shortest_line(shapely.points(aisles.gate_m), area)
+    about: Any = shapely.buffer(entry, reach_m)
+    free: shapely.Geometry = shapely.union(area, about)
+    shapely.prepare(free)
+    return free

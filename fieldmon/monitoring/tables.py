@@ -172,6 +172,9 @@ def _write_grid(db: sqlite3.Connection, grid: PlantGrid) -> None:
         write_array(db, "grid.half_canopy", np.array([grid.half_canopy_m]))
     area = np.frombuffer(shapely.to_wkb(grid.drivable_m), np.uint8)
     write_array(db, "grid.drivable_wkb", area)
+    if grid.beyond_m is not None:
+        beyond = np.frombuffer(shapely.to_wkb(grid.beyond_m), np.uint8)
+        write_array(db, "grid.beyond_wkb", beyond)
 
 
 def _write_plant_layers(db: sqlite3.Connection, grid: PlantGrid) -> None:
@@ -229,6 +232,8 @@ def _grid(arrays: dict[str, NDArray[Any]]) -> PlantGrid:
     in_rows = _IN_ROWS not in values
     values.pop(_IN_ROWS, None)
     area: Any = shapely.from_wkb(values.pop("drivable_wkb").tobytes())
+    if "beyond_wkb" in values:
+        values["beyond_m"] = shapely.from_wkb(values.pop("beyond_wkb").tobytes())
     if "half_canopy" in values:
         values["half_canopy_m"] = float(values.pop("half_canopy")[0])
     return PlantGrid(

@@ -125,6 +125,11 @@ class Route:
             return ""
         return bound_sentence(self.expected_found, self.found_bound)
 
+    @cached_property
+    def ways_said(self) -> tuple[str, ...]:
+        """Return for people what cannot be reached, and where the route leaves the plot."""
+        return self.aisles.said_of(self.line_m)
+
     def line_lonlat(self) -> NDArray[np.float64]:
         """Return the driven line in degrees, ``(m, 2)``."""
         return self.aisles.grid.frame.lonlat(self.line_m)

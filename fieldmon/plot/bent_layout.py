@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot import adjacency
 from fieldmon.plot.bent_pieces import bent_pieces
+from fieldmon.plot.ends_within import lanes_within
 from fieldmon.plot.grid import PlantGrid
 from fieldmon.plot.row_lines import LEFT, RIGHT, blocked_by, row_aisles
 
@@ -30,8 +32,6 @@ if TYPE_CHECKING:
     Int = NDArray[np.int64]
 
 _LOWER, _UPPER = 1, -1
-# a lane may end on the boundary
-_SLACK_M = 1e-4
 
 
 def bent_grid(
@@ -61,25 +61,48 @@ def bent_grid(
     if blocked is None:
         blocked = blocked_by(ground.obstacles, rows, aisles, planting)
     pieces = bent_pieces(rows, aisles, plants, blocked, planting)
-    area = _around(rows, aisles, pieces, ground, planting)
-    return _assembled(frame, pieces, aisles.lines, area, planting)
+    if ground.area is None:
+        area = _about(rows, np.arange(len(rows.block)), (aisles, pieces), ground, planting)
+        return _assembled(frame, pieces, aisles.lines, area, planting)
+    pieces, shut = _within(pieces, aisles.lines, ground.area, planting)
+    grid = _assembled(frame, pieces, aisles.lines, ground.area, planting)
+    if not shut.any():
+        return grid
+    some = pieces._replace(
+        aisle=pieces.aisle[shut], lane_m=pieces.lane_m[shut], spacing_m=pieces.spacing_m[shut]
+    )
+    reach = _about(rows, np.unique(pieces.row[shut]), (aisles, some), ground, planting)
+    return replace(grid, beyond_m=_polygons(shapely.difference(reach, ground.area)))
 
 
-def _around(
-    rows: RowLines, aisles: RowAisles, pieces: BentPieces, ground: Ground, planting: Planting
+def _within(
+    pieces: BentPieces, aisles: Polylines, area: MultiPolygon, planting: Planting
+) -> tuple[BentPieces, NDArray[np.bool_]]:
+    """Return pieces whose lanes end within an area, and which ``(r,)`` have no such end."""
+    ends = np.stack([pieces.row_start[:-1], pieces.row_start[1:] - 1], axis=1)
+    lane_m, shut = pieces.lane_m.copy(), np.zeros(len(pieces.row), np.bool_)
+    for side in (RIGHT, LEFT) if planting.faces == 2 else (LEFT,):
+        plant_m, aisle = pieces.place_m[ends, side], np.repeat(pieces.aisle[:, side], 2)
+        beyond_m = np.abs(lane_m[:, side] - plant_m)
+        outwards = aisles.stretches(aisle, plant_m.ravel(), lane_m[:, side].ravel()).shapes()
+        known_m, out = lanes_within(beyond_m, [outwards], area)
+        moved = plant_m + known_m * [-1.0, 1.0]
+        lane_m[:, side] = np.where(known_m < beyond_m, moved, lane_m[:, side])
+        shut |= out
+    return pieces._replace(lane_m=lane_m), shut
+
+
+def _about(
+    rows: RowLines,
+    some: Int,
+    lanes: tuple[RowAisles, BentPieces],
+    ground: Ground,
+    planting: Planting,
 ) -> MultiPolygon:
-    """Return where one may drive: the area that is known, if it holds all lanes."""
-    if ground.area is not None:
-        lane = np.repeat(pieces.aisle[:, LEFT], 2)
-        ends = aisles.lines.points(lane, pieces.lane_m[:, LEFT].ravel())
-        grown = shapely.buffer(ground.area, _SLACK_M)
-        shapely.prepare(grown)
-        if shapely.covers(grown, shapely.points(ends)).all():
-            return ground.area
-    reach = _reach(rows, planting)
-    reach = shapely.union(reach, _beyond(reach, aisles, pieces))
-    reach = shapely.difference(reach, ground.obstacles)
-    return _polygons(reach if ground.area is None else shapely.union(ground.area, reach))
+    """Return where some rows with their pieces, aisles and headlands reach."""
+    reach = _reach(rows, some, planting)
+    reach = shapely.union(reach, _beyond(reach, *lanes))
+    return _polygons(shapely.difference(reach, ground.obstacles))
 
 
 def _assembled(
@@ -173,11 +196,11 @@ def _corridors(aisle: Int, lane_m: Float) -> Int:
     return corridor
 
 
-def _reach(rows: RowLines, planting: Planting) -> shapely.Geometry:
-    """Return what rows, their aisles and headlands cover."""
-    long = rows.lines.extended(planting.headland_m).simpler(0.05).shapes()
+def _reach(rows: RowLines, some: Int, planting: Planting) -> shapely.Geometry:
+    """Return what some rows, their aisles and headlands cover."""
+    long = rows.lines.extended(planting.headland_m).simpler(0.05).shapes()[some]
     # neighbours are at most 1.7 spacings apart
-    half_m = 0.9 * rows.spacings(planting)[:, 0]
+    half_m = 0.9 * rows.spacings(planting)[some, 0]
     wide = shapely.buffer(long, half_m, cap_style="flat", quad_segs=2)
     return shapely.union_all(wide)
 

@@ -11,6 +11,7 @@ import shapely
 
 from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import PlotError
+from fieldmon.plot.clear_lanes import lane_lines
 from fieldmon.plot.end_turns import TurningCircle, end_turns, lane_ends
 from fieldmon.plot.robot import USUAL_TIMES
 from fieldmon.plot.steered_way import STEERS_S
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
     Float = NDArray[np.float64]
     Mask = NDArray[np.bool_]
-    Shapes = NDArray[np.object_]
 
 #: taken where nobody said how far plants reach to each side of their middle
 USUAL_HALF_CANOPY_M = 0.25
@@ -42,11 +42,19 @@ class Clearance(NamedTuple):
         Where it turns on the spot, as at row ends.
     circle
         What it needs to turn if it cannot turn on the spot; None: it can.
+    half_m
+        Half of its width.
     """
 
     way_m: float
     turn_m: float
     circle: TurningCircle | None = None
+    half_m: float = 0.0
+
+    @property
+    def off_m(self) -> float:
+        """Return how far its way keeps off holes and no-go areas."""
+        return self.half_m + STRAY_M if self.half_m else 0.0
 
     @classmethod
     def of(cls, robot: Robot, grid: PlantGrid) -> Clearance | None:
@@ -54,11 +62,13 @@ class Clearance(NamedTuple):
         if robot.width_m is None or robot.turning_m is None:
             return None
         beside_m = half_canopy_m(grid) + STRAY_M
-        way_m = robot.width_m / 2 + beside_m
+        half_m = robot.width_m / 2
+        way_m = half_m + beside_m
         if robot.turning_radius_m is None:
-            return cls(way_m, robot.turning_m / 2 + beside_m)
+            return cls(way_m, robot.turning_m / 2 + beside_m, None, half_m)
         size = robot.width_m, robot.length_m or robot.width_m
-        return cls(way_m, way_m, TurningCircle(robot.turning_radius_m, *size, beside_m))
+        circle = TurningCircle(robot.turning_radius_m, *size, beside_m)
+        return cls(way_m, way_m, circle, half_m)
 
     def too_narrow(self, grid: PlantGrid) -> Mask:
         """Tell of each row ``(r,)`` whether it cannot be inspected: its aisle is too narrow.
@@ -150,7 +160,7 @@ def lane_room_m(grid: PlantGrid) -> Float:
     """Return how near the lane of each row comes to the middle of any plant, ``(r,)`` metres."""
     points: Any = shapely.points(grid.xy_m)
     plants = shapely.STRtree(points)
-    near = plants.query_nearest(_lanes(grid), all_matches=False, return_distance=True)
+    near = plants.query_nearest(lane_lines(grid), all_matches=False, return_distance=True)
     room: Float = near[1]
     return room
 
@@ -196,6 +206,23 @@ def narrow_sentence(rows: Mask, grid: PlantGrid, needs: Clearance) -> str:
     return joined(" ", said)
 
 
+def hidden_sentence(n: int, needs: Clearance | None) -> str:
+    """Return for people that holes and no-go areas hide so many plants; "" if none."""
+    if not n:
+        return ""
+    if needs is None:
+        return worded(
+            "{plants} cannot be inspected: a hole or a no-go area cuts their aisle.",
+            plants=counted(n, "plant"),
+        )
+    return worded(
+        "{plants} cannot be inspected: a hole or a no-go area, off which the robot keeps "
+        "{off_m:.2f} m, cuts their aisle.",
+        plants=counted(n, "plant"),
+        off_m=_up(needs.off_m),
+    )
+
+
 def _counted(rows: Mask, grid: PlantGrid) -> dict[str, object]:
     """Return how many rows, as people count them, and plants these rows ``(r,)`` are."""
     return {
@@ -213,18 +240,3 @@ def _up(metres: float) -> float:
 def _down(metres: float) -> float:
     """Return a length in whole centimetres, never more."""
     return floor(round(100 * metres, 6)) / 100
-
-
-def _lanes(grid: PlantGrid) -> Shapes:
-    """Return the lane of each row as a line, ``(r,)``."""
-    if grid.aisles_m is None or grid.aisle is None:
-        y = np.repeat(grid.lane_y_m, 2).reshape(-1, 2)
-        straight: Any = shapely.linestrings(np.stack([grid.lane_x_m, y], axis=2))
-        return np.asarray(straight, object)
-    aisles, lanes = grid.aisles_m, []
-    for aisle, (low, high) in zip(grid.aisle.tolist(), grid.lane_x_m.tolist(), strict=True):
-        ends = aisles.points(np.full(2, aisle), np.array([low, high]))
-        inner = aisles.corners_between(aisle, low, high)
-        lanes.append(shapely.linestrings(np.concatenate([ends[:1], inner, ends[1:]])))
-    bent: Shapes = np.array(lanes, object)
-    return bent

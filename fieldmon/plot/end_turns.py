@@ -51,8 +51,8 @@ class TurningCircle(NamedTuple):
         rear, side = -_REAR * self.length_m, self.width_m / 2
         front = rear + self.length_m
         corners = np.array([[rear, -side], [front, -side], [front, side], [rear, side]])
-        shapely.prepare(grid.drivable_m)
-        return TurningRoom(self.radius_m, corners, grid.tree, self.apart_m, grid.drivable_m)
+        shapely.prepare(grid.ground_m)
+        return TurningRoom(self.radius_m, corners, grid.tree, self.apart_m, grid.ground_m)
 
 
 class EndTurns(NamedTuple):

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import shapely
 
 from fieldmon.compute.arrays import offsets, read_only
 from fieldmon.compute.wording import counted, runs, worded
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from scipy.spatial import cKDTree
     from shapely import MultiPolygon
+    from shapely.geometry.base import BaseGeometry
 
     from fieldmon.plot.polylines import Polylines
     from fieldmon.plot.projection import Frame
@@ -85,6 +87,9 @@ class PlantGrid:
         ``(r,)`` int8: which side of its lane the row is on (-1: lower y, +1: higher y).
     drivable_m
         Where a robot may drive between and around the rows; parts and holes as they are.
+    beyond_m
+        Where it may besides, though outside a boundary that somebody drew: about measured rows
+        that have no end within it. None: nowhere.
     row_spacing_m, plant_spacing_m
         Typical distances between rows and between plants in a row.
     along_start, along_plant
@@ -146,6 +151,7 @@ class PlantGrid:
     line_named: NDArray[np.str_] | None = None
     plant_named: NDArray[np.str_] | None = None
     block_named: NDArray[np.str_] | None = None
+    beyond_m: MultiPolygon | None = None
 
     def __post_init__(self) -> None:
         for value in vars(self).values():
@@ -166,6 +172,14 @@ class PlantGrid:
             return f"{counted(len(self), 'plant')} in no rows"
         blocks = f" of {counted(self.n_blocks, 'block')}" if self.n_blocks > 1 else ""
         return f"{counted(len(self), 'plant')} in {counted(self.n_lines, 'row')}{blocks}"
+
+    @cached_property
+    def ground_m(self) -> BaseGeometry:
+        """Where a robot may drive, on the plot and where it must beyond."""
+        if self.beyond_m is None:
+            return self.drivable_m
+        ground: BaseGeometry = shapely.union(self.drivable_m, self.beyond_m)
+        return ground
 
     @property
     def n_blocks(self) -> int:

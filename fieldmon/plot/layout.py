@@ -16,6 +16,8 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot import adjacency
 from fieldmon.plot.block_layout import lay_blocks
+from fieldmon.plot.clear_lanes import measured_clear
+from fieldmon.plot.ends_within import lanes_within
 from fieldmon.plot.grid import PlantGrid
 from fieldmon.plot.line_layout import copies, is_straight, lay_along
 from fieldmon.plot.measured_rows import (
@@ -148,8 +150,9 @@ def grid_from_plants(
 
     A gap in a row is missing plants; only holes and no-go areas of the field cut a row. Aisles
     run midway between the plants of neighbouring rows, lanes end half a headland beyond the last
-    plants. A robot may drive where the field's boundary says if that holds all lanes; otherwise,
-    or without a field, also wherever the rows with their aisles and headlands reach.
+    plants. A robot may drive where the field's boundary says, or without a field wherever the
+    rows with their aisles and headlands reach. Lanes that would end outside end before the
+    boundary if there is room; about rows that have no end within it one may drive outside.
 
     Parameters
     ----------
@@ -189,18 +192,21 @@ def grid_from_plants(
         bent = bent_rows(xy_m, line, planting.row_spacing_m, said)
     if bent is not None:
         area = None if field is None else held_area(field, frame, xy_m)
-        return measured_grid(frame, xy_m, (bent, called), Ground(area, obstacles), planting)
+        grid = measured_grid(frame, xy_m, (bent, called), Ground(area, obstacles), planting)
+        return measured_clear(grid, obstacles)
     order = np.lexsort((xy_m[:, 0], line))
     xy_m, line = xy_m[order], line[order]
     pieces = _pieces(xy_m, line, _aisles(xy_m[:, 1], line, planting), obstacles, planting)
-    reach = shapely.difference(_reach(pieces, planting), obstacles)
     if field is None:
+        reach = shapely.difference(_reach(pieces, planting), obstacles)
         return assemble(frame, pieces, _polygons(reach), planting)
     area = held_area(field, frame, xy_m)
-    lanes = _boxes(pieces.lane_x_m, pieces.aisle_y_m)
-    if not shapely.covers(shapely.buffer(area, 100 * SLACK_M), lanes).all():
-        area = _polygons(shapely.union(area, reach))
-    return assemble(frame, pieces, area, planting)
+    pieces, shut = _within(pieces, area, planting)
+    grid = measured_clear(assemble(frame, pieces, area, planting), obstacles)
+    if not shut.any():
+        return grid
+    reach = shapely.difference(_reach(pieces, planting, shut), obstacles)
+    return replace(grid, beyond_m=_polygons(shapely.difference(reach, area)))
 
 
 def held_area(field: Field, frame: Frame, xy_m: Float) -> MultiPolygon:
@@ -422,13 +428,43 @@ def _pieces(
     )
 
 
-def _reach(pieces: Pieces, planting: Planting) -> shapely.Geometry:
-    """Return what rows, their aisles and headlands cover, bridged from each line to the next."""
+def _within(
+    pieces: Pieces, area: MultiPolygon, planting: Planting
+) -> tuple[Pieces, NDArray[np.bool_]]:
+    """Return pieces whose lanes end within an area, and which ``(r,)`` have no such end."""
+    x = pieces.xy_m[:, 0]
+    plant_x = np.stack([x[pieces.row_start[:-1]], x[pieces.row_start[1:] - 1]], axis=1)
+    beyond_m = np.abs(pieces.lane_x_m - plant_x)
+    sides = []
+    for side in (0, 1) if planting.faces == 2 else (1,):
+        y = np.broadcast_to(pieces.aisle_y_m[:, side, None], plant_x.shape)
+        steps = np.stack([plant_x, y, pieces.lane_x_m, y], axis=2).reshape(-1, 2, 2)
+        sides.append(np.asarray(shapely.linestrings(steps), np.object_))
+    known_m, shut = lanes_within(beyond_m, sides, area)
+    moved = np.where(known_m < beyond_m, plant_x + known_m * [-1.0, 1.0], pieces.lane_x_m)
+    return pieces._replace(lane_x_m=moved), shut
+
+
+def _reach(
+    pieces: Pieces, planting: Planting, some: NDArray[np.bool_] | None = None
+) -> shapely.Geometry:
+    """Return what rows, their aisles and headlands cover, bridged from each line to the next.
+
+    Of `some` ``(r,)``, or of all.
+    """
     beyond = planting.headland_m / 2 * np.array([-1.0, 1.0])
     boxes = _boxes(pieces.lane_x_m + beyond, pieces.aisle_y_m)
-    first = np.flatnonzero(np.diff(pieces.row_line, prepend=-1))
+    line = pieces.row_line
+    if some is not None:
+        boxes, line = boxes[some], line[some]
+    first = np.flatnonzero(np.diff(line, prepend=-1))
     lines = [shapely.union_all(boxes[a:b]) for a, b in pairwise([*first.tolist(), len(boxes)])]
-    bridged = [shapely.convex_hull(shapely.union(a, b)) for a, b in pairwise(lines)]
+    next_ = np.diff(line[first]) == 1
+    bridged = [
+        shapely.convex_hull(shapely.union(*pair))
+        for pair, bridge in zip(pairwise(lines), next_, strict=True)
+        if bridge
+    ]
     return shapely.union_all([*lines, *bridged])
 
 

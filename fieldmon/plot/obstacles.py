@@ -33,14 +33,21 @@ MOST_CORNERS = 100
 # a lane may lie exactly on the boundary
 _EDGE_M = 0.01
 _CLEARANCE_M = 0.3
+# the steps of a quarter circle, and what makes them no nearer than the circle
+_QUARTER = 4
+_ROUND = float(1.0 / np.cos(np.pi / (4 * _QUARTER)))
 
 
 class Where(Enum):
     """Where a way may run, from preferred to last resort; never across a row."""
 
-    INSIDE = "in the drivable area"
+    INSIDE = "in the drivable area, half a robot's width off its boundary where there is room"
+    TIGHT = "in the drivable area, as near to its boundary as need be"
     OUTSIDE = "outside the boundary too, but not over holes"
     ANYWHERE = "over holes too, but not over no-go areas"
+
+
+ON_PLOT = (Where.INSIDE, Where.TIGHT)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +70,12 @@ class Obstacles:
         Its holes, and where driving is never fine.
     no_go_m
         Where driving is never fine.
+    bare_m
+        The same without what a robot keeps off it.
+    edge_m
+        The boundary, which ways keep `half_m` off if their ends do.
+    half_m
+        Half of the robot's width; 0: it is a point.
     """
 
     row_box_m: Float
@@ -71,6 +84,9 @@ class Obstacles:
     drivable_m: shapely.Geometry
     off_limits_m: shapely.Geometry
     no_go_m: shapely.Geometry
+    bare_m: shapely.Geometry
+    edge_m: shapely.Geometry
+    half_m: float = 0.0
 
     def __repr__(self) -> str:
         return f"<Obstacles: {counted(len(self.row_box_m), 'row piece')}>"
@@ -81,26 +97,37 @@ class Obstacles:
     ) -> Obstacles:
         """Return the obstacles on a plot, to a robot that needs some clearance."""
         if clearance is None:
-            ends_x = grid.along_m[end_plants(grid)]
-            clearance_m = min(_CLEARANCE_M, 0.4 * float(np.abs(grid.lane_x_m - ends_x).min()))
+            beyond_m = beyond_plants_m(grid)
+            # where a lane ends at its last plant nobody turns
+            least_m = float(beyond_m.min(where=beyond_m > 0.0, initial=np.inf))
+            clearance_m = min(_CLEARANCE_M, 0.4 * least_m)
         else:
             clearance_m = clearance.way_m
-        drivable_m: shapely.Geometry = grid.drivable_m
+        drivable_m: shapely.Geometry = grid.ground_m
         if not shapely.is_valid(drivable_m):  # laid on a plane, parts by a hair may cross
             drivable_m = shapely.make_valid(drivable_m, method="structure", keep_collapsed=False)
-        parts = shapely.get_parts(drivable_m)
-        whole = shapely.union_all([Polygon(part.exterior) for part in parts])
+        whole = filled(drivable_m)
         holes_m = shapely.difference(whole, drivable_m)
-        areas = (
-            shapely.buffer(drivable_m, _EDGE_M, join_style="mitre"),
-            shapely.buffer(shapely.union(holes_m, no_go_m), -_EDGE_M, join_style="mitre"),
-            shapely.buffer(no_go_m, -_EDGE_M, join_style="mitre"),
-        )
-        for area in areas:
+        half_m, off_m = 0.0, 0.0
+        if clearance is not None and grid.in_rows:  # who stands beside a tree may be near a hole
+            half_m, off_m = clearance.half_m, clearance.off_m
+        off_limits_m = _wider(shapely.union(holes_m, no_go_m), off_m)
+        inside_m: shapely.Geometry = shapely.buffer(drivable_m, _EDGE_M, join_style="mitre")
+        off_limits_m = shapely.buffer(off_limits_m, -_EDGE_M, join_style="mitre")
+        if off_m:
+            inside_m = shapely.difference(inside_m, off_limits_m)
+        never_m = shapely.buffer(_wider(no_go_m, off_m), -_EDGE_M, join_style="mitre")
+        bare_m = shapely.buffer(no_go_m, -_EDGE_M, join_style="mitre")
+        edge_m = shapely.boundary(whole)
+        for area in (inside_m, off_limits_m, never_m, bare_m, edge_m):
             shapely.prepare(area)
-        if grid.aisles_m is None:
-            return cls(_row_boxes(grid, clearance_m), None, clearance_m, *areas)
-        return cls(*row_steps(grid, clearance_m), clearance_m, *areas)
+        row_box_m, row_step_m = (
+            (_row_boxes(grid, clearance_m), None)
+            if grid.aisles_m is None
+            else row_steps(grid, clearance_m)
+        )
+        areas = inside_m, off_limits_m, never_m, bare_m, edge_m
+        return cls(row_box_m, row_step_m, clearance_m, *areas, half_m)
 
     def clear(self, from_m: Float, to_m: Float, where: Where = Where.INSIDE) -> Mask:
         """Tell of k straight ways, ``(k, 2)`` to ``(k, 2)``, whether they can be driven."""
@@ -110,17 +137,47 @@ class Obstacles:
         else:
             off_steps((self.row_box_m, self.row_step_m), self.clearance_m, from_m, to_m, good)
         kept = np.flatnonzero(good)
-        lines = shapely.linestrings(np.stack([from_m[kept], to_m[kept]], axis=1))
-        if where is Where.INSIDE:
+        lines = np.asarray(shapely.linestrings(np.stack([from_m[kept], to_m[kept]], axis=1)))
+        if where in ON_PLOT:
             good[kept] = shapely.covers(self.drivable_m, lines)
+            if self.half_m and where is Where.INSIDE:
+                kept, lines = kept[good[kept]], lines[good[kept]]
+                good[kept] = self._off_edge(lines)
         else:
             good[kept] = ~np.asarray(shapely.intersects(self._off_limits(where), lines))
         return good
 
+    def _off_edge(self, lines: NDArray[np.object_]) -> Mask:
+        """Tell of lines whether they come no nearer to the boundary than they must.
+
+        That is half the width, or less where the nearer of their ends is nearer.
+        """
+        near = np.flatnonzero(shapely.dwithin(self.edge_m, lines, self.half_m - _EDGE_M))
+        ends_m = [shapely.distance(self.edge_m, shapely.get_point(lines[near], k)) for k in (0, -1)]
+        least_m = np.minimum(np.minimum(*ends_m), self.half_m)
+        off = np.ones(len(lines), np.bool_)
+        off[near] = shapely.distance(self.edge_m, lines[near]) >= least_m - _EDGE_M
+        return off
+
+    def among_plants(self, at_m: Float) -> bool:
+        """Tell whether a place ``(1, 2)`` is in a row of plants, or on a no-go area."""
+        off = np.ones(1, np.bool_)
+        _off_boxes(self.row_box_m, at_m, at_m, off)
+        return bool(not off[0] or shapely.intersects_xy(self.bare_m, *at_m[0]))
+
+    def within(self, from_m: Float, to_m: Float) -> Mask:
+        """Tell of k straight ways, whatever plants stand there, whether they are on the plot."""
+        lines = shapely.linestrings(np.stack([from_m, to_m], axis=1))
+        inside: Mask = np.asarray(shapely.covers(self.drivable_m, lines))
+        return inside
+
     def corners(self, where: Where) -> Float:
         """Return corners that ways may have to go round, ``(k, 2)``; of crowded ones a choice."""
-        if where is Where.INSIDE:
+        if where in ON_PLOT:
             area, sign = self.drivable_m, -1.0
+            if self.half_m and where is Where.INSIDE:
+                near = shapely.buffer(self.edge_m, self.half_m, quad_segs=2)
+                area = shapely.difference(area, near)
         else:  # on the brink of what must not even be touched
             area, sign = self._off_limits(where), 1.0
             area = shapely.buffer(area, _EDGE_M, join_style="mitre")
@@ -132,6 +189,24 @@ class Obstacles:
 
     def _off_limits(self, where: Where) -> shapely.Geometry:
         return self.off_limits_m if where is Where.OUTSIDE else self.no_go_m
+
+
+def off_limits(grid: PlantGrid, no_go_m: shapely.Geometry | None, off_m: float) -> shapely.Geometry:
+    """Return what ways keep off: holes and no-go areas, and so far around them."""
+    holes_m = shapely.difference(filled(grid.ground_m), grid.ground_m)
+    return _wider(holes_m if no_go_m is None else shapely.union(holes_m, no_go_m), off_m)
+
+
+def filled(area: shapely.Geometry) -> shapely.Geometry:
+    """Return an area without its holes."""
+    return shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(area)])
+
+
+def _wider(area: shapely.Geometry, by_m: float) -> shapely.Geometry:
+    """Return an area and so much around it, round at its corners."""
+    if not by_m:
+        return area
+    return shapely.buffer(area, by_m * _ROUND, quad_segs=_QUARTER)
 
 
 def _bends(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:
@@ -213,6 +288,12 @@ def _corner_plants(grid: PlantGrid) -> Index:
     inner[1:-1] = level[1:] & level[:-1]
     inner[end_plants(grid)] = False
     return np.flatnonzero(~inner)
+
+
+def beyond_plants_m(grid: PlantGrid) -> Float:
+    """Return how far each lane reaches beyond the first and the last plant, ``(r, 2)`` metres."""
+    beyond_m: Float = np.abs(grid.lane_x_m - grid.along_m[end_plants(grid)])
+    return beyond_m
 
 
 def end_plants(grid: PlantGrid) -> Index:

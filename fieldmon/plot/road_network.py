@@ -14,7 +14,7 @@ from fieldmon.compute.wording import counted
 from fieldmon.plot.adjacency import delaunay_sides
 from fieldmon.plot.bent_ways import Bends, bends_of, row_end_places
 from fieldmon.plot.end_turns import lane_ends
-from fieldmon.plot.obstacles import SAME_M, Obstacles, end_plants
+from fieldmon.plot.obstacles import SAME_M, Obstacles, beyond_plants_m, end_plants
 from fieldmon.plot.way_joining import (
     NEAREST,
     Net,
@@ -76,6 +76,7 @@ def find_roads(
     gate_xy_m: tuple[float, float] | None = None,
     no_go_m: MultiPolygon | None = None,
     clearance: Clearance | None = None,
+    shut: Mask | None = None,
 ) -> RoadNetwork:
     """Return the network of ways between the lane ends of a plot and its gate.
 
@@ -84,26 +85,30 @@ def find_roads(
     straight line touches no row and stays in the drivable area, from node to node. Where that
     leaves parts of the plot apart, they are joined by the shortest ways outside, which lead from
     part to part and are no short cuts between places of one; never over `no_go_m`. Without a gate,
-    work starts at the low-x lane end of the first row that is not too narrow.
+    work starts at the low-x lane end of the first row that is not too narrow, if it is on the plot.
 
-    With a `clearance`, ways keep so far off plants, nothing leads along aisles that are too narrow,
-    and nobody need reach their rows. Raise `PlotError` if some row cannot be reached.
+    With a `clearance`, ways keep so far off plants, holes and no-go areas, and off the boundary
+    where there is room; nothing leads along aisles that are too narrow, or of rows ``(r,)`` that
+    are `shut`, and nobody need reach these. Raise `PlotError` if some row cannot be reached.
     """
     obstacles = Obstacles.of(grid, MultiPolygon() if no_go_m is None else no_go_m, clearance)
     if not grid.in_rows:
         return _find_from_tree_to_tree(grid, gate_xy_m, obstacles)
     narrow = _Narrow.of(grid, clearance)
+    if shut is not None and shut.any() and not (narrow.rows | shut).all():
+        narrow = narrow._replace(rows=narrow.rows | shut)
     if grid.aisles_m is not None:
         return _find_bent(grid, gate_xy_m, obstacles, narrow)
     xy_m, place = _merged(_row_end_places(grid))
     beside = np.where(grid.side[:, None] < 0, place[:, :, 2], place[:, :, 0])
     turns = np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)
-    trusted = np.concatenate([beside[~narrow.rows], turns[narrow.passed.ravel()]])
+    turns = turns[narrow.passed.ravel() & obstacles.within(xy_m[turns[:, 0]], xy_m[turns[:, 1]])]
+    trusted = np.concatenate([beside[~narrow.rows], turns])
     tried = np.concatenate([_along_aisles(grid, xy_m, place), _nearest(xy_m), _jumps(grid, place)])
     tried = each_once(tried[narrow.can_turn(grid, xy_m, tried, beside)])
     good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
     net = Net(xy_m, np.concatenate([trusted, tried[good]]))
-    gate = int(beside[np.argmin(narrow.rows), 0])
+    gate = _first_end(xy_m, beside, narrow, obstacles)
     if gate_xy_m is not None:
         gate = len(net.xy_m)
         net = with_gate(net, np.array([gate_xy_m]), obstacles, grid)
@@ -152,11 +157,11 @@ class _Narrow(NamedTuple):
     def of(cls, grid: PlantGrid, clearance: Clearance | None) -> _Narrow:
         none = np.zeros((grid.n_rows, 2), np.bool_)
         if clearance is None:
-            return cls(none[:, 0], none, ~none, np.ones((grid.n_rows, 2, 2), np.bool_))
-        beyond_m = np.abs(grid.lane_x_m - grid.along_m[end_plants(grid)])
+            passed = beyond_plants_m(grid) > 0.0
+            return cls(none[:, 0], none, passed, np.ones((grid.n_rows, 2, 2), np.bool_))
         room = clearance.turn_room(grid)
         to_row = room[np.arange(grid.n_rows), :, (grid.side > 0).astype(np.intp)]
-        passed = (beyond_m >= clearance.way_m) & to_row
+        passed = (beyond_plants_m(grid) >= clearance.way_m) & to_row
         return cls(clearance.too_narrow(grid), clearance.tight_ends(grid), passed, room)
 
     @property
@@ -194,7 +199,9 @@ def _find_bent(
     xy_m, place = _merged(places)
     beside = np.where(grid.side[:, None] < 0, place[:, :, 2], place[:, :, 0])
     lane = None if gate_xy_m is None else _lane_at(grid, np.array([gate_xy_m]))
-    gate = int(beside[np.argmin(narrow.rows), 0]) if gate_xy_m is None else len(xy_m)
+    gate = len(xy_m)
+    if gate_xy_m is None:
+        gate = _first_end(xy_m, beside, narrow, obstacles)
     if lane is not None:
         xy_m = np.concatenate([xy_m, lane[0]])
     at_gate = None if lane is None else (gate, *lane[1:])
@@ -202,17 +209,28 @@ def _find_bent(
     bends = bends.where(_driveable(bends, obstacles))
     across = place.reshape(-1, 3)
     turns = np.stack([beside.ravel(), place[:, :, 1].ravel()], axis=1)
-    trusted = turns[narrow.passed.ravel()]
+    turns = turns[narrow.passed.ravel() & obstacles.within(xy_m[turns[:, 0]], xy_m[turns[:, 1]])]
     tried = [across[:, :2], across[:, 1:], _nearest(xy_m), _jumps(grid, place)]
     pairs = np.concatenate(tried)
     pairs = each_once(pairs[narrow.can_turn(grid, xy_m, pairs, beside)])
     good = obstacles.clear(xy_m[pairs[:, 0]], xy_m[pairs[:, 1]])
-    net = Net(xy_m, np.concatenate([trusted, bends.pair, pairs[good]]))
+    net = Net(xy_m, np.concatenate([turns, bends.pair, pairs[good]]))
     if gate_xy_m is not None and lane is None:
         net = with_gate(net, np.array([gate_xy_m]), obstacles, grid)
     needed = np.append(beside[~narrow.rows].ravel(), gate)
     net = joined_outside(joined_inside(net, needed, obstacles), needed, obstacles)
     return _sorted(net, beside, gate, bends)
+
+
+def _first_end(xy_m: Float, beside: Index, narrow: _Narrow, obstacles: Obstacles) -> int:
+    """Return the lane end at which days begin where nobody said: of the first row one can enter.
+
+    Its low end, or the first end in the rows' order that is on the plot.
+    """
+    ends = beside[~narrow.rows]
+    ends = ends.ravel() if len(ends) else beside.ravel()
+    on_plot = obstacles.within(xy_m[ends], xy_m[ends])
+    return int(ends[np.argmax(on_plot)])
 
 
 def _lane_at(grid: PlantGrid, gate_m: Float) -> tuple[Float, int, float] | None:

@@ -8,16 +8,22 @@ from numbers import Integral
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import shapely
 
 from fieldmon.compute.arguments import shown
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
-from fieldmon.plot.clearance import Clearance, narrow_sentence, robot_on
+from fieldmon.plot.clear_lanes import clear_lanes, hidden_plants
+from fieldmon.plot.clearance import Clearance, hidden_sentence, narrow_sentence, robot_on
 from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
+from fieldmon.plot.ends_within import ROOM_M, opened
+from fieldmon.plot.obstacles import off_limits
 from fieldmon.plot.road_network import RoadNetwork, find_roads
 from fieldmon.plot.travel_table import TravelTable
+from fieldmon.plot.way_joining import CutOffError
+from fieldmon.plot.ways_said import line_said
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -49,12 +55,16 @@ class Aisles:
         Where the gate was said to be, and where nobody may drive.
     clearance
         How far ways keep off plants; None: as for a robot whose width nobody said.
+    hidden
+        ``(n,)`` plants of which no lane comes near for holes and no-go areas; None: as the grid
+        has it.
     """
 
     grid: PlantGrid
     gate_xy_m: tuple[float, float] | None = None
     no_go_m: MultiPolygon | None = None
     clearance: Clearance | None = None
+    hidden: NDArray[np.bool_] | None = None
 
     @classmethod
     def of(
@@ -63,21 +73,33 @@ class Aisles:
         gate_xy_m: tuple[float, float] | None = None,
         no_go_m: MultiPolygon | None = None,
         clearance: Clearance | None = None,
+        hidden: NDArray[np.bool_] | None = None,
     ) -> Aisles:
         """Find the ways on a plot; raise `PlotError` where a row cannot be reached.
 
         Without a gate, work starts at the low-x lane end of the first row. `no_go_m` is what must
         not be crossed either where parts of a plot can only be joined outside the boundary.
-        `clearance` is what a robot needs.
+        `clearance` is what a robot needs, `hidden` are plants ``(n,)`` that it cannot come near.
         """
-        aisles = cls(grid, gate_xy_m, no_go_m, clearance)
-        _ = aisles.travel  # or raise
+        aisles = cls(grid, gate_xy_m, no_go_m, clearance, hidden)
+        try:
+            _ = aisles.travel
+        except CutOffError:
+            if not grid.in_rows:
+                raise
+            off_m, needs_m = (clearance.off_m, clearance.way_m) if clearance else (0.0, ROOM_M)
+            wider = opened(grid, needs_m, off_limits(grid, no_go_m, off_m))
+            if wider is grid:
+                raise
+            aisles = cls(wider, gate_xy_m, no_go_m, clearance, hidden)
+            _ = aisles.travel  # or raise
         return aisles
 
     @cached_property
     def roads(self) -> RoadNetwork:
         """The network of ways between lane ends, found once it is asked for."""
-        roads = find_roads(self.grid, self.gate_xy_m, self.no_go_m, self.clearance)
+        shut = np.logical_and.reduceat(self._hidden, self.grid.row_start[:-1])
+        roads = find_roads(self.grid, self.gate_xy_m, self.no_go_m, self.clearance, shut)
         for values in roads:
             if isinstance(values, np.ndarray):
                 read_only(values)
@@ -120,25 +142,53 @@ class Aisles:
         if needs == self.clearance:
             return self
         if needs not in self._others:
-            self._others[needs] = Aisles.of(self.grid, self.gate_xy_m, self.no_go_m, needs)
+            self._others[needs] = self._for(needs)
         return self._others[needs]
 
     @cached_property
     def _others(self) -> dict[Clearance | None, Aisles]:
         return {}
 
+    def _for(self, needs: Clearance | None) -> Aisles:
+        if needs is None or not self.grid.in_rows:
+            return Aisles.of(self.grid, self.gate_xy_m, self.no_go_m, needs)
+        lanes = clear_lanes(self.grid, off_limits(self.grid, self.no_go_m, needs.off_m))
+        hidden = lanes.hidden | self._hidden
+        return Aisles.of(lanes.grid, self.gate_xy_m, self.no_go_m, needs, hidden)
+
     @cached_property
     def too_narrow(self) -> NDArray[np.bool_]:
-        """Whether each plant ``(n,)`` stands in a row whose aisle is too narrow to enter."""
+        """Whether each plant ``(n,)`` cannot be come near: its aisle is too narrow, or is cut."""
         if self.clearance is None:
+            return self._hidden
+        return read_only(self.clearance.too_narrow(self.grid)[self.grid.row] | self._hidden)
+
+    @cached_property
+    def _hidden(self) -> NDArray[np.bool_]:
+        if self.hidden is not None:
+            return read_only(self.hidden)
+        if shapely.is_empty(off_limits(self.grid, self.no_go_m, 0.0)) or not self.grid.in_rows:
             return read_only(np.zeros(len(self.grid), np.bool_))
-        return read_only(self.clearance.too_narrow(self.grid)[self.grid.row])
+        return read_only(hidden_plants(self.grid))
 
     def narrow_sentence(self) -> str:
-        """Return for people which rows the robot cannot enter, in a sentence; "" if none."""
-        if self.clearance is None or not self.too_narrow.any():
-            return ""
-        return narrow_sentence(self.too_narrow[self.grid.row_start[:-1]], self.grid, self.clearance)
+        """Return for people which plants the robot cannot come near, in sentences; "" if none."""
+        rows = np.zeros(self.grid.n_rows, np.bool_)
+        if self.clearance is not None:
+            rows = self.clearance.too_narrow(self.grid)
+        hidden = self._hidden & ~rows[self.grid.row]
+        said = [narrow_sentence(rows, self.grid, self.clearance)] if self.clearance else []
+        said += [hidden_sentence(int(hidden.sum()), self.clearance)]
+        return joined(" ", [one for one in said if one])
+
+    def said_of(self, line_m: Float) -> tuple[str, ...]:
+        """Return what people must know of a driven line ``(m, 2)``, and of the ways, in sentences.
+
+        Which plants cannot be come near, how much of it lies outside the plot, and where a robot's
+        body reaches over its boundary.
+        """
+        left = line_said(self.grid, (self.gate_m, self.no_go_m), self.clearance, line_m)
+        return tuple(one for one in (self.narrow_sentence(), *left) if one)
 
     def __repr__(self) -> str:
         return f"<Aisles: {self.grid.counts}, {counted(len(self.roads.xy_m), 'node')}>"

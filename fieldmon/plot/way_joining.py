@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
-from fieldmon.plot.obstacles import MOST_CORNERS, SAME_M, Obstacles, Where
+from fieldmon.plot.obstacles import MOST_CORNERS, ON_PLOT, SAME_M, Obstacles, Where
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,6 +28,10 @@ NEAREST = 10
 _SAME_BEARING = 1e-9
 _GATE_NEAREST = 64
 _BRIDGE_NEAREST = (8, 64, 512)
+
+
+class CutOffError(PlotError):
+    """Rows that no way reaches."""
 
 
 class Net(NamedTuple):
@@ -87,13 +91,14 @@ def with_gate(net: Net, gate_m: Float, obstacles: Obstacles, grid: PlantGrid) ->
     A gate outside the drivable area is first linked to the nearest point of that area; a gate
     among the plants of a row is moved to that row's lane.
     """
-    if grid.aisles_m is None and not obstacles.clear(gate_m, gate_m, Where.ANYWHERE)[0]:
+    if grid.aisles_m is None and obstacles.among_plants(gate_m):
         row = grid.row[np.argmin(np.hypot(*(grid.xy_m - gate_m).T))]
         gate_m = np.array([[np.clip(gate_m[0, 0], *grid.lane_x_m[row]), grid.lane_y_m[row]]])
     n, k = len(net.xy_m), min(_GATE_NEAREST, len(net.xy_m))
     entry_m = gate_m
     if not shapely.intersects_xy(obstacles.drivable_m, *gate_m[0]):
-        line = shapely.shortest_line(shapely.points(gate_m[0]), grid.drivable_m)
+        ground = obstacles.drivable_m if obstacles.half_m else grid.ground_m
+        line = shapely.shortest_line(shapely.points(gate_m[0]), ground)
         entry_m = shapely.get_coordinates(line)[1:]
     near = cKDTree(net.xy_m).query(entry_m[0], k=k)[1].reshape(-1)
     seen = near[obstacles.clear(np.repeat(entry_m, k, axis=0), net.xy_m[near])]
@@ -106,10 +111,11 @@ def with_gate(net: Net, gate_m: Float, obstacles: Obstacles, grid: PlantGrid) ->
 
 def joined_inside(net: Net, needed: Index, obstacles: Obstacles) -> Net:
     """Return the network with needed nodes connected as far as that is possible on the plot."""
-    if not net.apart(needed):
-        return net
-    net = _with_corners(net, obstacles)
-    return _bridged(net, np.arange(len(net.xy_m)), obstacles, Where.INSIDE)
+    for where in ON_PLOT if obstacles.half_m else (Where.INSIDE,):
+        if net.apart(needed):
+            net = _with_corners(net, obstacles, where)
+            net = _bridged(net, np.arange(len(net.xy_m)), obstacles, where)
+    return net
 
 
 def joined_outside(net: Net, needed: Index, obstacles: Obstacles) -> Net:
@@ -127,7 +133,7 @@ def joined_outside(net: Net, needed: Index, obstacles: Obstacles) -> Net:
     if net.apart(needed):
         part = net.component()[needed]
         stranded = (part[:-1] != part[-1]).reshape(-1, 2).any(axis=1)
-        raise PlotError(
+        raise CutOffError(
             worded(
                 "Every row must be reachable from the gate without crossing "
                 "rows or no-go areas, but {shut} of {n} rows are "
@@ -140,9 +146,9 @@ def joined_outside(net: Net, needed: Index, obstacles: Obstacles) -> Net:
     return net
 
 
-def _with_corners(net: Net, obstacles: Obstacles) -> Net:
+def _with_corners(net: Net, obstacles: Obstacles, where: Where) -> Net:
     """Return the network with the plot's corners to drive around, linked to what they see."""
-    corners = obstacles.corners(Where.INSIDE)
+    corners = obstacles.corners(where)
     n, m = len(net.xy_m), len(corners)
     if not m:
         return net
@@ -150,7 +156,7 @@ def _with_corners(net: Net, obstacles: Obstacles) -> Net:
     to_near = each_to(np.arange(n, n + m), near)
     tried = np.concatenate([np.stack(np.triu_indices(m, 1), axis=1) + n, to_near])
     xy_m = np.concatenate([net.xy_m, corners])
-    good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]])
+    good = obstacles.clear(xy_m[tried[:, 0]], xy_m[tried[:, 1]], where)
     return net.plus(corners, tried[good])
 
 
@@ -160,7 +166,7 @@ def _bridged(net: Net, joined: Index, obstacles: Obstacles, where: Where) -> Net
     From each of them to those nearest to it.
     """
     zone = np.zeros(len(net.xy_m), np.intp)
-    if where is Where.INSIDE:  # from one part of the drivable area to another there are none
+    if where in ON_PLOT:  # from one part of the drivable area to another there are none
         drivable = shapely.STRtree(shapely.get_parts(obstacles.drivable_m))
         zone = np.asarray(drivable.nearest(shapely.points(net.xy_m)))
     part = net.component()

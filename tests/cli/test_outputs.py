@@ -1,6 +1,7 @@
 """What a plan leaves on the disk."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -66,6 +67,15 @@ def test_a_day_in_words_says_its_stops_its_hours_and_what_to_expect(today):
     assert day_in_words(today.route, today.route.expected_finds) == words
     more = day_in_words(today.route, 99.0)
     assert f"about 99 of them infested, about {seen} so that it can be seen, about" in more
+
+
+def test_a_day_in_words_says_where_its_way_leaves_the_plot(today):
+    far_m = np.array([[0.0, 500.0]])
+    away = replace(today.route, line_m=np.concatenate([today.route.line_m[:-1], far_m]))
+    (said,) = away.ways_said
+    assert re.match(r"\d+ m of the way lie outside the plot's boundary, up to \d+ m", said)
+    assert day_in_words(away).splitlines()[-1] == said
+    assert "outside" not in day_in_words(today.route)
 
 
 @pytest.mark.parametrize(

@@ -1,14 +1,14 @@
 """A team's season on the command line: one route file each, and several findings at once."""
 
 from dataclasses import replace
-from datetime import time
+from datetime import datetime, time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fieldmon.cli.options import WorkerOptions
-from fieldmon.cli.team_files import files_of_each, members_of
+from fieldmon.cli.team_files import files_of_each, members_of, tell_member
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
@@ -120,3 +120,14 @@ def test_a_file_is_named_as_any_other_of_a_name():
 def test_names_that_are_one_in_file_names_are_refused():
     with pytest.raises(SettingError, match="differ in file names"):
         files_of_each(None, (TeamMember("a b"), TeamMember("A/b")))
+
+
+def test_of_each_it_is_said_where_its_way_leaves_the_plot(capsys):
+    class Leaving(list):
+        expected_found, end_s, drive_m = 1.0, 3600.0, 500.0
+        ways_said = ("5 m of the way lie outside.", "The body reaches over.")
+
+    tell_member("Ann", datetime(2026, 11, 18, 6), Leaving([1, 2]))
+    first, *said = capsys.readouterr().out.splitlines()
+    assert first.startswith("Ann: from 06:00, 2 plants in 1.0 h, 0.50 km")
+    assert said == [f"Ann: {one}" for one in Leaving.ways_said]

@@ -57,6 +57,9 @@ def test_the_day_in_words_says_what_went_wrong():
     assert "2 plants touched; at worst 12 cm" in said
     assert said.endswith("Stuck.")
     assert "+0.0 %" in in_words(DrivenDay())
+    assert "outline" not in said
+    over = DrivenDay(home=Visit(None, over_m=0.124))
+    assert "12 cm over the plot's boundary, or into a hole or a no-go area" in in_words(over)
 
 
 def test_its_own_tables_are_known_from_sheets_to_fill_in(tmp_path):

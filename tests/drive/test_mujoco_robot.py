@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.ground import rough_ground
@@ -12,6 +13,7 @@ from fieldmon.drive.mujoco_robot import MujocoRobot, Physics
 from fieldmon.drive.robot_body import RobotBody, with_turning_radius
 from fieldmon.drive.track import Track
 from fieldmon.errors import SettingError
+from fieldmon.plot.clear_lanes import lane_lines
 from fieldmon.plot.clearance import STRAY_M
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
@@ -40,6 +42,16 @@ def test_a_day_is_driven_without_touching_a_plant(driven):
     assert day.touched == frozenset()
     assert day.stuck == []
     assert day.strayed_m < STRAY_M
+
+
+@pytest.mark.parametrize(("room_m", "over_m"), [(0.1, (0.1, 0.5)), (1.5, (0.0, 0.01))])
+def test_how_far_an_outline_reaches_over_the_boundary_is_measured(plot, robot, room_m, over_m):
+    lanes = shapely.union_all(lane_lines(plot.grid))
+    area = shapely.MultiPolygon([shapely.convex_hull(lanes).buffer(room_m)])
+    grid = replace(plot.grid, drivable_m=area)
+    on = replace(plot, aisles=Aisles.of(grid, tuple(plot.aisles.gate_m)))
+    least, most = over_m
+    assert least <= a_short_day(on, robot, RobotBody.of(robot)).over_m < most
 
 
 def test_charged_and_driven_seconds_are_as_one(driven):

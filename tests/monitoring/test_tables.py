@@ -115,6 +115,13 @@ def test_a_plot_comes_back_exactly_as_it_was_laid(db, faces):
     check_comes_back(db, plot)
 
 
+def test_a_plot_comes_back_with_where_one_may_drive_beyond_its_boundary(db):
+    plot = a_plot()
+    beyond_m = MultiPolygon([box(-9, -9, -5, 9)])
+    grid = replace(plot.grid, beyond_m=beyond_m)
+    check_comes_back(db, replace(plot, aisles=replace(plot.aisles, grid=grid)))
+
+
 def test_a_plot_comes_back_with_its_blocks_and_the_names_of_its_rows(db):
     field = replace(full_field(), plants=None, row_bearing_deg=None)
     west, east = box(35.15, 30.36, 35.1503, 30.3607), box(35.1503, 30.36, 35.1508, 30.3607)

@@ -410,8 +410,8 @@ def test_a_gap_in_a_measured_row_is_missing_plants_but_a_no_go_area_cuts_it():
     assert not shapely.intersects(pond_m, lanes(cut)).any()
     tight = MultiPolygon([frame.geometry_lonlat(shapely.box(-1, -1, 28, 5))])
     widened = grid_from_plants(frame.lonlat(xy_m), planting, Field("tight", tight, no_go=pond))
-    assert shapely.covers(shapely.buffer(widened.drivable_m, EDGE), lanes(widened)).all()
-    assert shapely.intersection(widened.drivable_m, pond_m).area < EDGE
+    assert shapely.covers(shapely.buffer(widened.ground_m, EDGE), lanes(widened)).all()
+    assert shapely.intersection(widened.ground_m, pond_m).area < EDGE
 
 
 def test_a_boundary_too_tight_for_the_aisles_is_widened_by_them():
@@ -419,7 +419,8 @@ def test_a_boundary_too_tight_for_the_aisles_is_widened_by_them():
     tight = shapely.convex_hull(shapely.multipoints(truth.lonlat()))
     field = Field("tight", MultiPolygon([tight.buffer(1e-6)]))
     grid = grid_from_plants(truth.lonlat(), Planting(row_bearing_deg=90.0), field)
-    assert shapely.covers(shapely.buffer(grid.drivable_m, EDGE), lanes(grid)).all()
+    assert shapely.covers(shapely.buffer(grid.ground_m, EDGE), lanes(grid)).all()
+    assert grid.drivable_m.area == pytest.approx(grid.frame.geometry_m(field.boundary).area)
     roomy = Field("roomy", MultiPolygon([tight.buffer(2e-4)]))
     grid = grid_from_plants(truth.lonlat(), Planting(row_bearing_deg=90.0), roomy)
     assert grid.drivable_m.area == pytest.approx(grid.frame.geometry_m(roomy.boundary).area)

@@ -76,6 +76,8 @@ class Clearance(NamedTuple):
         Or there is no room to turn at either end. Rows that are inspected from the same stretch
         of aisle are too narrow together. Raise `PlotError` if all are.
         """
+        if not grid.in_rows:
+            return np.zeros(grid.n_rows, np.bool_)
         room_m = lane_room_m(grid)
         corridors = np.zeros(int(grid.corridor.max()) + 1, np.bool_)
         alone = (room_m < self.way_m) | self.tight_ends(grid).all(axis=1)

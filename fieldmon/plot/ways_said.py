@@ -45,6 +45,8 @@ def line_said(
     entry = shapely.shortest_line(Point(gate_m), area)
     half_m = 0.0 if needs is None else needs.half_m
     said = [_outside(area, line, entry), _body_over(area, half_m, line, entry)]
+    if needs is not None and not grid.in_rows:
+        said.append(_near_plants(grid, needs.way_m, line))
     if needs is not None and needs.off_m:
         off = off_limits(grid, no_go_m, needs.off_m)
         said.append(
@@ -67,6 +69,20 @@ def _outside(area: shapely.Geometry, line: LineString, entry: shapely.Geometry) 
         "all rows can be reached.",
         metres=distance_figure(float(away.length)),
         far=distance_figure(float(shapely.distance(area, looks).max())),
+    )
+
+
+def _near_plants(grid: PlantGrid, way_m: float, line: LineString) -> str:
+    """Return how much of a line comes too near to plants in no rows, in a sentence; or ""."""
+    plants = shapely.buffer(shapely.multipoints(grid.xy_m), way_m - _EDGE_M)
+    near = shapely.intersection(line, plants)
+    if near.length < _LEAST_M:
+        return ""
+    return worded(
+        "Among plants in no rows, ways keep no width off plants: on {metres} of the way the robot "
+        "comes nearer than {way_m:.2f} m to the middle of one.",
+        metres=distance_figure(float(near.length)),
+        way_m=way_m,
     )
 
 

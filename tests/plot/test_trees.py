@@ -57,6 +57,18 @@ def test_ways_are_hardly_longer_than_straight_ones(plot):
         assert length_m == pytest.approx(float(plot.aisles.distance_m(a, b)), abs=1e-6)
 
 
+@pytest.mark.parametrize("turns", [None, 1.5])
+def test_a_robot_of_known_width_is_planned_for_and_what_it_comes_too_near_to_said(plot, turns):
+    robot = Robot(width_m=0.6, length_m=1.0, turning_radius_m=turns)
+    ways = plot.aisles.for_robot(robot)
+    assert not ways.too_narrow.any()
+    line, _ = ways.line(np.array([-1, *range(20), -1]))
+    (said,) = ways.said_of(line)
+    assert "ways keep no width off plants" in said
+    assert "nearer than 0.65 m to the middle of one" in said
+    assert plot.aisles.for_robot(Robot()).said_of(line) == ()
+
+
 def test_neighbours_are_those_with_none_between_them(plot):
     grid = plot.grid
     for plant in range(0, 120, 17):

@@ -73,7 +73,7 @@ if TYPE_CHECKING:
     from fieldmon.simulation.comparison import CompareSettings, Comparison, compare
     from fieldmon.simulation.library import draw_start, simulate, simulate_days
     from fieldmon.simulation.metrics import SeasonMetrics
-    from fieldmon.simulation.season import SeasonSettings, SimulatedDay
+    from fieldmon.simulation.season import SimulatedDay, SimulationSettings
     from fieldmon.simulation.start import Start
     from fieldmon.simulation.statistics import Ratio
     from fieldmon.simulation.treating import TreatmentRule
@@ -134,7 +134,7 @@ _MODULES = {
     "simulation.comparison": ("CompareSettings", "Comparison", "compare"),
     "simulation.library": ("draw_start", "simulate", "simulate_days"),
     "simulation.metrics": ("SeasonMetrics",),
-    "simulation.season": ("SeasonSettings", "SimulatedDay"),
+    "simulation.season": ("SimulationSettings", "SimulatedDay"),
     "simulation.start": ("Start",),
     "simulation.statistics": ("Ratio",),
     "simulation.treating": ("TreatmentRule",),
@@ -192,9 +192,9 @@ __all__ = [
     "Scene",
     "Season",
     "SeasonMetrics",
-    "SeasonSettings",
     "SettingError",
     "SimulatedDay",
+    "SimulationSettings",
     "Sprayer",
     "Spread",
     "Stage",

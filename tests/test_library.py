@@ -187,7 +187,7 @@ def test_contenders_of_one_start_meet_the_same_insects():
     plot = fm.read_plot(SAMPLE_DATA / "paran_estate.zip", feature="Gate")
     chance = fm.plan_day(plot, on="2026-11-18").chance
     start = fm.draw_start(plot, chance, share=0.03, seed=4)
-    settings, robot = fm.SeasonSettings(n_days=2), fm.Robot(hours=3)
+    settings, robot = fm.SimulationSettings(n_days=2), fm.Robot(hours=3)
     naive, adaptive = (
         fm.simulate(plot, start, name, robot, settings, seed=4) for name in ("naive", "adaptive")
     )
@@ -201,7 +201,7 @@ def test_what_the_library_gives_says_itself_in_one_short_line():
     plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     day = fm.plan_day(plot, on="2026-11-18", robot=fm.Robot(hours=1))
     start = fm.draw_start(plot, day.chance)
-    simulated = fm.simulate(plot, start, "naive", settings=fm.SeasonSettings(n_days=2))
+    simulated = fm.simulate(plot, start, "naive", settings=fm.SimulationSettings(n_days=2))
     season = fm.Season.create("season.gpkg", plot, begins=date(2026, 11, 18))
     season.record(fm.Inspections.of([0, 1], [0, 1], date(2026, 11, 18)))
     said = {
@@ -289,7 +289,7 @@ MISTAKES = {
     "a look of years": (lambda _: fm.Robot(look_s=10**30), "look_s must be 86400 at most"),
     "a latency of ages": (lambda _: fm.Pest("a", latency_days=10**30), "must be 3650 at most"),
     "a bearing without end": (lambda _: fm.Planting(row_bearing_deg=1e30), "-720 to 720 degrees"),
-    "days as text": (lambda _: fm.SeasonSettings(n_days="9"), "n_days must be a whole number"),
+    "days as text": (lambda _: fm.SimulationSettings(n_days="9"), "n_days must be a whole number"),
     "a boundary of none": (lambda _: fm.Field("a", None), "boundary must be a MultiPolygon"),
     "a season by number": (lambda _: fm.Season(3), "A season must be given by its path"),
     "a dose as text": (lambda _: fm.Dose("0.5", "l/ha"), "A dose's value must be a number"),

@@ -135,7 +135,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
         "path": {"text", "path"}, "messages": {"None", "empty list", "empty array"},
         **{name: {"None"} for name in ("observations", "settings", "risk")},
     },
-    "SeasonSettings": {"believe": {"class", "function"}, "pests": {"class", "function"}},
+    "SimulationSettings": {"believe": {"class", "function"}, "own_night": {"class", "function"}},
     "Increase": {name: {"list", "pair"} for name in ("at_c", "per_day")},
     "Movement": {"hours": {"list", "pair"}},
     # where that is, the plot says
@@ -315,7 +315,7 @@ def _of_settings() -> Iterator[Case]:
     metrics[3:6] = [np.zeros(2, int) for _ in range(3)]
     known = fm.SeasonMetrics(*metrics, visit=np.ones(2, bool))
     for made in (fm.Application(), fm.Dose(0.5, "l/ha"), fm.ProductLabel("a"), fm.rover(), pest,
-                 fm.Spread(), fm.Viewpoints(), fm.SeasonSettings(), known,
+                 fm.Spread(), fm.Viewpoints(), fm.SimulationSettings(), known,
                  fm.MonitoringSettings(TODAY), fm.PriorSettings(), fm.TeamMember("a"),
                  fm.Teamwork(), fm.AdviceSettings(), fm.Learning(), fm.TreatmentRule(),
                  fm.Sprayer(), fm.TreatmentCosts(), fm.HotSpotSettings(),
@@ -371,14 +371,14 @@ def _of_days(plot: fm.Plot, day: fm.DayPlan, folder: Path) -> Iterator[Case]:
     yield Case("draw_start", fm.draw_start,
                {"plot": plot, "chance": chance, "share": 0.02, "seed": 1})  # fmt: skip
     yield Case("simulate", fm.simulate, {"plot": plot, "start": start, "sampler": "naive",
-               "robot": robot, "settings": fm.SeasonSettings(n_days=2), "seed": 1})  # fmt: skip
+               "robot": robot, "settings": fm.SimulationSettings(n_days=2), "seed": 1})  # fmt: skip
     yield Case("simulate_days", fm.simulate_days, {"plot": plot, "start": start,
                "sampler": "naive", "robot": robot, "settings": None, "seed": 1})  # fmt: skip
     yield Case("plan_team", fm.plan_team, {"plot": plot, "chance": chance,
                "members": fm.team_of(2, fm.Robot(hours=0.1)), "progress": None,
                "passing_m": 0.0, "on": TODAY})  # fmt: skip
     yield Case("team_of", fm.team_of, {"n": 2, "robot": None})
-    brief = fm.CompareSettings(seeds=2, robot=robot, season=fm.SeasonSettings(n_days=1))
+    brief = fm.CompareSettings(seeds=2, robot=robot, season=fm.SimulationSettings(n_days=1))
     yield Case("compare", fm.compare, {"plot": plot, "chance": chance, "samplers": ("naive",),
                "settings": brief, "progress": None, "stop": None})  # fmt: skip
     posed = {"plot": plot, "reward": chance, "robot": robot, "seconds": 0.1}

@@ -16,7 +16,7 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 
 _CORNERS = [(35.15, 30.36), (35.1504, 30.3601), (35.1503, 30.3604), (35.15, 30.3603)]
@@ -34,5 +34,5 @@ def load_simulation() -> None:
     """Simulate with what Compare and Simulate begin with."""
     for name in ("adaptive", "dynamic", "naive"):
         start = Start(np.ones(9, np.bool_), np.full(9, 0.1))
-        settings, aisles = SeasonSettings(n_days=2), Aisles.of(rectangle(3, 3))
+        settings, aisles = SimulationSettings(n_days=2), Aisles.of(rectangle(3, 3))
         list(simulated_days(aisles, Robot(), sampler(name), start, settings, RandomStreams(0)))

@@ -10,7 +10,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.spread import Spread
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
-from fieldmon.simulation.season import SeasonSettings, SimulatedDay, simulated_days
+from fieldmon.simulation.season import SimulatedDay, SimulationSettings, simulated_days
 from fieldmon.simulation.start import season_start
 
 from .cached import FEW, WORKING
@@ -87,7 +87,7 @@ def simulated_season(
     robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
     start = season_start(plot.grid, chance, share, streams)
     spread = Spread(rate)
-    settings = SeasonSettings(n_days, spread, pest=pest_in_weather, visit_every=visit_every)
+    settings = SimulationSettings(n_days, spread, pest=pest_in_weather, visit_every=visit_every)
     decides = sampler(sampler_name)
     walk = list(simulated_days(plot.aisles, robot, decides, start, settings, streams))
     return walk, season_metrics(walk)

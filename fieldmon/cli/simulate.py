@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
-    from fieldmon.simulation.season import SeasonSettings, SimulatedDay
+    from fieldmon.simulation.season import SimulatedDay, SimulationSettings
     from fieldmon.simulation.start import Start
     from fieldmon.simulation.treating import TreatmentRule
 
@@ -95,14 +95,14 @@ class SimulateOptions:
     pest_options: PestOptions = field(default_factory=PestOptions)
     files: PlotFiles = field(default_factory=PlotFiles)
 
-    def season(self, pest_in_weather: PestInWeather | None) -> SeasonSettings:
+    def season(self, pest_in_weather: PestInWeather | None) -> SimulationSettings:
         """Return what happens in the season."""
         from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
-        from fieldmon.simulation.season import SeasonSettings
+        from fieldmon.simulation.season import SimulationSettings
 
         self.pest_options.check_alone(spread=self.spread)
         rate = SIMULATED_PER_DAY if self.spread is None else self.spread
-        return SeasonSettings(
+        return SimulationSettings(
             n_days=self.days,
             spread=Spread(rate),
             pest=pest_in_weather,
@@ -155,7 +155,7 @@ def _season(
     robot: Robot,
     name: str,
     begin: Start,
-    told: tuple[SimulateOptions, SeasonSettings],
+    told: tuple[SimulateOptions, SimulationSettings],
 ) -> list[str]:
     """Print the days of a season with a sampler; return them as lines of the table."""
     from fieldmon.compute.random_streams import RandomStreams

@@ -36,7 +36,7 @@ class Learning:
     Examples
     --------
     >>> import fieldmon as fm
-    >>> fm.SeasonSettings(learning=fm.Learning(detection=0.7)).learning.detection
+    >>> fm.SimulationSettings(learning=fm.Learning(detection=0.7)).learning.detection
     0.7
     """
 

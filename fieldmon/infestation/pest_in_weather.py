@@ -143,7 +143,7 @@ class PestInWeather:
     --------
     >>> import fieldmon as fm
     >>> mite = fm.PestInWeather(fm.read_pest("spider-mite"))
-    >>> settings = fm.SeasonSettings(n_days=5, pest=mite)
+    >>> settings = fm.SimulationSettings(n_days=5, pest=mite)
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
     >>> robot = mite.pest.seen_by(fm.Robot())

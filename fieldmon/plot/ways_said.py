@@ -74,7 +74,7 @@ def _outside(area: shapely.Geometry, line: LineString, entry: shapely.Geometry) 
 
 def _near_plants(grid: PlantGrid, way_m: float, line: LineString) -> str:
     """Return how much of a line comes too near to plants in no rows, in a sentence; or ""."""
-    plants = shapely.buffer(shapely.multipoints(grid.xy_m), way_m - _EDGE_M)
+    plants = shapely.union_all(shapely.buffer(shapely.points(grid.xy_m), way_m - _EDGE_M))
     near = shapely.intersection(line, plants)
     if near.length < _LEAST_M:
         return ""

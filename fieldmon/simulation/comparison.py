@@ -21,7 +21,7 @@ from fieldmon.samplers.own import label_of
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run
 from fieldmon.simulation.paired import SameInsects, met_by_all, paired
-from fieldmon.simulation.season import SeasonSettings
+from fieldmon.simulation.season import SimulationSettings
 from fieldmon.simulation.statistics import paired_ratio, too_few_sentence
 from fieldmon.simulation.treating import WHOLE
 
@@ -44,9 +44,9 @@ _COLUMNS = "detection_pct", "visited_pct", "found", "left", "worked_h"
 _WHOM = {"each": "each neighbour", "one": "one neighbour", "all": "all neighbours"}
 
 
-def _usual_season() -> SeasonSettings:
+def _usual_season() -> SimulationSettings:
     """Return a season as the commands simulate it."""
-    return SeasonSettings(spread=Spread(SIMULATED_PER_DAY))
+    return SimulationSettings(spread=Spread(SIMULATED_PER_DAY))
 
 
 @dataclass(frozen=True)
@@ -64,12 +64,12 @@ class CompareSettings:
     season
         Days, visits, and what insects do at night. By default an infested plant infests each
         neighbour with a chance of 0.1 a night, as in ``fieldmon compare`` and ``simulate``; a
-        `SeasonSettings` of your own has the thesis's 0.5 unless you give `spread`.
+        `SimulationSettings` of your own has the thesis's 0.5 unless you give `spread`.
 
     Examples
     --------
     >>> import fieldmon as fm
-    >>> settings = fm.CompareSettings(seeds=50, season=fm.SeasonSettings(n_days=10))
+    >>> settings = fm.CompareSettings(seeds=50, season=fm.SimulationSettings(n_days=10))
     >>> settings.robot.hours
     12.0
     >>> fm.CompareSettings().season.spread.rate_per_day
@@ -79,7 +79,7 @@ class CompareSettings:
     seeds: int = 20
     share: float = 0.02
     robot: Robot = field(default_factory=Robot)
-    season: SeasonSettings = field(default_factory=_usual_season)
+    season: SimulationSettings = field(default_factory=_usual_season)
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A comparison's")
@@ -118,7 +118,7 @@ class Comparison:
     >>> import fieldmon as fm
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> chance = fm.plan_day(plot, on="2026-11-18").chance
-    >>> short = fm.CompareSettings(seeds=3, season=fm.SeasonSettings(n_days=4))
+    >>> short = fm.CompareSettings(seeds=3, season=fm.SimulationSettings(n_days=4))
     >>> made = fm.compare(plot, chance, ("bouncy", "naive"), short)
     >>> made.left.shape, made.infested_plant_days.shape
     ((2, 3, 4), (2, 3))
@@ -131,7 +131,7 @@ class Comparison:
     found: NDArray[np.int64]
     left: NDArray[np.int64]
     worked_h: NDArray[np.float64]
-    season: SeasonSettings | None = None
+    season: SimulationSettings | None = None
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A comparison's")
@@ -171,7 +171,7 @@ class Comparison:
         >>> import fieldmon as fm
         >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
         >>> chance = fm.plan_day(plot, on="2026-11-18").chance
-        >>> short = fm.CompareSettings(seeds=3, season=fm.SeasonSettings(n_days=4))
+        >>> short = fm.CompareSettings(seeds=3, season=fm.SimulationSettings(n_days=4))
         >>> ratio = fm.compare(plot, chance, ("bouncy", "naive"), short).ratios("naive")["bouncy"]
         >>> ratio.low <= ratio.value <= ratio.high
         True
@@ -194,7 +194,7 @@ class Comparison:
         >>> import fieldmon as fm
         >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
         >>> chance = fm.plan_day(plot, on="2026-11-18").chance
-        >>> short = fm.CompareSettings(seeds=3, season=fm.SeasonSettings(n_days=4))
+        >>> short = fm.CompareSettings(seeds=3, season=fm.SimulationSettings(n_days=4))
         >>> days = fm.compare(plot, chance, ("bouncy", "naive"), short).to_pandas()
         >>> days.groupby(["sampler", "seed"]).left.sum().shape
         (6,)
@@ -232,7 +232,7 @@ class Comparison:
         return f"{first} {too_few_sentence(n, 'seeds')}".rstrip()
 
 
-def _in_words(season: SeasonSettings) -> str:
+def _in_words(season: SimulationSettings) -> str:
     """Return for people what happens in a season: its insects, who comes when, treatments."""
     said = [_insects(season)]
     if season.pest is None and season.hidden_nights:
@@ -245,11 +245,11 @@ def _in_words(season: SeasonSettings) -> str:
     return "; ".join(said)
 
 
-def _insects(season: SeasonSettings) -> str:
+def _insects(season: SimulationSettings) -> str:
     """Return for people what the insects of a season do at night."""
     if season.pest is not None:
         return f"pest {season.pest.pest.name}"
-    if season.pests is not None:
+    if season.own_night is not None:
         return "insects of your own"
     whom, rate = _WHOM[season.spread.to], 100 * season.spread.rate_per_day
     said = f"infested plants infest {whom} with a chance of {rate:.3g} % a night"
@@ -307,7 +307,7 @@ def compare(
     >>> import fieldmon as fm
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> chance = fm.plan_day(plot, on="2026-11-18").chance
-    >>> short = fm.CompareSettings(seeds=3, season=fm.SeasonSettings(n_days=4))
+    >>> short = fm.CompareSettings(seeds=3, season=fm.SimulationSettings(n_days=4))
     >>> made = fm.compare(plot, chance, ("bouncy", "naive"), short)
     >>> made
     <Comparison: bouncy, naive, 3 seasons>

@@ -12,7 +12,7 @@ from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.answers import must_name_plants
 from fieldmon.simulation.metrics import season_metrics
-from fieldmon.simulation.season import SeasonSettings, check_start, simulated_days
+from fieldmon.simulation.season import SimulationSettings, check_start, simulated_days
 from fieldmon.simulation.start import Start, season_start
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def simulate(
     start: Start,
     sampler: str | Sampler = "adaptive",
     robot: Robot | None = None,
-    settings: SeasonSettings | None = None,
+    settings: SimulationSettings | None = None,
     seed: int = 1,
 ) -> SeasonMetrics:
     """Simulate a season: insects spread at night, a sampler looks for them by day.
@@ -87,7 +87,7 @@ def simulate(
         Who inspects; None: the usual `Robot`.
     settings
         Days, visits, and what insects do at night; None: a visit on each of 25 days, see
-        `SeasonSettings`.
+        `SimulationSettings`.
     seed
         Of nights and of what inspections find.
 
@@ -109,10 +109,10 @@ def simulate(
     >>> import fieldmon as fm
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
-    >>> season = fm.simulate(plot, start, "naive", settings=fm.SeasonSettings(n_days=3))
+    >>> season = fm.simulate(plot, start, "naive", settings=fm.SimulationSettings(n_days=3))
     >>> season.left.shape
     (3,)
-    >>> weekly = fm.SeasonSettings(n_days=8, visit_every=7)
+    >>> weekly = fm.SimulationSettings(n_days=8, visit_every=7)
     >>> season = fm.simulate(plot, start, "naive", settings=weekly)
     >>> season.visits, (season.worked_h > 0).nonzero()[0].tolist()
     (2, [0, 7])
@@ -130,7 +130,7 @@ def simulate_days(
     start: Start,
     sampler: str | Sampler = "adaptive",
     robot: Robot | None = None,
-    settings: SeasonSettings | None = None,
+    settings: SimulationSettings | None = None,
     seed: int = 1,
 ) -> Iterator[SimulatedDay]:
     """Simulate a season as `simulate` does, day by day: who is infested, inspected and found.
@@ -157,14 +157,14 @@ def simulate_days(
     >>> import fieldmon as fm, numpy as np
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
-    >>> days = [*fm.simulate_days(plot, start, "naive", settings=fm.SeasonSettings(n_days=3))]
+    >>> days = [*fm.simulate_days(plot, start, "naive", settings=fm.SimulationSettings(n_days=3))]
     >>> np.array([day.infested for day in days]).shape
     (3, 3825)
     >>> [int(day.work.found.sum()) == day.found for day in days]
     [True, True, True]
     """
     check_start(plot.aisles, start)
-    decides, chosen = sampler_or_name(sampler), settings or SeasonSettings()
+    decides, chosen = sampler_or_name(sampler), settings or SimulationSettings()
     return simulated_days(
         plot.aisles, robot or Robot(), decides, start, chosen, RandomStreams(seed)
     )

@@ -53,7 +53,7 @@ class SeasonMetrics:
     >>> import fieldmon as fm
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
-    >>> season = fm.simulate(plot, start, "naive", settings=fm.SeasonSettings(n_days=3))
+    >>> season = fm.simulate(plot, start, "naive", settings=fm.SimulationSettings(n_days=3))
     >>> bool(season.infested_plant_days == season.left.sum())
     True
     """
@@ -102,7 +102,7 @@ class SeasonMetrics:
         >>> import fieldmon as fm
         >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
         >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
-        >>> season = fm.simulate(plot, start, "naive", settings=fm.SeasonSettings(n_days=3))
+        >>> season = fm.simulate(plot, start, "naive", settings=fm.SimulationSettings(n_days=3))
         >>> season.to_pandas().day.tolist()
         [1, 2, 3]
         """

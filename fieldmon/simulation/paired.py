@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from fieldmon.samplers.base import Sampler
     from fieldmon.simulation.experiment import Memory
     from fieldmon.simulation.metrics import SeasonMetrics
-    from fieldmon.simulation.season import SeasonSettings
+    from fieldmon.simulation.season import SimulationSettings
     from fieldmon.simulation.team_season import Team
 
 Setting = TypeVar("Setting")
@@ -50,7 +50,7 @@ class SameInsects(NamedTuple):
     plot: Plot
     chance: NDArray[np.float64]
     share: float
-    settings: SeasonSettings
+    settings: SimulationSettings
 
     def __repr__(self) -> str:
         return f"<SameInsects: {self.share:.1%} of {self.plot!r}>"

@@ -48,7 +48,7 @@ _HIDDEN = AllowedRange(0, 3650)
 
 @checked
 @dataclass(frozen=True)
-class SeasonSettings:
+class SimulationSettings:
     """What happens in a simulated season, beside the plot, the robot and the sampler.
 
     Parameters
@@ -58,19 +58,19 @@ class SeasonSettings:
     spread
         What the insects do at night.
     believed_spread
-        What the chance map takes them to do; None: the same, also where `pests` do otherwise.
+        What the chance map takes them to do; None: the same, also where `own_night` does otherwise.
     learning
         How findings change the chance map; None: with the robot's own detection.
     believe
         How plot and first chance map become a belief.
-    pests
+    own_night
         Who is infested the next morning, from the plants, those infested in the evening and the
         night's key; None: as `spread` says.
     hidden_nights
         Nights for which a new infestation spreads and no inspection finds it; 0 for those of the
         first morning.
     pest
-        The pest, in the weather of the season's days; None: as `spread` and `pests` say.
+        The pest, in the weather of the season's days; None: as `spread` and `own_night` say.
     believed_pest
         The pest and the weather that the chance map knows of; None: the same.
     treating
@@ -82,9 +82,9 @@ class SeasonSettings:
     Examples
     --------
     >>> import fieldmon as fm
-    >>> fm.SeasonSettings(n_days=10, spread=fm.Spread(rate_per_day=0.05)).n_days
+    >>> fm.SimulationSettings(n_days=10, spread=fm.Spread(rate_per_day=0.05)).n_days
     10
-    >>> weekly = fm.SeasonSettings(visit_every=7)
+    >>> weekly = fm.SimulationSettings(visit_every=7)
     >>> weekly.visits, weekly.visit_of(7), weekly.visit_of(8)
     (4, 1, None)
     """
@@ -94,7 +94,7 @@ class SeasonSettings:
     believed_spread: Spread | None = None
     learning: Learning | None = None
     believe: Callable[[PlantGrid, NDArray[np.float64]], Belief] = TracedPairs.of
-    pests: Callable[[PlantGrid, NDArray[np.bool_], np.uint64], NDArray[np.bool_]] | None = None
+    own_night: Callable[[PlantGrid, NDArray[np.bool_], np.uint64], NDArray[np.bool_]] | None = None
     hidden_nights: int = 0
     pest: PestInWeather | None = None
     believed_pest: PestInWeather | None = None
@@ -131,10 +131,10 @@ class SeasonSettings:
         key
             The night's stream, see `RandomStreams.key`.
         """
-        if self.pests is not None:
+        if self.own_night is not None:
             # it may write into what it is given
-            morning = self.pests(grid, infested.copy(), key)
-            must_be_of("What a season's pests return", "NDArray[np.bool_]", morning)
+            morning = self.own_night(grid, infested.copy(), key)
+            must_be_of("What a season's own_night returns", "NDArray[np.bool_]", morning)
             must_be_shaped("The next morning's", {"infested plants": (morning, infested.shape)})
             return morning
         return night(grid, infested, self.spread, key)
@@ -273,7 +273,7 @@ def simulated_days(
     robot: Robot,
     sampler: Sampler,
     start: Start,
-    settings: SeasonSettings,
+    settings: SimulationSettings,
     streams: RandomStreams,
 ) -> Iterator[SimulatedDay]:
     """Yield the days of a season, one by one, as they happen.
@@ -305,7 +305,7 @@ class RunningSeason:
         robot: Robot,
         sampler: Sampler,
         start: Start,
-        settings: SeasonSettings,
+        settings: SimulationSettings,
     ) -> None:
         self.aisles, self.robot, self.sampler, self.settings = aisles, robot, sampler, settings
         self.first_chance = start.chance
@@ -466,7 +466,7 @@ def morning_beliefs(
     grid: PlantGrid,
     robot: Robot,
     start: Start,
-    settings: SeasonSettings,
+    settings: SimulationSettings,
     *,
     chooses_time: bool,
 ) -> MorningBeliefs:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler, Scene, WouldFind
-    from fieldmon.simulation.season import SeasonSettings, SimulatedDay
+    from fieldmon.simulation.season import SimulatedDay, SimulationSettings
     from fieldmon.simulation.start import Start
 
 
@@ -56,7 +56,7 @@ class Team:
         works: tuple[Plot, Robot],
         sampler: Sampler,
         start: Start,
-        settings: SeasonSettings,
+        settings: SimulationSettings,
         streams: RandomStreams,
     ) -> Iterator[SimulatedDay]:
         """Return the days of a season, as `simulated_team_days` or, for one, `simulated_days`."""
@@ -75,7 +75,7 @@ def simulated_team_days(
     team: tuple[Sequence[TeamMember], Teamwork],
     sampler: Sampler,
     start: Start,
-    settings: SeasonSettings,
+    settings: SimulationSettings,
     streams: RandomStreams,
 ) -> Iterator[SimulatedDay]:
     """Yield the days of a team's season, one by one, as they happen.
@@ -106,7 +106,7 @@ class _TeamSeason(RunningSeason):
         team: tuple[Sequence[TeamMember], Teamwork],
         sampler: Sampler,
         start: Start,
-        settings: SeasonSettings,
+        settings: SimulationSettings,
     ) -> None:
         self.members, self.teamwork = team
         if not self.members:

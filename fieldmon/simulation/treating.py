@@ -53,7 +53,7 @@ class TreatmentRule:
     --------
     >>> import fieldmon as fm
     >>> rule = fm.TreatmentRule(0.02, costs=fm.TreatmentCosts(per_ha=120))
-    >>> fm.SeasonSettings(treating=rule).treating.every_days
+    >>> fm.SimulationSettings(treating=rule).treating.every_days
     7
     """
 

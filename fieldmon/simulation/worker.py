@@ -17,7 +17,7 @@ from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.own import label_of
 from fieldmon.simulation.metrics import DETECTION_LEVELS_PCT
 from fieldmon.simulation.paired import SameInsects
-from fieldmon.simulation.season import SeasonSettings
+from fieldmon.simulation.season import SimulationSettings
 from fieldmon.simulation.team_season import ONE
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def simulated_season(
     """
     (plot, chance, pest_in_weather), (n_days, visit_every) = laid, days
     spread = Spread(levels.spread)
-    settings = SeasonSettings(n_days, spread, pest=pest_in_weather, visit_every=visit_every)
+    settings = SimulationSettings(n_days, spread, pest=pest_in_weather, visit_every=visit_every)
     robot = replace(robot, hours=levels.hours, look_s=levels.look_s)
     robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
     insects = SameInsects(plot, chance, levels.infested, settings)

@@ -26,7 +26,7 @@ from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Experiment, Memory, run
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 from fieldmon.simulation.statistics import summary_statistics
 
@@ -172,7 +172,7 @@ def paired_seasons(pest: Pest, shape: Shape, seed: int, n_days: int) -> KnownOrN
     start = _grown(pest, streams)
     columns = []
     for believed in (pest_in_weather, averages):
-        settings = SeasonSettings(n_days=n_days, pest=pest_in_weather, believed_pest=believed)
+        settings = SimulationSettings(n_days=n_days, pest=pest_in_weather, believed_pest=believed)
         columns.append(_season(start, settings, streams))
     (knows, held), (other, held_by_averages) = columns
     return KnownOrNot(knows, other, held, held_by_averages)
@@ -225,7 +225,7 @@ def _grown(pest: Pest, streams: RandomStreams) -> Start:
 
 
 def _season(
-    start: Start, settings: SeasonSettings, streams: RandomStreams
+    start: Start, settings: SimulationSettings, streams: RandomStreams
 ) -> tuple[int, NDArray[np.bool_]]:
     """Return a season's infested plant-days, and on which mornings the interval held."""
     aisles, lost, held = _aisles(), 0, []

@@ -19,7 +19,7 @@ from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 from tests.benchmarks.test_bench_grid import crooked_plot
 
@@ -43,7 +43,7 @@ def days_s(aisles, season, n_days=25):
     share, rate, to, hours = season
     n = len(aisles.grid)
     infested = RandomStreams(1).of("start").random(n) < share
-    settings = SeasonSettings(n_days=n_days, spread=Spread(rate, to))
+    settings = SimulationSettings(n_days=n_days, spread=Spread(rate, to))
     days = simulated_days(
         aisles, Robot(hours=hours), sampler("adaptive"), Start(infested, np.full(n, share)),
         settings, RandomStreams(2),

@@ -40,7 +40,7 @@ from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import NEVER, Scene
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 from tests.benchmarks.test_bench_grid import crooked_plot
 
@@ -107,7 +107,7 @@ def measure(n_plants):
 
 
 def season(aisles, name, start, believe=PairApproximation.of):
-    settings = SeasonSettings(n_days=25, spread=Spread(0.1), believe=believe)
+    settings = SimulationSettings(n_days=25, spread=Spread(0.1), believe=believe)
     walk = simulated_days(aisles, Robot(), sampler(name), start, settings, RandomStreams(2))
     return [day.detection_pct for day in walk]
 

@@ -12,7 +12,7 @@ from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import NEVER, Scene
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 
 AISLES = Aisles.of(rectangle(91, 91))
@@ -22,7 +22,7 @@ N = len(AISLES.grid)
 @pytest.mark.parametrize("name", sorted(SAMPLERS))
 def test_season_of_scenario_c(benchmark, name):
     start = Start(RandomStreams(1).of("start").random(N) < 0.02, np.full(N, 0.02))
-    settings = SeasonSettings(n_days=25, spread=Spread(0.1))
+    settings = SimulationSettings(n_days=25, spread=Spread(0.1))
 
     def season():
         walk = simulated_days(AISLES, Robot(), sampler(name), start, settings, RandomStreams(2))

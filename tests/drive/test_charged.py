@@ -12,7 +12,7 @@ from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.monitor import Monitor
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 
 SPREAD, SEED = Spread(rate_per_day=0.2, arrivals_per_day=0.001), 5
@@ -24,7 +24,7 @@ def test_a_season_driven_as_charged_is_the_simulated_one(plot, name, returns):
     robot = Robot(hours=0.4, returns=returns)
     chance = np.random.default_rng(1).uniform(0.005, 0.3, len(plot.grid))
     start = Start(np.random.default_rng(2).random(len(chance)) < chance, chance)
-    settings = SeasonSettings(n_days=4, spread=SPREAD)
+    settings = SimulationSettings(n_days=4, spread=SPREAD)
     simulated = simulated_days(
         plot.aisles, robot, sampler(name), start, settings, RandomStreams(SEED)
     )

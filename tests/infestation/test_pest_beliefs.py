@@ -19,7 +19,7 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 
 GRID = rectangle(24, 24)
@@ -184,7 +184,7 @@ def test_a_map_that_is_told_its_pest_holds_the_number_of_insects_that_do_as_told
     """Finds tell of their relatives: before, the map expected half of them, and was sure of it."""
     kind = replace(pest(kernel="exponential", per_day=0.25, reach_m=6.0), stages=stages)
     held, expected, true, robot = [], 0.0, 0, kind.seen_by(Robot(hours=4.0))
-    settings = SeasonSettings(n_days=9, pest=PestInWeather(kind))
+    settings = SimulationSettings(n_days=9, pest=PestInWeather(kind))
     for seed in range(4):
         infested = np.random.default_rng(seed).random(N) < 0.03
         start = Start(infested, np.full(N, 0.03))

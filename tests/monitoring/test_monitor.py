@@ -26,7 +26,7 @@ from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import Sampler, Stops
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 
 SEED = 5
@@ -47,7 +47,7 @@ def start(plot):
 
 
 def compiled(plot, name, robot, start):
-    settings = SeasonSettings(n_days=4, spread=SPREAD, learning=None)
+    settings = SimulationSettings(n_days=4, spread=SPREAD, learning=None)
     return list(
         simulated_days(plot.aisles, robot, sampler(name), start, settings, RandomStreams(SEED))
     )

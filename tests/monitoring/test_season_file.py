@@ -16,7 +16,7 @@ from fieldmon.planning.members import TeamMember
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 from tests.monitoring.seasons import (
     BEGINS,
@@ -76,7 +76,7 @@ def test_ten_days_on_disk_are_ten_days_of_the_simulator(tmp_path, name):
     settings, plot = season.settings, season.plot
     truth = Insects(season)
     start = Start(truth.infested, season.morning(BEGINS))
-    simulator = SeasonSettings(n_days=10, spread=settings.belief.spread)
+    simulator = SimulationSettings(n_days=10, spread=settings.belief.spread)
     simulated = simulated_days(
         plot.aisles, settings.robot, sampler(name), start, simulator, RandomStreams(settings.seed)
     )

@@ -59,13 +59,13 @@ def test_who_names_no_plant_is_named_where_hours_reach_one(returns):
     day, soon = fm.Robot(hours=2.0, returns=returns), fm.Robot(hours=0.001, returns=returns)
     for asked in (
         lambda robot: fm.plan_day(plot, on="2026-11-18", robot=robot, sampler=nobody),
-        lambda robot: fm.simulate(plot, start, nobody, robot, fm.SeasonSettings(n_days=2)),
+        lambda robot: fm.simulate(plot, start, nobody, robot, fm.SimulationSettings(n_days=2)),
     ):
         with pytest.raises(SettingError, match=r"^Told must name plants .*, though 2 h reach some"):
             asked(day)
     with pytest.raises(SettingError, match="The working day must be long enough"):
         fm.plan_day(plot, on="2026-11-18", robot=soon, sampler=nobody)
-    assert fm.simulate(plot, start, nobody, soon, fm.SeasonSettings(n_days=2)).visits == 2
+    assert fm.simulate(plot, start, nobody, soon, fm.SimulationSettings(n_days=2)).visits == 2
 
 
 def test_lists_and_other_whole_numbers_will_do():

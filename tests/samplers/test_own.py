@@ -33,7 +33,7 @@ def test_the_sampler_of_the_page_plans_a_day_and_beats_nobody_by_cheating(file, 
     assert len(day.route) > 20
     start = fm.draw_start(plot, day.chance, 0.05)
     season = fm.simulate(
-        plot, start, f"{file}:Mine", fm.Robot(hours=1), fm.SeasonSettings(n_days=3)
+        plot, start, f"{file}:Mine", fm.Robot(hours=1), fm.SimulationSettings(n_days=3)
     )
     assert season.found.sum() > 0
     with fm.Monitor(plot, f"{file}:Mine", fm.Robot(hours=1)).day() as asked:

@@ -14,7 +14,7 @@ from fieldmon.samplers.base import Sampler, Stops
 from fieldmon.samplers.sweeps import Bouncy, Naive
 from fieldmon.simulation.comparison import CompareSettings, Comparison, compare
 from fieldmon.simulation.library import draw_start, simulate
-from fieldmon.simulation.season import SeasonSettings
+from fieldmon.simulation.season import SimulationSettings
 from fieldmon.simulation.treating import TreatmentRule
 from tests.simulation.test_library import CHANCE, PLOT, ROBOT, SHORT
 
@@ -102,10 +102,10 @@ def test_seasons_are_those_of_the_commands_and_a_sentence_says_what_insects_did(
         },
         " % a night; zones treated from 5 % infested on): ": {"treating": TreatmentRule()},
         "; the plot treated from 2 % infested on): ": {"treating": TreatmentRule(0.02, "whole")},
-        "(insects of your own): ": {"pests": lambda _grid, infested, _key: infested},
+        "(insects of your own): ": {"own_night": lambda _grid, infested, _key: infested},
     }
     for words, chosen in worlds.items():
-        told = dataclasses.replace(made, season=SeasonSettings(n_days=3, **chosen))
+        told = dataclasses.replace(made, season=SimulationSettings(n_days=3, **chosen))
         assert words in told.sentence("one")
     assert compare(PLOT, CHANCE, ("naive", "bouncy"), SETTINGS).season == SHORT
 

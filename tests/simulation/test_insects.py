@@ -20,7 +20,7 @@ from fieldmon.samplers.base import InspectionTimes, Stops
 from fieldmon.simulation.insects import NightInsects, PestInsects
 from fieldmon.simulation.season import (
     RunningSeason,
-    SeasonSettings,
+    SimulationSettings,
     morning_beliefs,
     simulated_days,
 )
@@ -46,7 +46,7 @@ def key(number):
 def season(pest, who="naive", n_days=4, hours=4.0, seed=1):
     streams = RandomStreams(seed)
     start = Start(streams.of("start").random(N) < 0.1, np.full(N, 0.1))
-    settings = SeasonSettings(n_days=n_days, pest=PestInWeather(pest))
+    settings = SimulationSettings(n_days=n_days, pest=PestInWeather(pest))
     robot = Robot(hours=hours)
     return list(simulated_days(AISLES, robot, sampler(who), start, settings, streams))
 
@@ -109,7 +109,7 @@ class _Waits:
 def found_at(second):
     """Look at a plant beside an infested one so late on the first day; share of finds."""
     pest = Pest("fast", movement=Movement("adjacent", 0.9, hours=(8.0, 10.0), by_hour=True))
-    settings = SeasonSettings(n_days=1, pest=PestInWeather(pest))
+    settings = SimulationSettings(n_days=1, pest=PestInWeather(pest))
     found = []
     for seed in range(40):
         start = Start(at(40), np.full(N, 0.01))
@@ -129,7 +129,7 @@ def test_while_the_robot_works_insects_move_in_their_hours():
 def test_the_day_is_worked_anew_where_one_of_a_team_would_find_what_is_new():
     """The other detects nothing, so nothing changes for it."""
     pest = Pest("fast", movement=Movement("adjacent", 1.0, hours=(8.0, 10.0), by_hour=True))
-    settings = SeasonSettings(n_days=1, pest=PestInWeather(pest))
+    settings = SimulationSettings(n_days=1, pest=PestInWeather(pest))
     start = Start(at(40), np.full(N, 0.01))
     on_its_way = RunningSeason(AISLES, Robot(), sampler("naive"), start, settings)
     one, walked = np.ones(1), []
@@ -150,7 +150,7 @@ def test_the_day_is_worked_anew_where_one_of_a_team_would_find_what_is_new():
 )
 def test_an_hour_has_passed_once_somebody_worked_for_it_whole(end_s, passed):
     start = Start(at(40), np.full(N, 0.01))
-    settings = SeasonSettings(n_days=1, pest=PestInWeather(BY_HOUR))
+    settings = SimulationSettings(n_days=1, pest=PestInWeather(BY_HOUR))
     on_its_way = RunningSeason(AISLES, Robot(), sampler("naive"), start, settings)
     hours, pass_hour = [], on_its_way.insects.pass_hour
     on_its_way.insects.pass_hour = lambda *of: hours.append(of[0].tolist()) or pass_hour(*of)
@@ -172,7 +172,7 @@ def test_the_evening_counts_what_came_by_day():
 def test_the_map_believes_of_the_pest_that_there_is_unless_told_of_another():
     def ages_of(**told):
         start = Start(at(40), np.full(N, 0.01))
-        kept = morning_beliefs(GRID, Robot(), start, SeasonSettings(**told), chooses_time=False)
+        kept = morning_beliefs(GRID, Robot(), start, SimulationSettings(**told), chooses_time=False)
         return kept.on(0).cohorts is not None
 
     pest_in_weather = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
@@ -192,15 +192,15 @@ def test_without_hidden_nights_what_is_new_shows_the_next_morning():
 
 def test_a_map_that_is_told_no_rate_goes_by_the_pest_s_nights():
     pest_in_weather = PestInWeather(Pest("slow", movement=Movement("adjacent", 0.1)))
-    settings = SeasonSettings(pest=pest_in_weather)
+    settings = SimulationSettings(pest=pest_in_weather)
     assert settings.believed_night(GRID)(3) == pest_in_weather.spread(3, GRID.frame)
-    told = SeasonSettings(pest=pest_in_weather, believed_spread=Spread(0.3))
+    told = SimulationSettings(pest=pest_in_weather, believed_spread=Spread(0.3))
     assert told.believed_night(GRID)(3) == Spread(0.3)
 
 
 def world(answers):
     """Return a season's settings with insects that do what a function says."""
-    return SeasonSettings(pests=lambda _, infested, __: answers(infested))
+    return SimulationSettings(own_night=lambda _, infested, __: answers(infested))
 
 
 def test_a_world_may_write_into_what_it_is_given_and_insects_may_die():

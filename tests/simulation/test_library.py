@@ -13,14 +13,14 @@ from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers.sweeps import Naive
 from fieldmon.simulation.library import draw_start, simulate, simulate_days
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 
 GRID = rectangle(9, 14)
 PLOT = Plot(Field("Square", GRID.frame.geometry_lonlat(GRID.drivable_m)), Aisles.of(GRID))
 CHANCE = np.linspace(0.001, 0.1, len(GRID))
 ROBOT = Robot(hours=1)
-SHORT = SeasonSettings(n_days=4, spread=Spread(0.2))
+SHORT = SimulationSettings(n_days=4, spread=Spread(0.2))
 
 
 def test_the_same_seed_infests_the_same_plants_and_another_seed_others():

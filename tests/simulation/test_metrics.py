@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
-from fieldmon.simulation.season import SeasonSettings
+from fieldmon.simulation.season import SimulationSettings
 from tests.simulation.test_season import season
 
 
@@ -36,7 +36,7 @@ def test_no_days_have_no_figures():
 
 
 def test_visits_are_told_from_days():
-    days = season("naive", settings=SeasonSettings(8, visit_every=7))
+    days = season("naive", settings=SimulationSettings(8, visit_every=7))
     weekly = season_metrics(days)
     assert weekly.visit.tolist() == [True, *[False] * 6, True]
     assert weekly.visited_each_time_pct == pytest.approx(weekly.visited_pct.sum() / 2)

@@ -9,11 +9,11 @@ from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run
 from fieldmon.simulation.library import draw_start, simulate
 from fieldmon.simulation.paired import SameInsects, met_by_all, paired
-from fieldmon.simulation.season import SeasonSettings
+from fieldmon.simulation.season import SimulationSettings
 from fieldmon.simulation.team_season import Team
 from tests.simulation.test_library import CHANCE, PLOT, ROBOT
 
-SHORT = SeasonSettings(n_days=3, spread=Spread(0.2))
+SHORT = SimulationSettings(n_days=3, spread=Spread(0.2))
 INSECTS = SameInsects(PLOT, CHANCE, 0.1, SHORT)
 
 

@@ -15,7 +15,7 @@ from fieldmon.plot.travel import GATE, Aisles
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import NEVER
 from fieldmon.simulation.metrics import season_metrics
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 
 AISLES = Aisles.of(rectangle(20, 20))
@@ -30,7 +30,7 @@ def start(share=0.02, seed=3):
 
 def season(name="naive", robot=None, settings=None, seed=3, first=None):
     robot = robot or Robot(hours=2.0)
-    settings = settings or SeasonSettings(n_days=6, spread=Spread(0.2))
+    settings = settings or SimulationSettings(n_days=6, spread=Spread(0.2))
     return list(
         simulated_days(
             AISLES, robot, sampler(name), first or start(), settings, RandomStreams(seed)
@@ -97,7 +97,7 @@ def test_the_figures_of_every_day_add_up(name):
 
 def test_perfect_looking_with_time_for_all_clears_a_field_at_once():
     robot = Robot(hours=24.0, detection=1.0)
-    (first, second) = season(robot=robot, settings=SeasonSettings(n_days=2))
+    (first, second) = season(robot=robot, settings=SimulationSettings(n_days=2))
     assert (first.detection_pct, first.left) == (100.0, 0)
     assert not second.infested.any()
 
@@ -106,7 +106,7 @@ def test_missed_insects_are_found_at_the_stated_rate():
     robot = Robot(hours=24.0, detection=0.6)
     infested = Start(np.ones(N, bool), np.full(N, 0.5))
     found = [
-        season(robot=robot, settings=SeasonSettings(n_days=1), seed=s, first=infested)[0].found
+        season(robot=robot, settings=SimulationSettings(n_days=1), seed=s, first=infested)[0].found
         for s in range(40)
     ]
     assert np.mean(found) == pytest.approx(0.6 * N, rel=0.03)
@@ -120,7 +120,7 @@ def test_a_robot_that_stays_out_goes_on_where_it_stopped():
 
 
 def test_a_season_can_be_left_half_way():
-    settings = SeasonSettings(n_days=3650)
+    settings = SimulationSettings(n_days=3650)
     walk = simulated_days(
         AISLES, Robot(hours=1.0), sampler("naive"), start(), settings, RandomStreams(1)
     )
@@ -139,7 +139,7 @@ def test_a_start_of_another_plot_is_refused():
 
 def test_a_season_of_no_days_is_refused():
     with pytest.raises(SettingError, match="n_days must be 1 or more"):
-        SeasonSettings(n_days=0)
+        SimulationSettings(n_days=0)
 
 
 def test_what_was_believed_on_a_morning_does_not_depend_on_when_one_asks():
@@ -152,7 +152,7 @@ def test_what_was_believed_on_a_morning_does_not_depend_on_when_one_asks():
 
 def test_a_new_infestation_that_hides_is_not_found_before_it_shows():
     everything = Robot(hours=24.0, detection=1.0)
-    settings = SeasonSettings(n_days=7, spread=Spread(0.3), hidden_nights=3)
+    settings = SimulationSettings(n_days=7, spread=Spread(0.3), hidden_nights=3)
     days = season(robot=everything, settings=settings)
     assert days[0].found == days[0].infested.sum() > 0
     assert [day.found for day in days[1:]] == [0] * 6
@@ -167,17 +167,17 @@ def test_pests_may_do_what_is_not_believed():
     def all_over(grid, infested, key):
         return infested | (np.arange(len(grid)) % 20 == key % np.uint64(20))
 
-    days = season(settings=SeasonSettings(n_days=3, spread=Spread(0.0), pests=all_over))
+    days = season(settings=SimulationSettings(n_days=3, spread=Spread(0.0), own_night=all_over))
     assert days[2].infested.sum() >= 20
 
 
 def test_unless_told_insects_show_at_once_and_the_map_knows_of_the_spread_that_is():
-    told, plain = SeasonSettings(hidden_nights=0), SeasonSettings()
+    told, plain = SimulationSettings(hidden_nights=0), SimulationSettings()
     assert plain == told
     spread, other = Spread(0.3), Spread(0.1)
     grid = AISLES.grid
-    assert SeasonSettings(spread=spread).believed_night(grid)(0) is spread
-    assert SeasonSettings(spread=spread, believed_spread=other).believed_night(grid)(0) is other
+    assert SimulationSettings(spread=spread).believed_night(grid)(0) is spread
+    assert SimulationSettings(spread=spread, believed_spread=other).believed_night(grid)(0) is other
 
 
 def test_a_level_that_is_reached_exactly_counts_as_reached():
@@ -213,7 +213,7 @@ class _Watched:
 @pytest.mark.parametrize(("name", "hours"), [("naive", 1.0), ("dynamic", 1.0), ("naive", 0.004)])
 def test_each_morning_begins_with_what_the_days_before_it_left(name, hours, returns):
     watched, robot = _Watched(name), Robot(hours=hours, returns=returns)
-    settings = SeasonSettings(n_days=4, spread=Spread(0.2))
+    settings = SimulationSettings(n_days=4, spread=Spread(0.2))
     days = list(simulated_days(AISLES, robot, watched, start(), settings, RandomStreams(3)))
     keys = RandomStreams(3).keys("sampler")
     trail, last = [], np.full(N, NEVER)
@@ -232,19 +232,19 @@ def test_each_morning_begins_with_what_the_days_before_it_left(name, hours, retu
 
 @pytest.mark.parametrize("name", NAMES)
 def test_between_visits_nobody_inspects_and_insects_go_on(name):
-    weekly = season(name, settings=SeasonSettings(9, Spread(0.2), visit_every=4))
+    weekly = season(name, settings=SimulationSettings(9, Spread(0.2), visit_every=4))
     assert [day.visit for day in weekly] == [0, None, None, None, 1, None, None, None, 2]
     for day in weekly:
         assert (len(day.work) > 0) == (day.worked_s > 0) == (day.visit is not None)
     assert weekly[3].ever_infested > weekly[0].ever_infested
     assert weekly[3].left > weekly[0].left
     # the first visit is that of a season with one a day
-    daily = season(name, settings=SeasonSettings(1, Spread(0.2)))
+    daily = season(name, settings=SimulationSettings(1, Spread(0.2)))
     assert (daily[0].work.plant == weekly[0].work.plant).all()
 
 
 def test_all_samplers_meet_the_same_insects_on_the_same_visits():
-    settings = SeasonSettings(5, Spread(0.2), visit_every=2)
+    settings = SimulationSettings(5, Spread(0.2), visit_every=2)
     blind = Robot(hours=2.0, detection=0.0)
     # who finds nothing changes nothing: nights do not know of visits
     daily = season("naive", blind, replace(settings, visit_every=1))[-1].infested
@@ -253,20 +253,20 @@ def test_all_samplers_meet_the_same_insects_on_the_same_visits():
 
 
 def test_a_sweep_goes_on_where_the_last_visit_ended():
-    one, _, two = season(settings=SeasonSettings(3, visit_every=2))
+    one, _, two = season(settings=SimulationSettings(3, visit_every=2))
     assert not np.isin(two.work.plant, one.work.plant).any()
-    daily = season(settings=SeasonSettings(2))
+    daily = season(settings=SimulationSettings(2))
     assert two.work.plant.tolist() == daily[1].work.plant.tolist()
 
 
 def test_what_is_believed_between_visits_is_what_nights_make_of_it():
-    days = season("adaptive", settings=SeasonSettings(4, Spread(0.2), visit_every=3))
+    days = season("adaptive", settings=SimulationSettings(4, Spread(0.2), visit_every=3))
     assert days[2].chance.sum() > days[1].chance.sum()
 
 
 def test_a_visit_every_no_days_is_refused():
     with pytest.raises(SettingError, match="visit_every must be 1 or more"):
-        SeasonSettings(visit_every=0)
+        SimulationSettings(visit_every=0)
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from fieldmon.plot.travel import GATE, Aisles
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.simulation.metrics import season_metrics
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 from fieldmon.simulation.team_season import ONE, Team, simulated_team_days
 from tests.second_by_second import nobody_head_on, nobody_together
@@ -28,7 +28,7 @@ from tests.second_by_second import nobody_head_on, nobody_together
 GRID = rectangle(20, 20)
 PLOT = Plot(Field("even", GRID.frame.geometry_lonlat(GRID.drivable_m)), Aisles.of(GRID))
 ROBOT = Robot(hours=1.0)
-SETTINGS = SeasonSettings(n_days=5, spread=Spread(0.2))
+SETTINGS = SimulationSettings(n_days=5, spread=Spread(0.2))
 SECTIONS = Teamwork(together=False)
 
 
@@ -118,7 +118,9 @@ def test_more_robots_leave_less_behind():
 def hourly(members, n_days=3, hours=(6.0, 12.0)):
     """Return the days of a team while a pest moves by the hour."""
     movement = Movement("exponential", 2.0, reach_m=6.0, hours=hours, by_hour=True)
-    settings = SeasonSettings(n_days=n_days, pest=PestInWeather(Pest("quick", movement=movement)))
+    settings = SimulationSettings(
+        n_days=n_days, pest=PestInWeather(Pest("quick", movement=movement))
+    )
     works = team_of(members, Robot(hours=4.0)), Teamwork()
     streams = RandomStreams(3)
     return list(simulated_team_days(PLOT, works, sampler("adaptive"), start(), settings, streams))
@@ -138,7 +140,7 @@ def test_by_the_hour_too_a_team_of_one_has_the_season_of_one_alone():
     team = hourly(1)
     streams, robot = RandomStreams(3), Robot(hours=4.0)
     movement = Movement("exponential", 2.0, reach_m=6.0, hours=(6.0, 12.0), by_hour=True)
-    settings = SeasonSettings(n_days=3, pest=PestInWeather(Pest("quick", movement=movement)))
+    settings = SimulationSettings(n_days=3, pest=PestInWeather(Pest("quick", movement=movement)))
     alone = simulated_days(PLOT.aisles, robot, sampler("adaptive"), start(), settings, streams)
     for one, other in zip(team, alone, strict=True):
         assert (one.work.plant == other.work.plant).all()

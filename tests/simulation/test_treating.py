@@ -12,7 +12,7 @@ from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import season_metrics
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 from fieldmon.simulation.treating import WHOLE, ZONES, TreatmentRule
 
@@ -24,7 +24,9 @@ def days(rule=None, name="dynamic", visit_every=1):
     infested = np.zeros(225, bool)
     infested[100:106] = True
     first = Start(infested, np.where(infested, 0.6, 0.01))
-    settings = SeasonSettings(n_days=6, spread=Spread(0.3), treating=rule, visit_every=visit_every)
+    settings = SimulationSettings(
+        n_days=6, spread=Spread(0.3), treating=rule, visit_every=visit_every
+    )
     robot = Robot(hours=0.12)
     streams = RandomStreams(4)
     return list(simulated_days(AISLES, robot, sampler(name), first, settings, streams))

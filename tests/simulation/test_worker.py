@@ -17,7 +17,7 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import season_metrics
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 from fieldmon.simulation.study_plot import Combination
 from fieldmon.simulation.worker import LaidPlot, RefusedPlot, simulate_chunk, simulated_season
@@ -36,7 +36,7 @@ def test_a_season_of_a_study_is_that_of_the_simulator():
     (row,) = simulate_chunk((plot(), LEVELS), range(37, 38), 4)
     one, chance, _ = laid()
     start = Start(start_infested(chance, 0.05, RandomStreams(37).of("start")), chance)
-    settings = SeasonSettings(n_days=4, spread=Spread(0.1))
+    settings = SimulationSettings(n_days=4, spread=Spread(0.1))
     season = season_metrics(
         simulated_days(
             one.aisles, Robot(hours=3.0), sampler("dynamic"), start, settings, RandomStreams(37)

@@ -18,7 +18,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
-from fieldmon.simulation.season import SeasonSettings
+from fieldmon.simulation.season import SimulationSettings
 from fieldmon.simulation.start import Start
 from fieldmon.studies.samplers.worlds import WORLDS, World, near_edge
 
@@ -138,14 +138,14 @@ class Scenario:
         )
 
     @property
-    def settings(self) -> SeasonSettings:
+    def settings(self) -> SimulationSettings:
         """Return what happens in the season, and what is believed of it."""
         believed = None
         if self.flaw == "spread":
             rate = _BELIEVED_RATE.get(self.spread.rate_per_day, 0.3)
             believed = Spread(rate, self.spread.to)
         learning = Learning(detection=self.believed_robot.detects)
-        settings = SeasonSettings(
+        settings = SimulationSettings(
             spread=self.spread,
             believed_spread=believed,
             learning=learning,
@@ -155,7 +155,7 @@ class Scenario:
         if not self.world:
             return settings
         world = WORLDS[self.world]
-        return replace(settings, pests=world.night, hidden_nights=world.hidden_nights)
+        return replace(settings, own_night=world.night, hidden_nights=world.hidden_nights)
 
     def draw_start(self, streams: RandomStreams) -> Start:
         """Draw the first morning and what is known of it."""

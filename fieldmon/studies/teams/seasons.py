@@ -22,7 +22,7 @@ from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler as sampler_of
 from fieldmon.simulation.paired import SameInsects, paired
-from fieldmon.simulation.season import SeasonSettings
+from fieldmon.simulation.season import SimulationSettings
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -182,7 +182,7 @@ def study_of(
 def outcome(setting: TeamSetting, seed: int) -> TeamOutcome:
     """Return what a season of a team comes to."""
     scenario = setting.scenario
-    season = SeasonSettings(
+    season = SimulationSettings(
         n_days=scenario.n_days,
         spread=scenario.spread,
         pest=scenario.pest_in_weather,

@@ -16,7 +16,7 @@ from fieldmon.plot.travel import Aisles
 from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.dynamic import Dynamic
 from fieldmon.samplers.sweeps import Naive
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 from tests.scenes import GRIDS, scene_on
 
@@ -95,7 +95,7 @@ def test_a_robot_whose_detection_is_given_outright_has_no_looks_to_choose_from()
 def test_a_season_learns_from_short_looks_less_than_from_long_ones():
     grid = rectangle(20, 20)
     start = Start(np.zeros(400, bool), np.full(400, 0.05))
-    settings = SeasonSettings(n_days=2, spread=Spread(0.0, arrivals_per_day=0.0))
+    settings = SimulationSettings(n_days=2, spread=Spread(0.0, arrivals_per_day=0.0))
     season = simulated_days(
         Aisles.of(grid),
         Robot(hours=1.5),

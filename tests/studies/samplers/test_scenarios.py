@@ -111,7 +111,7 @@ def test_a_season_in_a_world_starts_with_the_same_share_in_groups_that_came_abou
 def test_what_is_believed_in_a_world_is_what_is_believed_elsewhere():
     world, usual = Scenario(world="Cauchy").settings, Scenario().settings
     assert (world.spread, world.learning) == (usual.spread, usual.learning)
-    assert world.pests is not None
+    assert world.own_night is not None
 
 
 def test_a_pest_takes_the_place_of_each_rate_and_keeps_the_rest():

@@ -17,7 +17,7 @@ from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
-from fieldmon.simulation.season import SeasonSettings, simulated_days
+from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 from fieldmon.studies.thesis.chapter5.open_choices import SAMPLERS, OpenChoices
 from fieldmon.studies.thesis.chapter5.replicates import run_trials, seed_keys
@@ -120,7 +120,7 @@ def test_under_the_product_s_rules_a_season_is_the_product_s(name):
     site, chance = square(1.0), RandomStreams(7)
     trial = PriorTrial(name, PRODUCT)
     start = first_morning(site, PRODUCT.start, chance)
-    settings = SeasonSettings(n_days=6, spread=PRODUCT.spread, believe=IndependentPlants)
+    settings = SimulationSettings(n_days=6, spread=PRODUCT.spread, believe=IndependentPlants)
     theirs = list(simulated_days(site.aisles, trial.robot, sampler(name), start, settings, chance))
     ours = play(site, trial, SeedKeys.of(chance, 6))
     assert ours[:, VISITED].tolist() == [len(day.work) for day in theirs]

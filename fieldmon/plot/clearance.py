@@ -150,7 +150,9 @@ def robot_on(grid: PlantGrid, robot: Robot) -> Robot:
     if needs is None or needs.circle is None or robot.times != USUAL_TIMES:
         return robot
     change_s = end_turns(grid, needs.circle).row_change_s(robot.speed_m_s)
-    return replace(robot, row_change_s=round(max(change_s, 0.0), 1), stop_s=robot.stop_s + STEERS_S)
+    if change_s is None:
+        return robot
+    return replace(robot, row_change_s=round(change_s, 1), stop_s=robot.stop_s + STEERS_S)
 
 
 def half_canopy_m(grid: PlantGrid) -> float:

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 # a steered robot's driven axle is its rear one: so much of its length from its rear (our choice)
 _REAR = 1.0 / 6.0
 _SAME_M = 1e-6
+# what a row change takes is a mean over the ends of so many rows, evenly spread
+_SAMPLED_ROWS = 60
 #: to the right and to the left of a lane, as it runs to its high end
 SIDES = (-1.0, 1.0)
 
@@ -64,7 +66,7 @@ class EndTurns(NamedTuple):
         ``(r, 2, 2)`` whether it can at the low and the high end of each row's lane, to the right
         and to the left of the lane, as it runs to its high end.
     ways
-        How it changes to the next lane at each of these ends, if it can: pieces.
+        How it changes to the next lane at some hundred of these ends, if it can: pieces.
     change_m
         How long such a change is by its corners.
     of
@@ -79,15 +81,16 @@ class EndTurns(NamedTuple):
     def __repr__(self) -> str:
         return f"<EndTurns: room at {int(self.room.any(axis=2).sum())} of {self.room[..., 0].size}>"
 
-    def row_change_s(self, speed_m_s: float) -> float:
+    def row_change_s(self, speed_m_s: float) -> float | None:
         """Return what a change to the next lane takes on average, beside its metres by corners.
 
-        0 where no lane end has room.
+        None where no change was found.
         """
         if not self.ways:
-            return 0.0
+            return None
         each_s = [driven_s(way, self.of, speed_m_s) for way in self.ways]
-        return float(np.mean(each_s)) - self.change_m / speed_m_s + 2.0 * CORNER_S
+        change_s = float(np.mean(each_s)) - self.change_m / speed_m_s + 2.0 * CORNER_S
+        return max(change_s, 0.0)
 
 
 def lane_ends(grid: PlantGrid) -> tuple[Float, Float]:
@@ -112,6 +115,7 @@ def end_turns(grid: PlantGrid, circle: TurningCircle) -> EndTurns:
     # so far in a lane that no turn begins there
     deep_m = 3.0 * circle.radius_m + 2.0 * circle.length_m
     rooms, ways = np.zeros((grid.n_rows, 2, 2), np.bool_), []
+    every = math.ceil(grid.n_rows / _SAMPLED_ROWS)
     known: dict[tuple[int, ...], tuple[bool, ...]] = {}
     for row in range(grid.n_rows):
         for end in range(2):
@@ -120,7 +124,7 @@ def end_turns(grid: PlantGrid, circle: TurningCircle) -> EndTurns:
             key = (end, *np.round(np.append(point, out) / _SAME_M).astype(np.int64).tolist())
             if key not in known:
                 known[key] = tuple(_turns_to(point, out, side, end, room) for side in SIDES)
-                for side in np.flatnonzero(known[key]):
+                for side in np.flatnonzero(known[key]) if row % every == 0 else ():
                     to = grid.row_spacing_m * _to_side(out, SIDES[side], end)
                     line = np.stack([-deep_m * out, 0.0 * out, to, to - deep_m * out]) + point
                     way, stuck = way_of(line, math.atan2(out[1], out[0]), room)

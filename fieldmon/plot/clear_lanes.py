@@ -121,6 +121,8 @@ def _stretch(
     taken = []
     for row in rows.tolist():
         for part in shapely.get_parts(shapely.intersection(lanes[row], off)):
+            if part.is_empty:
+                continue  # it is only touched
             corners = shapely.points(shapely.get_coordinates(part))
             along = shapely.line_locate_point(lanes[row], corners) + grid.lane_x_m[row, 0]
             taken.append((float(along.min()) - 2 * _EDGE_M, float(along.max()) + 2 * _EDGE_M))

@@ -19,8 +19,9 @@ from tests.app.driving import broken, go, map_of
 
 
 def areas(app):
-    (layer,) = map_of(app)["layers"]
-    return layer["data"]
+    areas, marks = map_of(app)["layers"]
+    assert len({area["n"] for area in areas["data"]}) == len(marks["data"])
+    return areas["data"]
 
 
 def test_without_seasons_the_sample_estate_is_shown(app):
@@ -97,7 +98,10 @@ def test_every_part_of_a_plot_opens_it():
     plots, _ = estate.plots()
     assert rooms.ROOMS["plots"].parts == ("plots",)
     content = estate_map.content(plots)
-    (layer,) = content.layers
-    for index, row in enumerate(layer.data):
+    areas, marks = content.layers
+    for index, row in enumerate(areas.data):
         assert estate_map.plot_tapped(plots, index) is plots[row["n"]]
-    assert estate_map.plot_tapped(plots, len(layer.data)) is None
+    assert estate_map.plot_tapped(plots, len(areas.data)) is None
+    for index in range(len(marks.data)):
+        assert estate_map.plot_tapped(plots, index, marks.id) is plots[index]
+    assert estate_map.plot_tapped(plots, 0, "another") is None

@@ -226,7 +226,7 @@ def test_a_fraction_typed_with_a_comma_in_spanish_is_not_ten_times_as_much(today
     # turned at once, while the box still holds what was typed last
     open_room(page, texts.ROOMS["today"])
     open_room(page, texts.ROOMS["ahead"])
-    assert box.input_value() == "25"
+    until(lambda: box.input_value() == "25", 60)
 
 
 def test_strategies_are_compared_and_a_plot_is_brought_by_keys_alone(today):

@@ -12,11 +12,14 @@ from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
     Background,
     Hours,
+    Length,
     Look,
     Robots,
     RobotTimesName,
     SeasonFile,
     Speed,
+    TurningRadius,
+    Width,
     WorkerOptions,
     sampler_settings,
 )
@@ -48,6 +51,9 @@ class ChangeOptions:
     hours: Hours = None
     look: Look = None
     speed: Speed = None
+    width: Width = None
+    length: Length = None
+    turning_radius: TurningRadius = None
     robot_times: RobotTimesName = None
     robots: Robots = None
     start: Annotated[str | None, typer.Option(help="Local time at which work starts, HH:MM.")] = (
@@ -114,7 +120,11 @@ class ChangeOptions:
         return bool(self._worker().given()) or self.robot_times is not None
 
     def _worker(self) -> WorkerOptions:
-        return WorkerOptions(self.hours, self.look, self.speed, robot_times=self.robot_times)
+        return WorkerOptions(
+            self.hours, self.look, self.speed,
+            width=self.width, length=self.length, turning_radius=self.turning_radius,
+            robot_times=self.robot_times,
+        )  # fmt: skip
 
     def _of_who_inspects(self, settings: MonitoringSettings) -> MonitoringSettings:
         """Return settings with the robot or the team told."""
@@ -138,7 +148,7 @@ class ChangeOptions:
             return
         each = "; ".join(worker_in_words(one) for one in team)
         raise SettingError(
-            "--hours, --look, --speed and --robot-times are of one robot, or of members that are "
+            "What is said of hours, times and size is of one robot, or of members that are "
             f"alike, but this season's team is {each}. Give all of it anew with: fieldmon change "
             "--robots TEAM.csv"
         )

@@ -22,6 +22,8 @@ _NAMES = {
     "sampler": worded("sampler"), "team": worded("team"), "hours": worded("hours"),
     "look": worded("look"), "speed": worded("speed"),
     "row changes, turns and stops": worded("row changes, turns and stops"),
+    "width": worded("width"), "length": worded("length"),
+    "turning radius": worded("turning radius"),
     "detection": worded("detection"), "start": worded("start"), "traces": worded("traces"),
     "finds": worded("finds"), "spread": worded("spread"),
     "background": worded("infested where nothing is known"), "pest": worded("pest"),
@@ -121,12 +123,18 @@ def _in_words(settings: MonitoringSettings) -> dict[str, str]:
 
 def _each_of_worker(robot: Robot) -> dict[str, str]:
     times = f"{robot.row_change_s:g}, {robot.turn_180_s:g} and {robot.stop_s:g} s"
+    size = {
+        "width": robot.width_m,
+        "length": robot.length_m,
+        "turning radius": robot.turning_radius_m,
+    }
     return {
         "hours": f"{robot.hours:g}",
         "look": f"{robot.look_s:g} s",
         "speed": f"{KM_H * robot.speed_m_s:.3g} km/h",
         "row changes, turns and stops": robot.times or times,
         "detection": written(robot.detects, ".0%"),
+        **{name: f"{value_m:g} m" for name, value_m in size.items() if value_m is not None},
     }
 
 

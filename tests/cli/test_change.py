@@ -40,6 +40,19 @@ def test_a_season_is_charged_the_times_that_are_chosen(run, season):
     assert Season(season).settings.robot.times == "thesis"
 
 
+def test_a_season_gets_a_robot_of_another_size_and_it_is_said_when_it_is_taken_back(run, season):
+    size = ("--width", 0.9, "--length", 1.4, "--turning-radius", 1.9)
+    code, _, err, _ = run("change", season, *size)
+    assert code == 0, err
+    robot = Season(season).settings.robot
+    assert (robot.width_m, robot.length_m, robot.turning_radius_m) == (0.9, 1.4, 1.9)
+    out = run("undo", season, "--change")[1]
+    assert "width 0.9 m (now none again)" in out
+    assert "turning radius 1.9 m (now none again)" in out
+    code, _, err, _ = run("change", season, "--turning-radius", 1.9)
+    assert (code, "must have a width too" in err) == (2, True)
+
+
 def test_finds_are_traced_or_not_as_is_chosen(run, season):
     assert Season(season).settings.belief.traces
     code, _, err, _ = run("change", season, "--no-trace", "--spread", "0.03")

@@ -211,9 +211,7 @@ def narrow_sentence(rows: Mask, grid: PlantGrid, needs: Clearance) -> str:
 
 
 def hidden_sentence(n: int, needs: Clearance | None) -> str:
-    """Return for people that holes and no-go areas hide so many plants; "" if none."""
-    if not n:
-        return ""
+    """Return for people that holes and no-go areas hide so many plants."""
     if needs is None:
         return worded(
             "{plants} cannot be inspected: a hole or a no-go area cuts their aisle.",

@@ -159,9 +159,13 @@ class Aisles:
     @cached_property
     def too_narrow(self) -> NDArray[np.bool_]:
         """Whether each plant ``(n,)`` cannot be come near: its aisle is too narrow, or is cut."""
+        return read_only(self._narrow_rows[self.grid.row] | self._hidden)
+
+    @cached_property
+    def _narrow_rows(self) -> NDArray[np.bool_]:
         if self.clearance is None:
-            return self._hidden
-        return read_only(self.clearance.too_narrow(self.grid)[self.grid.row] | self._hidden)
+            return read_only(np.zeros(self.grid.n_rows, np.bool_))
+        return read_only(self.clearance.too_narrow(self.grid))
 
     @cached_property
     def _hidden(self) -> NDArray[np.bool_]:
@@ -173,13 +177,12 @@ class Aisles:
 
     def narrow_sentence(self) -> str:
         """Return for people which plants the robot cannot come near, in sentences; "" if none."""
-        rows = np.zeros(self.grid.n_rows, np.bool_)
-        if self.clearance is not None:
-            rows = self.clearance.too_narrow(self.grid)
-        hidden = self._hidden & ~rows[self.grid.row]
-        said = [narrow_sentence(rows, self.grid, self.clearance)] if self.clearance else []
-        said += [hidden_sentence(int(hidden.sum()), self.clearance)]
-        return joined(" ", [one for one in said if one])
+        rows, said = self._narrow_rows, []
+        if self.clearance is not None and rows.any():
+            said.append(narrow_sentence(rows, self.grid, self.clearance))
+        if n_hidden := int((self._hidden & ~rows[self.grid.row]).sum()):
+            said.append(hidden_sentence(n_hidden, self.clearance))
+        return joined(" ", said)
 
     def said_of(self, line_m: Float) -> tuple[str, ...]:
         """Return what people must know of a driven line ``(m, 2)``, and of the ways, in sentences.

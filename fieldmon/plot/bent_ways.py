@@ -105,7 +105,7 @@ def row_end_places(grid: PlantGrid) -> tuple[Float, Float]:
     And ``(r, 2, 2)``: the places of the outer two along the aisles on either side.
     """
     aisles, own, side = _known(grid)
-    ends = np.stack([grid.row_start[:-1], grid.row_start[1:] - 1], axis=1)
+    ends = grid.end_plants
     plant_at = grid.along_m[ends]
     beyond = grid.lane_x_m - plant_at
     other = own + np.where(side < 0, -1, 1)

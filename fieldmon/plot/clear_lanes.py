@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import shapely
 
+from fieldmon.plot.obstacles import beyond_plants_m
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -82,10 +84,8 @@ def measured_clear(grid: PlantGrid, off: shapely.Geometry) -> PlantGrid:
     before, grid = grid, clear_lanes(grid, off).grid
     if grid is before:
         return grid
-    ends = np.stack([grid.row_start[:-1], grid.row_start[1:] - 1], axis=1)
-    plant_m = grid.along_m[ends]
-    short = (np.abs(grid.lane_x_m - plant_m) < _LEAST_M) & (grid.lane_x_m != before.lane_x_m)
-    return replace(grid, lane_x_m=np.where(short, plant_m, grid.lane_x_m))
+    short = (beyond_plants_m(grid) < _LEAST_M) & (grid.lane_x_m != before.lane_x_m)
+    return replace(grid, lane_x_m=np.where(short, grid.along_m[grid.end_plants], grid.lane_x_m))
 
 
 def hidden_plants(grid: PlantGrid) -> Mask:

@@ -182,6 +182,11 @@ class PlantGrid:
         return ground
 
     @property
+    def end_plants(self) -> NDArray[np.int64]:
+        """Return the first and the last plant of each row, ``(r, 2)``."""
+        return np.stack([self.row_start[:-1], self.row_start[1:] - 1], axis=1)
+
+    @property
     def n_blocks(self) -> int:
         """Return the number of blocks."""
         return 1 if self.block is None else int(self.block[-1]) + 1

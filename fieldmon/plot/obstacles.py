@@ -254,7 +254,7 @@ def _within(
 
 
 def _row_boxes(grid: PlantGrid, clearance_m: float) -> Float:
-    ends = end_plants(grid)
+    ends = grid.end_plants
     corner = _corner_plants(grid)
     step = np.flatnonzero(grid.row[corner[1:]] == grid.row[corner[:-1]])
     alone = ends[ends[:, 0] == ends[:, 1], 0]
@@ -274,7 +274,7 @@ def row_lines(grid: PlantGrid) -> NDArray[np.object_]:
     """
     if grid.aisles_m is not None:
         return row_courses(grid)
-    ends = end_plants(grid)
+    ends = grid.end_plants
     plant = np.sort(np.append(_corner_plants(grid), ends[ends[:, 0] == ends[:, 1], 0]))
     lines: NDArray[np.object_] = shapely.linestrings(grid.xy_m[plant], indices=grid.row[plant])
     return lines
@@ -286,16 +286,11 @@ def _corner_plants(grid: PlantGrid) -> Index:
     level = np.abs(np.diff(y)) < SAME_M
     inner = np.zeros(len(grid), np.bool_)
     inner[1:-1] = level[1:] & level[:-1]
-    inner[end_plants(grid)] = False
+    inner[grid.end_plants] = False
     return np.flatnonzero(~inner)
 
 
 def beyond_plants_m(grid: PlantGrid) -> Float:
     """Return how far each lane reaches beyond the first and the last plant, ``(r, 2)`` metres."""
-    beyond_m: Float = np.abs(grid.lane_x_m - grid.along_m[end_plants(grid)])
+    beyond_m: Float = np.abs(grid.lane_x_m - grid.along_m[grid.end_plants])
     return beyond_m
-
-
-def end_plants(grid: PlantGrid) -> Index:
-    """Return the first and the last plant of each row, ``(r, 2)``."""
-    return np.stack([grid.row_start[:-1], grid.row_start[1:] - 1], axis=1)

@@ -14,7 +14,7 @@ from fieldmon.compute.wording import counted
 from fieldmon.plot.adjacency import delaunay_sides
 from fieldmon.plot.bent_ways import Bends, bends_of, row_end_places
 from fieldmon.plot.end_turns import lane_ends
-from fieldmon.plot.obstacles import SAME_M, Obstacles, beyond_plants_m, end_plants
+from fieldmon.plot.obstacles import SAME_M, Obstacles, beyond_plants_m
 from fieldmon.plot.way_joining import (
     NEAREST,
     Net,
@@ -260,7 +260,7 @@ def _driveable(bends: Bends, obstacles: Obstacles) -> Mask:
 def _row_end_places(grid: PlantGrid) -> Float:
     """Return ``(r, 2, 3, 2)``: at each row end, below the row, on its line and above it."""
     half = grid.row_spacing_m / 2
-    y = grid.xy_m[end_plants(grid), 1]
+    y = grid.xy_m[grid.end_plants, 1]
     lane = np.broadcast_to(grid.lane_y_m[:, None], y.shape)
     above = np.where(grid.side[:, None] < 0, lane, y + half)
     below = np.where(grid.side[:, None] < 0, y - half, lane)

@@ -64,11 +64,6 @@ class Wheels(NamedTuple):
             return 0.0
         return _least_radius_m(self.base_m, self.track_m, self.steers_rad)
 
-    @property
-    def sharpest(self) -> float:
-        """Return the bend of the sharpest turn, 1/m; 0: on the spot."""
-        return sharpest_of(self.turning_m) if self.base_m else 0.0
-
     def commands(self, speed_m_s: float, turn: float) -> list[float]:
         """Return the commands of its actuators.
 

@@ -157,7 +157,7 @@ def best_turn(
     >>> best_turn(np.zeros(2), 0.0, np.pi / 2, room).arcs
     [<Piece ahead, 1.57 m>]
     """
-    for turn in _turns(error, room.radius_m, ahead):
+    for turn in _turns(error, room.radius_m, ahead=ahead):
         if _fits(corner, yaw, turn, room):
             arcs = [one.moved(yaw, corner) for one in turn.arcs]
             return turn._replace(arcs=arcs, yaw=turn_of(yaw + turn.yaw))
@@ -165,7 +165,7 @@ def best_turn(
 
 
 @lru_cache(maxsize=64)
-def _turns(error: float, radius_m: float, ahead: bool) -> tuple[Turn, ...]:  # noqa: FBT001
+def _turns(error: float, radius_m: float, *, ahead: bool) -> tuple[Turn, ...]:
     """Return all turns at a corner of an angle, the cheapest first; it is the origin, yaw 0."""
     turns = [
         _turn(total, (arcs, first), radius_m, (ahead, on))

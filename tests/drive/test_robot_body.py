@@ -5,7 +5,7 @@ import math
 import mujoco
 import pytest
 
-from fieldmon.drive.robot_body import RobotBody
+from fieldmon.drive.robot_body import RobotBody, sharpest_of
 from fieldmon.drive.world import world_xml
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.plot.layout import rectangle
@@ -48,7 +48,7 @@ def test_a_steered_model_has_its_turning_circle(tmp_path):
     assert wheels.steers_rad == pytest.approx(0.6)
     # the inner wheel at its stop: the circle of the driven axle, and a tenth to spare
     assert wheels.turning_m == pytest.approx(1.1 * (0.6 / math.tan(0.6) + 0.25))
-    inner = wheels.commands(1.0, wheels.sharpest)[2]
+    inner = wheels.commands(1.0, sharpest_of(wheels.turning_m))[2]
     assert inner == pytest.approx(0.6)
 
 

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import shapely
 
-from fieldmon.plot.obstacles import beyond_plants_m
-
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -84,7 +82,7 @@ def measured_clear(grid: PlantGrid, off: shapely.Geometry) -> PlantGrid:
     before, grid = grid, clear_lanes(grid, off).grid
     if grid is before:
         return grid
-    short = (beyond_plants_m(grid) < _LEAST_M) & (grid.lane_x_m != before.lane_x_m)
+    short = (grid.beyond_plants_m < _LEAST_M) & (grid.lane_x_m != before.lane_x_m)
     return replace(grid, lane_x_m=np.where(short, grid.along_m[grid.end_plants], grid.lane_x_m))
 
 

@@ -10,7 +10,6 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.plot.end_turns import lane_ends
-from fieldmon.plot.obstacles import beyond_plants_m
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -72,7 +71,7 @@ def opened(grid: PlantGrid, needs_m: float, off: shapely.Geometry) -> PlantGrid:
         What nobody may drive over.
     """
     plant_m = grid.along_m[grid.end_plants]
-    short = beyond_plants_m(grid) < needs_m
+    short = grid.beyond_plants_m < needs_m
     far_m = plant_m + (needs_m + _BESIDE_M) * np.array([-1.0, 1.0])
     wider = replace(grid, lane_x_m=np.where(short, far_m, grid.lane_x_m))
     ends_m = np.asarray(shapely.points(lane_ends(wider)[0]))

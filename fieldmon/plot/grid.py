@@ -187,6 +187,12 @@ class PlantGrid:
         return np.stack([self.row_start[:-1], self.row_start[1:] - 1], axis=1)
 
     @property
+    def beyond_plants_m(self) -> NDArray[np.float64]:
+        """Return how far each lane reaches beyond the first and the last plant, ``(r, 2)``."""
+        beyond_m: NDArray[np.float64] = np.abs(self.lane_x_m - self.along_m[self.end_plants])
+        return beyond_m
+
+    @property
     def n_blocks(self) -> int:
         """Return the number of blocks."""
         return 1 if self.block is None else int(self.block[-1]) + 1

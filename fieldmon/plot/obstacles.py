@@ -97,7 +97,7 @@ class Obstacles:
     ) -> Obstacles:
         """Return the obstacles on a plot, to a robot that needs some clearance."""
         if clearance is None:
-            beyond_m = beyond_plants_m(grid)
+            beyond_m = grid.beyond_plants_m
             # where a lane ends at its last plant nobody turns
             least_m = float(beyond_m.min(where=beyond_m > 0.0, initial=np.inf))
             clearance_m = min(_CLEARANCE_M, 0.4 * least_m)
@@ -288,9 +288,3 @@ def _corner_plants(grid: PlantGrid) -> Index:
     inner[1:-1] = level[1:] & level[:-1]
     inner[grid.end_plants] = False
     return np.flatnonzero(~inner)
-
-
-def beyond_plants_m(grid: PlantGrid) -> Float:
-    """Return how far each lane reaches beyond the first and the last plant, ``(r, 2)`` metres."""
-    beyond_m: Float = np.abs(grid.lane_x_m - grid.along_m[grid.end_plants])
-    return beyond_m

@@ -14,7 +14,7 @@ from fieldmon.compute.wording import counted
 from fieldmon.plot.adjacency import delaunay_sides
 from fieldmon.plot.bent_ways import Bends, bends_of, row_end_places
 from fieldmon.plot.end_turns import lane_ends
-from fieldmon.plot.obstacles import SAME_M, Obstacles, beyond_plants_m
+from fieldmon.plot.obstacles import SAME_M, Obstacles
 from fieldmon.plot.way_joining import (
     NEAREST,
     Net,
@@ -157,11 +157,11 @@ class _Narrow(NamedTuple):
     def of(cls, grid: PlantGrid, clearance: Clearance | None) -> _Narrow:
         none = np.zeros((grid.n_rows, 2), np.bool_)
         if clearance is None:
-            passed = beyond_plants_m(grid) > 0.0
+            passed = grid.beyond_plants_m > 0.0
             return cls(none[:, 0], none, passed, np.ones((grid.n_rows, 2, 2), np.bool_))
         room = clearance.turn_room(grid)
         to_row = room[np.arange(grid.n_rows), :, (grid.side > 0).astype(np.intp)]
-        passed = (beyond_plants_m(grid) >= clearance.way_m) & to_row
+        passed = (grid.beyond_plants_m >= clearance.way_m) & to_row
         return cls(clearance.too_narrow(grid), clearance.tight_ends(grid), passed, room)
 
     @property

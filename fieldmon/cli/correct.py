@@ -6,25 +6,42 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.numbers import within
 from fieldmon.cli.options import SeasonFile
+from fieldmon.cli.times import clock
+from fieldmon.compute.ranges import NUMBER
 from fieldmon.errors import SettingError
 
 
 def correct(
     season: SeasonFile,
     who: Annotated[str, typer.Option(help="Whose corrections these are.", show_default=False)],
+    inspection: Annotated[
+        int | None,
+        typer.Option(
+            help="Number (fid) of one inspection whose --time was wrong.", callback=within(NUMBER)
+        ),
+    ] = None,
+    at: Annotated[
+        str | None, typer.Option("--time", help="Local time of that --inspection, HH:MM.")
+    ] = None,
 ) -> None:
     """Accept inspections that QGIS or another program changed, as somebody's corrections.
 
-    Until then the season refuses to go on, and names the rows. fieldmon undo brings back what
-    stood there before.
+    Until then the season refuses to go on, and names the rows. With --inspection and --time the
+    time of one is corrected instead. fieldmon undo brings back what stood there before.
 
     Example: fieldmon correct season.gpkg --who Ann
     """
     if not who.strip():
         raise SettingError("--who must name whose corrections these are, but it is empty.")
+    if (inspection is None) != (at is None):
+        raise SettingError("To correct a time, --inspection and --time must both be given.")
     from fieldmon.monitoring import Season
 
+    if inspection is not None and at is not None:
+        typer.echo(Season(season).correct_time(inspection, clock(at, "--time"), who.strip()))
+        return
     n = Season(season).correct(who.strip())
     if n:
         typer.echo(f"{n} correction{'s' if n > 1 else ''} taken, by {who.strip()}.")

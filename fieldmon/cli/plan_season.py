@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from contextlib import nullcontext
 from datetime import datetime, time, timedelta
 from functools import cache
@@ -107,10 +108,13 @@ def _refuse_worked(season: Season, on: date, now: time, team: list[str]) -> None
             continue
         last = datetime.combine(on, time()) + timedelta(seconds=float(second[-1]))
         whose = f"{name}'s last result" if name else "the last result"
+        number = season.number_of(season.worked(on, name))
+        file = shlex.quote(str(season.path))
         raise SettingError(
             f"--now must not be before what was found, but it is {now:%H:%M} and {whose} of {on} "
             f"is of {last:%H:%M}: hours already worked are no hours left. Give a later --now, or "
-            "none to go on from there."
+            f"none to go on from there. If that time is wrong, correct it: fieldmon correct {file} "
+            f"--inspection {number} --time HH:MM --who NAME"
         )
 
 

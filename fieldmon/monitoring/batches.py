@@ -426,7 +426,19 @@ def undo_one(
     db: sqlite3.Connection, inspection: int, signs: Mapping[int, str] | None = None
 ) -> tuple[set[int], str]:
     """Mark one inspection as undone; return the batches that changed, and what was done."""
-    row = db.execute(
+    row = counting(db, inspection)
+    db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
+    replaced.undo_corrections(db, *row[4:])
+    again = replaced.count_again(db)
+    close_if_empty(db, row[4])
+    touch(db, schema.INSPECTIONS.name)
+    said = _undone_one((signs or {}).get(row[0], row[0]), *row[1:4])
+    return {row[4], *again}, _still(said, replaced.n_counting(db, row[5]))
+
+
+def counting(db: sqlite3.Connection, inspection: int) -> tuple[int, int, str, str, int, str]:
+    """Return line, number, date, result, batch and digest of one inspection that still counts."""
+    row: tuple[int, int, str, str, int, str] | None = db.execute(
         "SELECT line, number, date, result, batch, digest FROM inspections "
         "WHERE fid = ? AND undone = 0",
         (inspection,),
@@ -440,13 +452,7 @@ def undo_one(
                 inspection=inspection,
             )
         )
-    db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
-    replaced.undo_corrections(db, *row[4:])
-    again = replaced.count_again(db)
-    close_if_empty(db, row[4])
-    touch(db, schema.INSPECTIONS.name)
-    said = _undone_one((signs or {}).get(row[0], row[0]), *row[1:4])
-    return {row[4], *again}, _still(said, replaced.n_counting(db, row[5]))
+    return row
 
 
 def close_if_empty(db: sqlite3.Connection, batch: int) -> None:

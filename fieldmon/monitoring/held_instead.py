@@ -32,6 +32,7 @@ _SAYS = (
     f"UPDATE inspections SET result = ?, count = ?, time = coalesce(?, time), {_BESIDE} "  # noqa: S608 - ours
     "WHERE fid = ?"
 )
+_WAS = f"SELECT {INSPECTED} FROM inspections AS old WHERE fid = ?"  # noqa: S608 - as above
 
 
 def take(
@@ -54,16 +55,11 @@ def take(
         result = RESULT_NAMES[int(one.result[0])]
         key = int(one.plant[0]), str(one.date[0]), result, RESULT_NAMES[SKIPPED]
         (row, was), *others = db.execute(_OTHERWISE, key).fetchall()
-        change = OutsideChange(INSPECTIONS.name, row, "update", was)
-        change = replace(change, before=copy_corrections.as_it_is(db, row))
         count = None if np.isnan(one.count[0]) else float(one.count[0])
         beside = {each.name: each.to_file(getattr(one, each.name))[0] for each in BESIDE}
         beside["who"] = beside["who"] or who
         told = count, time_text(float(one.second[0])), *beside.values()
-        db.execute(_SAYS, (result, *told, row))
-        now = outside_changes.take_row(db, change, plot, settings, batch)
-        outside_changes.keep_before(db, change, plot[0])
-        copy_corrections.note(db, change, batch, now)
+        change = _changed(db, (row, was), (_SAYS, (result, *told, row)), plot, (settings, batch))
         taken.append(change)
         for fid, stood in others:
             other = OutsideChange(INSPECTIONS.name, fid, "delete", stood)
@@ -73,3 +69,40 @@ def take(
     batches.end(db, batch, len(inspections))
     touch(db, INSPECTIONS.name)
     return tuple(outside_changes.in_words(db, one) for one in taken)
+
+
+def retime(
+    db: sqlite3.Connection,
+    row: int,
+    second: float,
+    plot: tuple[PlantGrid, RowLabel],
+    settings: MonitoringSettings,
+    who: str,
+) -> tuple[str, ...]:
+    """Give one inspection that counts another time of its day; say so."""
+    batches.counting(db, row)
+    (was,) = db.execute(_WAS, (row,)).fetchone()
+    batch = batches.begin(db, "corrections", "", who)
+    says = "UPDATE inspections SET time = ? WHERE fid = ?", (time_text(second), row)
+    change = _changed(db, (row, was), says, plot, (settings, batch))
+    batches.end(db, batch, 1)
+    touch(db, INSPECTIONS.name)
+    return (outside_changes.in_words(db, change),)
+
+
+def _changed(
+    db: sqlite3.Connection,
+    stood: tuple[int, str],
+    says: tuple[str, tuple[object, ...]],
+    plot: tuple[PlantGrid, RowLabel],
+    taken: tuple[MonitoringSettings, int],
+) -> OutsideChange:
+    """Let a row say something else, for a batch of corrections; what it said is kept."""
+    row, was = stood
+    change = OutsideChange(INSPECTIONS.name, row, "update", was)
+    change = replace(change, before=copy_corrections.as_it_is(db, row))
+    db.execute(*says)
+    now = outside_changes.take_row(db, change, plot, *taken)
+    outside_changes.keep_before(db, change, plot[0])
+    copy_corrections.note(db, change, taken[1], now)
+    return change

@@ -40,14 +40,16 @@ from fieldmon.monitoring.recorded_before import (
     contradictions,
     said_before,
 )
+from fieldmon.monitoring.settings import seconds
 from fieldmon.monitoring.told_detection import said_now
 from fieldmon.monitoring.transactions import Store
+from fieldmon.pests.weather import DAY_S
 from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Sequence
-    from datetime import date
+    from datetime import date, time
     from pathlib import Path
 
     from fieldmon.monitoring.batches import Batch, BatchContents
@@ -369,6 +371,45 @@ class SeasonRecords(OpenSeason):
             taken = outside_changes.correct(db, plot, settings, who)
             self._corrected(db, taken, who)
         return len(taken)
+
+    def correct_time(self, inspection: int, at: time, who: str) -> str:
+        """Give one inspection another time of its day; return what was done.
+
+        That is a batch of its own; undoing it brings back the time before.
+
+        Parameters
+        ----------
+        inspection
+            Its number (fid) in the season's file.
+        at
+            The local time that is right.
+        who
+            Who corrects.
+
+        Raises
+        ------
+        SettingError
+            If there is no such inspection that counts.
+        """
+        with self._writing() as db:
+            plot, settings = (self.plot.grid, self.label), settings_of(db)
+            who = written_in(db, who)
+            said = held_instead.retime(db, inspection, seconds(at), plot, settings, who)
+            self._corrected(db, said, who)
+        return said[0]
+
+    def number_of(self, inspections: Inspections) -> int:
+        """Return the number (fid) in the file of the last of some inspections with times."""
+        last = inspections.take(slice(len(inspections) - 1, len(inspections)))
+        at = inspection_table.time_text(float(last.second[0]) % DAY_S)
+        said = int(last.plant[0]), str(last.date[0]), at
+        with self.store.reading() as db:
+            (number,) = db.execute(
+                "SELECT fid FROM inspections WHERE plant = ? AND date >= ? AND undone = 0 "
+                "ORDER BY time = ? DESC, date, fid DESC",
+                said,
+            ).fetchone()
+        return int(number)
 
     def take_drafts(self) -> tuple[str, ...]:
         """Let findings count that another program added to the file itself.

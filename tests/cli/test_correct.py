@@ -28,3 +28,21 @@ def test_until_somebody_takes_it_every_command_refuses_what_another_program_chan
     assert code == 0
     assert "1 correction by Ann" in out
     assert "Nothing was changed" in run("correct", season, "--who", "Ann")[1]
+
+
+def test_the_time_alone_of_an_inspection_is_corrected(run, season):
+    kept = Season(season)
+    told = Inspections.of(np.arange(2), np.array([0, 1]), BEGINS, second=[22_000, 80_000])
+    kept.record(told, "taps")
+    for words in (["--inspection", "2"], ["--time", "07:00"]):
+        assert "must both be given" in run("correct", season, "--who", "Ann", *words)[2]
+    words = ["correct", season, "--who", "Ann", "--time", "07:00", "--inspection"]
+    assert "an inspection 9 that still counts" in run(*words, "9")[2]
+    code, out, _, _ = run(*words, "2")
+    assert (code, out.endswith("is now time 07:00:00\n")) == (0, True)
+    held = Season(season).history.inspections
+    assert held.second.tolist() == [22_000, 7 * 3600]
+    assert held.result.tolist() == [0, 1]
+    assert Season(season).verify() == ()
+    run("undo", season)
+    assert Season(season).history.inspections.second.tolist() == [22_000, 80_000]

@@ -167,6 +167,10 @@ def test_hours_that_are_worked_already_are_no_hours_left(run, season, who, whose
     assert (code, made) == (2, set())
     assert f"it is 06:10 and {whose} last result of {BEGINS} is of 06:30: hours already" in err
     assert run(*words, "--now", "06:30")[0] == 0  # 30 seconds earlier: times are told to the minute
+    correct = " ".join(err.split()).partition("fieldmon correct ")[2].split()
+    assert correct[1:] == ["--inspection", "2", "--time", "HH:MM", "--who", "NAME"]
+    assert run("correct", *correct[:4], "06:07", "--who", "Ann")[0] == 0
+    assert run(*words, "--now", "06:10")[0] == 0
 
 
 def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):

@@ -41,7 +41,8 @@ def content(tried: tuple[TriedAnswer, ...], plot: Plot, *, dark: bool) -> MapCon
     bounds = np.concatenate([spots.min(axis=0), spots.max(axis=0)])
     ground = answers_map.ground_of(bounds, dark=dark)
     same = _same_places(tried, seen)
-    made = [*ground, deck.outline(plot.field, "boundary", colours.ROWS), *_points(tried, seen)]
+    around = deck.outline(plot.field, "boundary", colours.AMONG_ANSWERS)
+    made = [*ground, around, *_points(tried, seen)]
     if not same:
         made.append(_places(tried, seen, at))
     items = [("line", answers_map.GROUND, texts.LEGEND_ZONE)] if ground else []

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ..state.estate import PlotState
     from ..state.shared_plots import PlannedTurn
     from .maps.colours import Colour
+    from .maps.labels import Label
 
 #: the layer in which a tapped plot is looked up
 PLOTS = "plots"
@@ -83,7 +84,7 @@ def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapC
     states = dict.fromkeys(map(state_of, plots))
     items = [("square", _COLOURS[name], texts.PLOTS_STATES[name]) for name in states]
     of_plot = {id(turn.state): turn for turn in turns}
-    names = [
+    names: list[Label] = [
         {"p": _middle(plot), "t": _named(plot, of_plot.get(id(plot))), "k": "name", "plot": number}
         for number, plot in enumerate(plots)
     ]

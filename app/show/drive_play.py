@@ -38,8 +38,9 @@ def content(choices: Choices, scene: Scene, day: DayInTime | None) -> MapContent
     notes = PlantNotes(scene.chance)
     seen = legends.by_state()
     seen["items"] = seen["items"][:2]  # of the others their chances are shown
-    alt = texts.DRIVE_ALT.format(name=choices.plot.field.name)
-    common = field_map.of_plot(choices) | ({} if day is None else {"alt": alt})
+    common = field_map.of_plot(choices)
+    if day is not None:
+        common["alt"] = texts.DRIVE_ALT.format(name=choices.plot.field.name)
     return MapContent(
         **common,
         layers=[

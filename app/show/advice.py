@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pandas as pd
@@ -91,7 +91,7 @@ def zones(advice: Advice) -> None:
         st.caption(texts.DECIDE_WRONG_HELP)
 
 
-def _height(advice: Advice) -> int | str:
+def _height(advice: Advice) -> int | Literal["content"]:
     return _TABLE_PX if len(advice.zones) > _MOST_ZONES else "content"
 
 

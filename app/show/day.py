@@ -51,7 +51,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
         texts.COLUMN_CHANCE: (100 * route.chance).round(1),
     }
     if shown.worked:
-        done = choices.season.history.inspections.on(choices.on)
+        done = choices.open_season.history.inspections.on(choices.on)
         was = dict(zip(done.plant.tolist(), done.result.tolist(), strict=True))
         columns[texts.REPORT_WAS] = [texts.HISTORY_RESULTS[was[p]] for p in route.plant.tolist()]
     return pd.DataFrame(columns, pd.RangeIndex(1, len(route) + 1, name=texts.STOP_NUMBER))
@@ -150,7 +150,7 @@ def said_of_day(choices: Choices, plan: DayPlan) -> None:
 
 def _is_of_nobody(choices: Choices) -> bool:
     """Return whether the route shown is planned for one, while several are out with their own."""
-    if choices.season.settings.team or chosen_day.route(choices).worked:
+    if choices.open_season.settings.team or chosen_day.route(choices).worked:
         return False
     kept = chosen_day.planned_and_done(choices)
     return kept is not None and kept.people > 1
@@ -238,7 +238,7 @@ def _found_lately(choices: Choices) -> dict[int, date]:
     last = chosen_day.last_visit(choices, choices.on)
     if last is None:
         return {}
-    done, until = choices.season.history.inspections, np.datetime64(last, "D")
+    done, until = choices.open_season.history.inspections, np.datetime64(last, "D")
     lately = (done.result == FOUND) & (done.date <= until) & (done.date > until - _WEEK)
     return dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
 

@@ -28,6 +28,8 @@ from .maps import plant_layers
 if TYPE_CHECKING:
     from datetime import date
 
+    from pydeck import Layer
+
     from fieldmon.plot.grid import PlantGrid
 
     from ..state.choices import Choices
@@ -78,7 +80,7 @@ def tapped(choices: Choices) -> tuple[int, ...]:
         return ()  # its history says why
 
 
-def layers(choices: Choices) -> list:
+def layers(choices: Choices) -> list[Layer]:
     """Return the ring round the plant whose history is shown, if there is such a plant."""
     return [
         ring for plant in tapped(choices) for ring in plant_layers.chosen(choices.plot.grid, plant)
@@ -95,15 +97,7 @@ def show(choices: Choices) -> None:
     """Show what is known of the plant tapped, or of the one whose row and number are given."""
     st.markdown(f"### {texts.HISTORY}")
     st.caption(texts.HISTORY_TAP)
-    grid = choices.plot.grid
-    row, number = _lowest(grid)
-    show_box, key = widget_memory.show, _row_box(grid)
-    if grid.row_names:
-        row = show_box(st.text_input, texts.HISTORY_ROW, key=key, default=f"{row}")
-    else:
-        row = show_box(st.number_input, texts.HISTORY_ROW, 0, key=key, default=row)
-    number = show_box(st.number_input, texts.HISTORY_PLANT, 0, key=_PLANT, default=number)
-    plant = _plant(grid, row, number)
+    plant = _asked(choices.plot.grid)
     now = first = chosen_day.chance(choices)
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
@@ -117,6 +111,19 @@ def show(choices: Choices) -> None:
         st.caption(texts.HISTORY_TREATED)
     st.markdown("\n".join(_events(choices, plant)))
     _show_photos(choices, plant)
+
+
+def _asked(grid: PlantGrid) -> int:
+    """Ask for a row and a number, and return the plant that they mean."""
+    lowest_row, lowest = _lowest(grid)
+    show_box, key = widget_memory.show, _row_box(grid)
+    row: int | str
+    if grid.row_names:
+        row = show_box(st.text_input, texts.HISTORY_ROW, key=key, default=f"{lowest_row}")
+    else:
+        row = show_box(st.number_input, texts.HISTORY_ROW, 0, key=key, default=lowest_row)
+    number = show_box(st.number_input, texts.HISTORY_PLANT, 0, key=_PLANT, default=lowest)
+    return _plant(grid, row, number)
 
 
 def _row_box(grid: PlantGrid) -> str:

@@ -31,13 +31,14 @@ def sentence(ranked: list[Outcome]) -> str:
         return ""
     best, second = ranked[0], ranked[1]
     names = {"best": name(best.strategy), "second": name(second.strategy)}
-    if isnan(second.behind.low):
+    behind = second.behind
+    if behind is None or isnan(behind.low):
         return texts.VERDICT_ONE.format(**names)
-    if not second.behind.low > 0:
+    if not behind.low > 0:
         return texts.VERDICT_TIED.format(**names)
     return texts.VERDICT.format(
-        **names, loss=best.loss.mean, low=second.behind.low, high=second.behind.high,
-        percent=100 * second.behind.mean / best.loss.mean,
+        **names, loss=best.loss.mean, low=behind.low, high=behind.high,
+        percent=100 * behind.mean / best.loss.mean,
     )  # fmt: skip
 
 

@@ -35,7 +35,7 @@ def shown(monkeypatch):
 
 def choices(season):
     units = UnitsInLanguage()
-    return SimpleNamespace(season=season, on=BEGINS, units=units, today=None)
+    return SimpleNamespace(season=season, open_season=season, on=BEGINS, units=units, today=None)
 
 
 def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):

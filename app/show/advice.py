@@ -24,6 +24,8 @@ from .map_view import Switch
 from .maps import colours, legends
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.monitoring.advice import Advice
     from fieldmon.plot.grid import PlantGrid
 
@@ -112,12 +114,12 @@ def table(advice: Advice) -> pd.DataFrame:
     )
 
 
-def _rows(grid: PlantGrid, line: np.ndarray) -> str:
+def _rows(grid: PlantGrid, line: NDArray[np.int64]) -> str:
     low, high = row_ends(grid, line)
     return low if low == high else f"{low}-{high}"
 
 
-def _span(numbers: np.ndarray) -> str:
+def _span(numbers: NDArray[np.int64]) -> str:
     low, high = int(numbers.min()), int(numbers.max())
     return f"{low}" if low == high else f"{low}-{high}"
 

@@ -20,6 +20,8 @@ from .maps import colours, legends, plant_layers
 from .maps.plant_layers import PlantNotes
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.samplers.base import Scene
 
     from ..state.choices import Choices
@@ -127,5 +129,5 @@ def as_data(scene: Scene, day: DayInTime) -> dict[str, object]:
     }
 
 
-def _classes(chance: np.ndarray) -> np.ndarray:
+def _classes(chance: NDArray[np.float64]) -> NDArray[np.int64]:
     return colours.by_chance(chance).rank.astype(np.int64)

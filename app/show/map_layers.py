@@ -17,11 +17,13 @@ from .maps import colours, labels, legends, marks, plan_layers, plant_layers, ro
 from .maps.plant_layers import PlantNotes
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from pydeck import Layer
 
     from fieldmon.planning.route import Route
 
     from ..state.choices import Choices
+    from .maps.plant_layers import Known
 
 #: the layers of each switch
 PARTS = {
@@ -183,7 +185,7 @@ def _plants(choices: Choices) -> list[Layer]:
     ]
 
 
-def _known(choices: Choices, state: np.ndarray) -> tuple[tuple[str, ...], np.ndarray]:
+def _known(choices: Choices, state: NDArray[np.int8]) -> Known:
     """Return what is known of plants in sentences, and which of them holds for each."""
     looks = finds = np.zeros(len(state), np.int64)
     if choices.season is not None:
@@ -212,9 +214,7 @@ def _said(state: int, age: int, looks: int, finds: int) -> str:
     return said
 
 
-def in_states(
-    choices: Choices, state: np.ndarray, known: tuple[tuple[str, ...], np.ndarray] | None = None
-) -> list[Layer]:
+def in_states(choices: Choices, state: NDArray[np.int8], known: Known | None = None) -> list[Layer]:
     """Return plants shaded by their state, and the rings of finds."""
     grid, names = choices.plot.grid, texts.LEGEND_STATES
     said = tuple(texts.TIP_STATE.format(state=names[name]) for name in ("never", "clean", "found"))

@@ -185,24 +185,33 @@ def changes(choices: Choices) -> tuple[str, list[str]]:
     title = texts.CHANGED[kind].format(day=said_day(since, choices.on))
     if choices.on == begins:
         return title, [texts.CHANGED_FIRST]
-    before, now = (chosen_day.figures(choices, day) for day in (str(since), choices.day))
-    found = {"found": before.found, "inspected": before.inspected, "day": said_day(since)}
-    said = [texts.CHANGED_NONE if visit is None else texts.CHANGED_FINDS.format(**found)]
-    treated = {one.on for one in season.treatments() if since <= one.on <= choices.on}
-    said += [
+    if visit is None:
+        return title, [texts.CHANGED_NONE, *_changed(choices, since)]
+    before = chosen_day.figures(choices, str(visit))
+    finds = texts.CHANGED_FINDS.format(
+        found=before.found, inspected=before.inspected, day=said_day(visit)
+    )
+    return title, [finds, *_changed(choices, since)]
+
+
+def _changed(choices: Choices, since: date) -> list[str]:
+    """Return what was treated since a day, and how what is believed changed since its evening."""
+    said_day, days = choices.units.said_day, (str(since), choices.day)
+    treated = {one.on for one in choices.open_season.treatments() if since <= one.on <= choices.on}
+    said: list[str] = [
         texts.CHANGED_TREATED.format(n=chosen_day.treated(choices, str(day)), day=said_day(day))
         for day in sorted(treated)
     ]
-    still = [chosen_day.still_infested(choices, day).expected for day in (str(since), choices.day)]
-    expected = {"now": about(still[1]), "before": about(still[0])}
-    said.append(texts.CHANGED_OUT.format(day=said_day(since), **expected))
-    said += map(in_words, flagged_said(now, chosen_day.flagged(choices)))
-    spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (str(since), choices.day)]
-    if spots[0] != spots[1]:
-        said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))
+    before, now = (about(chosen_day.still_infested(choices, day).expected) for day in days)
+    said.append(texts.CHANGED_OUT.format(day=said_day(since), now=now, before=before))
+    figures = chosen_day.figures(choices, choices.day)
+    said += map(in_words, flagged_said(figures, chosen_day.flagged(choices)))
+    spots_before, spots = (len(chosen_day.season_hot_spots(choices, day)) for day in days)
+    if spots_before != spots:
+        said.append(texts.CHANGED_HOT.format(now=spots, before=spots_before))
     if rows := _risen(choices, str(since)):
         said.append(texts.CHANGED_ROWS.format(rows=rows))
-    return title, said
+    return said
 
 
 def _risen(choices: Choices, since: str) -> str:

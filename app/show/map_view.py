@@ -189,7 +189,7 @@ def as_bytes(data: dict[str, object]) -> bytes:
 
 def as_data(content: MapContent, answers: MapAnswers) -> dict[str, object]:
     """Return what the browser is sent."""
-    draw, below = content.draw, content.ground
+    below = content.ground
     return {
         "place": content.place,
         "bounds": content.bounds,
@@ -207,12 +207,9 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, object]:
         "legend": content.legend,
         "labels": content.labels,
         "play": content.play,
-        "frames": None if content.frames is None else _sent(content.frames),
+        "frames": None if content.frames is None else _days(content.frames),
         "drive": content.drive,
-        "draw": draw and {"id": draw.name, "kind": draw.kind, "hint": draw.hint,
-                          "snap": [list(p) for p in draw.snap],
-                          "points": [list(p) for p in draw.points],
-                          "lengths": [list(one) for one in draw.lengths]},
+        "draw": None if content.draw is None else _to_draw(content.draw),
         "taps": answers.tapped is not None,
         "select": answers.selected is not None,
         "picked": run_ends(np.unique(answers.picked)).tolist(),
@@ -232,7 +229,13 @@ def _of_ground(below: GroundShown) -> tuple[Switch, ...]:
     return (Switch("ground", texts.MAP_LAYERS["ground"], ids),) if ids else ()
 
 
-def _sent(frames: Frames) -> dict[str, object]:
+def _to_draw(draw: Drawable) -> dict[str, object]:
+    return {"id": draw.name, "kind": draw.kind, "hint": draw.hint,
+            "snap": [list(p) for p in draw.snap], "points": [list(p) for p in draw.points],
+            "lengths": [list(one) for one in draw.lengths]}  # fmt: skip
+
+
+def _days(frames: Frames) -> dict[str, object]:
     days = [[deck.published(layer) for layer in layers] for layers in frames.layers]
     return {"key": frames.key, "names": [*frames.names], "layers": days, "now": frames.now}
 

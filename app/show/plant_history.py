@@ -28,8 +28,11 @@ from .maps import plant_layers
 if TYPE_CHECKING:
     from datetime import date
 
+    from numpy.typing import NDArray
     from pydeck import Layer
 
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.plot.grid import PlantGrid
 
     from ..state.choices import Choices
@@ -189,31 +192,40 @@ def _events(choices: Choices, plant: int) -> list[str]:
     season = choices.season
     if season is None:
         return [texts.HISTORY_NEVER]
-    history = season.history
-    own = history.inspections.plant == plant
-    done, gone = history.inspections.take(own), history.says_gone[own]
-    days, lines = done.date.tolist(), []
-    for k, second in enumerate(done.second.tolist()):
-        result = texts.HISTORY_RESULTS[int(done.result[k])]
-        if gone[k]:
-            result = texts.RESULTS_OF[3]
+    own = season.history.inspections.plant == plant
+    done = season.history.inspections.take(own)
+    days, seconds = done.date.tolist(), done.second.tolist()
+    lines = _inspected(choices, done, season.history.says_gone[own])
+    treated = [one for one in season.treatments() if one.place.plants[plant]]
+    for one in reversed(treated):  # those behind first: places before them stay what they are
+        over_s = one.application.over_s
+        later = [
+            day > one.on or (day == one.on and second > over_s)
+            for day, second in zip(days, seconds, strict=True)
+        ]
+        at = later.index(True) if True in later else len(days)
+        lines.insert(at, _treated(choices, one))
+    return lines if len(done) else [*lines, texts.HISTORY_NEVER]
+
+
+def _inspected(choices: Choices, done: Inspections, gone: NDArray[np.bool_]) -> list[str]:
+    """Return a line for each inspection of a plant; `gone`: whether it said the plant is gone."""
+    lines = []
+    for k, (day, second) in enumerate(zip(done.date.tolist(), done.second.tolist(), strict=True)):
+        result = texts.RESULTS_OF[3] if gone[k] else texts.HISTORY_RESULTS[int(done.result[k])]
         if not np.isnan(done.count[k]):
             result = texts.RESULT_COUNTED.format(result=result, n=number(done.count[k], ",g"))
         beside = [texts.written(said) for said in (done.notes[k], done.who[k]) if said]
-        lines.append(" · ".join([_line(choices, days[k], second, result), *beside]))
-    treated = [one for one in season.treatments() if one.place.plants[plant]]
-    for one in reversed(treated):  # those behind first: places before them stay what they are
-        product, over_s = one.application.product, one.application.over_s
-        said = texts.HISTORY_SPRAYED
-        if product:
-            said = texts.HISTORY_SPRAYED_WITH.format(product=texts.isolated(product))
-        later = [
-            day > one.on or (day == one.on and second > over_s)
-            for day, second in zip(days, done.second.tolist(), strict=True)
-        ]
-        at = later.index(True) if True in later else len(days)
-        lines.insert(at, _line(choices, one.on, over_s, said))
-    return lines if len(done) else [*lines, texts.HISTORY_NEVER]
+        lines.append(" · ".join([_line(choices, day, second, result), *beside]))
+    return lines
+
+
+def _treated(choices: Choices, one: KeptTreatment) -> str:
+    """Return with what a plant was treated, and when that was over."""
+    said = texts.HISTORY_SPRAYED
+    if product := one.application.product:
+        said = texts.HISTORY_SPRAYED_WITH.format(product=texts.isolated(product))
+    return _line(choices, one.on, one.application.over_s, said)
 
 
 def _line(choices: Choices, on: date, second: float, what: str) -> str:

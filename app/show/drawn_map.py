@@ -44,7 +44,7 @@ def content(drawn: DrawnCorners, units: UnitsInLanguage, *, dark: bool) -> MapCo
         place=f"drawing {drawn.at} {drawn_plot.turn()}",
         bounds=bounds(drawn), alt=texts.OUTLINE_ON_MAP.format(n=n), layers=layers,
         switches=switches if middle else (),
-        legend=_legend(middle is not None, units),
+        legend=_legend(units, is_placed=middle is not None),
         draw=Drawable("outline", f"outline {drawn_plot.turn()}", said(drawn.corners, units),
                       points=drawn.corners, lengths=units.lengths_written()),
         ground=below,
@@ -122,7 +122,7 @@ def _lines(frame: Frame, step_m: float) -> list[dict[str, list[list[float]]]]:
     ]
 
 
-def _legend(is_placed: bool, units: UnitsInLanguage) -> list[LegendPart]:  # noqa: FBT001
+def _legend(units: UnitsInLanguage, *, is_placed: bool) -> list[LegendPart]:
     words = texts.LEGEND_ZONE
     if is_placed:
         (_, near), (_, far) = _steps(units)

@@ -63,11 +63,10 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
     if layer.startswith("plants"):
         grid = choices.plot.grid
         label = row_label(grid, np.array([min(index, len(grid) - 1)]))
-        row = int(label.line[0])
-        typed = f"{row}" if grid.row_names else row
-        st.session_state[_row_box(grid)] = typed
-        st.session_state[_PLANT] = int(label.number[0])
-        st.session_state[_TAPPED_AT] = typed, int(label.number[0])
+        row, number = int(label.line[0]), int(label.number[0])
+        st.session_state[_row_box(grid)] = f"{row}" if grid.row_names else row
+        st.session_state[_PLANT] = number
+        st.session_state[_TAPPED_AT] = f"{row}", number
         st.session_state[_TAPPED] = True
 
 
@@ -78,7 +77,7 @@ def tapped(choices: Choices) -> tuple[int, ...]:
     grid = choices.plot.grid
     row, number = (widget_memory.value(key, 1) for key in (_row_box(grid), _PLANT))
     try:
-        return (_plant(grid, row, number),)
+        return (_plant(grid, f"{row}", number),)
     except FieldmonError:
         return ()  # its history says why
 
@@ -120,11 +119,10 @@ def _asked(grid: PlantGrid) -> int:
     """Ask for a row and a number, and return the plant that they mean."""
     lowest_row, lowest = _lowest(grid)
     show_box, key = widget_memory.show, _row_box(grid)
-    row: int | str
     if grid.row_names:
         row = show_box(st.text_input, texts.HISTORY_ROW, key=key, default=f"{lowest_row}")
     else:
-        row = show_box(st.number_input, texts.HISTORY_ROW, 0, key=key, default=lowest_row)
+        row = f"{show_box(st.number_input, texts.HISTORY_ROW, 0, key=key, default=lowest_row)}"
     number = show_box(st.number_input, texts.HISTORY_PLANT, 0, key=_PLANT, default=lowest)
     return _plant(grid, row, number)
 
@@ -134,11 +132,11 @@ def _row_box(grid: PlantGrid) -> str:
     return f"{_ROW} called" if grid.row_names else _ROW
 
 
-def _plant(grid: PlantGrid, row: int | str, number: int) -> int:
+def _plant(grid: PlantGrid, row: str, number: int) -> int:
     """Return the plant that was tapped, or that is meant by what was typed."""
     if st.session_state.get(_TAPPED_AT) == (row, number):
         return plant_at(grid, int(row), number)
-    return plant_meant(grid, f"{row}", int(number))
+    return plant_meant(grid, row, number)
 
 
 def _lowest(grid: PlantGrid) -> tuple[int, int]:

@@ -123,29 +123,25 @@ def _bound(route: Route) -> str:
     return texts.BOUND.format(share=number(math.ceil(1000.0 * above) / 10.0, ".1f"))
 
 
-def said_of_day(choices: Choices, plan: DayPlan) -> None:
+def say_of_day(choices: Choices, plan: DayPlan) -> None:
     """Say what was recorded of the day, and why there is no route where there is none.
 
     And which rows the robot is too wide for, and where its way leaves the plot.
     """
     for told in plan.route.ways_said:
         st.warning(in_words(told))
-    is_said = len(plan.route) or cautions.are_all_closed(choices, plan)
-    known = nothing_left_in_words(plan.scene)
-    said = "" if is_said else texts.NO_STOPS if known is None else in_words(known)
     if choices.season is not None:
         if len(plan.route) and _is_of_nobody(choices):
             st.info(texts.ROUTE_OF_NOBODY)
         now = chosen_day.progress(choices)
-        if is_over(choices, plan):
-            st.info(texts.TODAY_OVER)
-            return
         if now.inspected_today:
             done = {"inspected": now.inspected_today, "found": now.found_today}
-            st.info(texts.TODAY_DONE.format(**done))
+            over = is_over(choices, plan)
+            st.info(texts.TODAY_OVER if over else texts.TODAY_DONE.format(**done))
             return
-    if said:
-        st.warning(said)
+    if not len(plan.route) and not cautions.are_all_closed(choices, plan):
+        known = nothing_left_in_words(plan.scene)
+        st.warning(texts.NO_STOPS if known is None else in_words(known))
 
 
 def _is_of_nobody(choices: Choices) -> bool:

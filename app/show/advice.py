@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pandas as pd
@@ -24,6 +24,8 @@ from .map_view import Switch
 from .maps import colours, legends
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.monitoring.advice import Advice
     from fieldmon.plot.grid import PlantGrid
 
@@ -91,7 +93,7 @@ def zones(advice: Advice) -> None:
         st.caption(texts.DECIDE_WRONG_HELP)
 
 
-def _height(advice: Advice) -> int | str:
+def _height(advice: Advice) -> int | Literal["content"]:
     return _TABLE_PX if len(advice.zones) > _MOST_ZONES else "content"
 
 
@@ -112,12 +114,12 @@ def table(advice: Advice) -> pd.DataFrame:
     )
 
 
-def _rows(grid: PlantGrid, line: np.ndarray) -> str:
+def _rows(grid: PlantGrid, line: NDArray[np.int64]) -> str:
     low, high = row_ends(grid, line)
     return low if low == high else f"{low}-{high}"
 
 
-def _span(numbers: np.ndarray) -> str:
+def _span(numbers: NDArray[np.int64]) -> str:
     low, high = int(numbers.min()), int(numbers.max())
     return f"{low}" if low == high else f"{low}-{high}"
 

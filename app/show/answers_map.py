@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from ..state.tried_answers import TriedAnswer
     from .maps.colours import Colour
+    from .maps.labels import Label
 
 #: the layers in which a tapped answer is looked up
 SHAPES, PLACES = "answer-shapes", "answer-places"
@@ -71,7 +72,7 @@ def tapped(tried: tuple[TriedAnswer, ...], layer: str, index: int) -> str | None
     return found[index] if 0 <= index < len(found) else None
 
 
-def label(number: int, place: list[float]) -> dict[str, Any]:
+def label(number: int, place: list[float]) -> Label:
     """Return the number of an answer, counted from 0, as it stands on the map."""
     return {"p": place, "t": f"{number + 1}", "k": "leg", "tight": True}
 

@@ -16,10 +16,14 @@ from .map_view import MapContent
 from .maps import colours, deck, legends
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.infestation.observations import Observations
     from fieldmon.plot.plot import Plot
 
     from ..state.tried_answers import TriedAnswer
+
+    Floats = NDArray[np.float64]
 
 #: the layer in which a tapped answer is looked up
 PLACES = answers_map.PLACES
@@ -32,28 +36,24 @@ _SAME_DEG = 1e-7
 
 def content(tried: tuple[TriedAnswer, ...], plot: Plot, *, dark: bool) -> MapContent | None:
     """Return the map of the answers that lead somewhere; None if none does."""
-    seen = [k for k, one in enumerate(tried) if one.records is not None]
-    if not seen:
+    found = {k: one.records for k, one in enumerate(tried) if one.records is not None}
+    if not found:
         return None
-    at = [np.median(tried[k].records.lonlat, axis=0) for k in seen]  # type: ignore[union-attr]
-    some = [_some(tried[k].records) for k in seen]
+    some = [_some(records) for records in found.values()]
     spots = np.concatenate([*some, shapely.get_coordinates(plot.field.boundary)])
     bounds = np.concatenate([spots.min(axis=0), spots.max(axis=0)])
     ground = answers_map.ground_of(bounds, dark=dark)
-    same = _same_places(tried, seen)
-    made = [*ground, deck.outline(plot.field, "boundary", colours.ROWS), *_points(tried, seen)]
-    if not same:
-        made.append(_places(tried, seen, at))
+    middles = {} if _are_same(some) else {k: _middle(records) for k, records in found.items()}
+    around = deck.outline(plot.field, "boundary", colours.AMONG_ANSWERS)
+    layers = [*ground, around, *_points(tried, found)]
+    if middles:
+        layers.append(_places(tried, middles))
     items = [("line", answers_map.GROUND, texts.LEGEND_ZONE)] if ground else []
-    rings = [("ring", answers_map.colour(k), f"{k + 1} · {tried[k].said}") for k in seen]
-    numbers = [] if same else [
-        answers_map.label(k, place.round(7).tolist())
-        for k, place in zip(seen, at, strict=True)
-    ]  # fmt: skip
-    said = texts.ANSWERS_OF_RECORDS_ALT.format(name=plot.field.name, n=len(seen))
+    rings = [("ring", answers_map.colour(k), f"{k + 1} · {tried[k].said}") for k in found]
+    said = texts.ANSWERS_OF_RECORDS_ALT.format(name=plot.field.name, n=len(found))
     return MapContent(
         f"answers {[one.answer for one in tried]}", answers_map.with_room(bounds).tolist(),
-        said, made, labels=numbers,
+        said, layers, labels=[answers_map.label(k, place) for k, place in middles.items()],
         legend=[legends.part("", [*items, *rings])],
     )  # fmt: skip
 
@@ -64,30 +64,30 @@ def tapped(tried: tuple[TriedAnswer, ...], layer: str, index: int) -> str | None
     return seen[index] if layer == PLACES and 0 <= index < len(seen) else None
 
 
-def _some(records: Observations | None) -> np.ndarray:
+def _some(records: Observations) -> Floats:
     """Return the places of records, or of some of very many, spread evenly over the file."""
-    if records is None:
-        return np.empty((0, 2))
     n = len(records)
-    places: np.ndarray = records.lonlat[np.linspace(0, n - 1, min(n, _MOST)).astype(int)]
+    places: Floats = records.lonlat[np.linspace(0, n - 1, min(n, _MOST)).astype(int)]
     return places
 
 
-def _same_places(tried: tuple[TriedAnswer, ...], seen: list[int]) -> bool:
-    """Return whether the answers differ in finds only."""
-    first, *others = (_some(tried[k].records) for k in seen)
+def _middle(records: Observations) -> list[float]:
+    place: list[float] = np.median(records.lonlat, axis=0).round(7).tolist()
+    return place
+
+
+def _are_same(places: list[Floats]) -> bool:
+    """Return whether several answers lead to the same places: they differ in finds only."""
+    first, *others = places
     return bool(others) and all(
         len(one) == len(first) and np.allclose(one, first, rtol=0, atol=_SAME_DEG) for one in others
     )
 
 
-def _points(tried: tuple[TriedAnswer, ...], seen: list[int]) -> list[Layer]:
+def _points(tried: tuple[TriedAnswer, ...], found: dict[int, Observations]) -> list[Layer]:
     """Return each answer's records: a dot each, and a ring round finds, wider by the answer."""
     made = []
-    for number, k in enumerate(seen):
-        records = tried[k].records
-        if records is None:
-            continue
+    for number, (k, records) in enumerate(found.items()):
         colour = list(answers_map.colour(k))
         finds = records.take(records.present == PRESENT)
         said = f"{k + 1} · {tried[k].said}"
@@ -103,12 +103,12 @@ def _points(tried: tuple[TriedAnswer, ...], seen: list[int]) -> list[Layer]:
     return made
 
 
-def _places(tried: tuple[TriedAnswer, ...], seen: list[int], at: list[np.ndarray]) -> Layer:
+def _places(tried: tuple[TriedAnswer, ...], middles: dict[int, list[float]]) -> Layer:
     """Return a dot in the middle of each answer's records, to be tapped."""
     rows = [
-        {"p": place.round(7).tolist(), "c": list(answers_map.colour(k)),
+        {"p": place, "c": list(answers_map.colour(k)),
          "t": answers_map.said(tried, k)}
-        for k, place in zip(seen, at, strict=True)
+        for k, place in middles.items()
     ]  # fmt: skip
     return Layer("ScatterplotLayer", rows, id=PLACES, get_position="p", get_fill_color="c",
                  radius_min_pixels=12, get_radius=1, stroked=True, get_line_color="c",

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
     from datetime import date
 
-    from fieldmon.monitoring import Caution
+    from fieldmon.monitoring import Caution, Season
     from fieldmon.monitoring.advice import Advice
     from fieldmon.planning.plan import DayPlan
 
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
 
 def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
     """Show what to beware of on the chosen day; `kinds`: of these alone."""
-    if choices.season is None:
+    if (season := choices.season) is None:
         return
     if not kinds:
-        _show_not_come(choices)
-    found = choices.season.cautions(choices.on, choices.units.in_sentences(choices.on))
+        _show_not_come(choices, season)
+    found = season.cautions(choices.on, choices.units.in_sentences(choices.on))
     _warn([one for one in found if not kinds or one.kind in kinds])
 
 
 def show_if_treated(choices: Choices, advice: Advice, product: str) -> None:
     """Show what treating the zones with a product would bring."""
     units = choices.units.in_sentences(choices.on)
-    _warn(choices.season.cautions_if_treated(choices.on, product, advice.sprayed, units))
+    _warn(choices.open_season.cautions_if_treated(choices.on, product, advice.sprayed, units))
 
 
 def _warn(found: Iterable[Caution]) -> None:
@@ -50,15 +50,16 @@ def _warn(found: Iterable[Caution]) -> None:
 
 def show_today(choices: Choices, plan: DayPlan) -> None:
     """Show what counts on the day itself: where not to enter, and a harvest that is to come."""
-    harvest = None if choices.season is None else choices.season.settings.harvest
-    is_ahead = harvest is not None and choices.on <= harvest
-    if choices.season is not None:
-        _show_not_come(choices)
-    if choices.season is not None and (left_off := _left_off(choices, plan)):
-        st.warning("\n".join(f"- {sentence}" for sentence in left_off))
-    if choices.season is not None and not chosen_day.route(choices).worked:
+    if (season := choices.season) is None:
+        return
+    _show_not_come(choices, season)
+    if not chosen_day.route(choices).worked:
+        if left_off := _left_off(choices, season, plan):
+            st.warning("\n".join(f"- {sentence}" for sentence in left_off))
         for said in left_out_in_words(plan.scene, plan.route):
             st.caption(in_words(said))
+    harvest = season.settings.harvest
+    is_ahead = harvest is not None and choices.on <= harvest
     show(choices, ("entry", "harvest") if is_ahead else ("entry",))
 
 
@@ -71,11 +72,9 @@ def are_all_closed(choices: Choices, plan: DayPlan) -> bool:
     return is_all_closed(plan.scene, closed)
 
 
-def _left_off(choices: Choices, plan: DayPlan) -> list[str]:
+def _left_off(choices: Choices, season: Season, plan: DayPlan) -> list[str]:
     """Return what is left off the route as people may not be there yet, and off a kept one."""
-    if chosen_day.route(choices).worked:
-        return []
-    season, units = choices.season, choices.units.in_sentences(choices.on)
+    units = choices.units.in_sentences(choices.on)
     closed = season.closed(choices.on, choices.who or "", plan.scene.seconds_left)
     said = closed_in_words(closed, choices.plot.grid, units)
     to_kept = season.closed_to_kept(choices.on, choices.who or "")
@@ -96,20 +95,21 @@ def not_come(choices: Choices, last: date) -> str:
     return texts.NOT_COME.format(day=day, today=today)
 
 
-def _show_not_come(choices: Choices) -> None:
+def _show_not_come(choices: Choices, season: Season) -> None:
     """Say so on the pages of days before, which show nothing of it."""
-    if said := not_come(choices, choices.season.last_recorded()):
+    if said := not_come(choices, season.last_recorded()):
         st.warning(said)
 
 
 def show_treatments(choices: Choices) -> None:
     """Show when harvest may begin, and what inspections tell of each treatment."""
-    season, units = choices.season, choices.units.in_sentences(choices.on)
-    first = season.harvest_from(choices.on)
-    if first is not None and first[0] is None:
-        st.markdown(in_words(harvest_unsaid(first[1], units)))
-    elif first is not None:
-        st.markdown(texts.HARVEST_FROM.format(day=choices.units.said_day(first[0], choices.on)))
+    season, units = choices.open_season, choices.units.in_sentences(choices.on)
+    if (harvest := season.harvest_from(choices.on)) is not None:
+        first, waits = harvest
+        if first is None:
+            st.markdown(in_words(harvest_unsaid(waits, units)))
+        else:
+            st.markdown(texts.HARVEST_FROM.format(day=choices.units.said_day(first, choices.on)))
     effects = season.effects(choices.on, units)
     if effects:
         st.markdown(f"**{texts.EFFECTS}**")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import wraps
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, ParamSpec, TypeVar
 
 import altair as alt
 import numpy as np
@@ -23,10 +23,16 @@ if TYPE_CHECKING:
     from fieldmon.pests.development import Development
     from fieldmon.simulation.metrics import SeasonMetrics
 
+    Floats = NDArray[np.float64]
     #: names a day on an axis, without its year
     DayName = Callable[[date], str]
+    #: where a line of text begins or ends
+    Side = Literal["left", "right"]
     #: the number of a line's colour, and of its dashes, by its name
     Styles = dict[str, tuple[int, int]]
+
+P = ParamSpec("P")
+C = TypeVar("C", bound="alt.Chart | alt.LayerChart")
 
 # Okabe & Ito's colours for the colour-blind
 # the last one grey, not black, which the dark page swallows
@@ -48,22 +54,21 @@ _LETTERS = 36
 _MOST_ROWS = 14
 
 
-def _in_language(make: Callable[..., alt.Chart]) -> Callable[..., alt.Chart]:
+def _in_language(make: Callable[P, C]) -> Callable[P, C]:
     """Return charts whose numbers are written as in the language, their axes where it begins.
 
     What an axis counts stands above it, level: turned and beside it, it was cut where it is long.
     """
 
     @wraps(make)
-    def made(*args: object, **settings: object) -> alt.Chart:
+    def made(*args: P.args, **settings: P.kwargs) -> C:
         # set in place: each of Altair's own ways builds the chart and its layers anew
         chart = make(*args, **settings)
         chart.padding = {"left": _EDGE_PX, "right": _EDGE_PX}
-        level = {"titleAngle": 0, "titleBaseline": "bottom", "titleY": -8}
         chart.config = alt.Config(
             background="transparent",
-            axisLeft=alt.AxisConfig(titleAlign="left", titleX=-_ASIDE_PX, **level),
-            axisRight=alt.AxisConfig(titleAlign="right", titleX=_ASIDE_PX, **level),
+            axisLeft=_level("left", -_ASIDE_PX),
+            axisRight=_level("right", _ASIDE_PX),
         )
         if language.current() == language.ENGLISH:
             return chart
@@ -75,6 +80,13 @@ def _in_language(make: Callable[..., alt.Chart]) -> Callable[..., alt.Chart]:
         return chart
 
     return made
+
+
+def _level(align: Side, x_px: int) -> alt.AxisConfig:
+    """Return how the words above an axis stand."""
+    return alt.AxisConfig(
+        titleAlign=align, titleX=x_px, titleAngle=0, titleBaseline="bottom", titleY=-8
+    )
 
 
 def _month_and_day(on: date) -> str:
@@ -93,7 +105,7 @@ def _days(labels: Sequence[str], title: str) -> alt.X:
     return alt.X("day:O", title=title, scale=days, axis=alt.Axis(labelAngle=0, values=some))
 
 
-def _sides() -> tuple[str, str]:
+def _sides() -> tuple[Side, Side]:
     """Return on which side a line begins and ends."""
     return ("right", "left") if language.is_right_to_left() else ("left", "right")
 
@@ -114,11 +126,11 @@ def detection(
         .mark_rule(strokeDash=[4, 4], color=_GREY)
         .encode(x="day:Q")
     )
-    return alt.layer(lines, rule).properties(height=280)
+    return alt.LayerChart(layer=[lines, rule]).properties(height=280)
 
 
 @_in_language
-def curves(table: pd.DataFrame, axes: tuple[str, str]) -> alt.Chart:
+def curves(table: pd.DataFrame, axes: tuple[str, str]) -> alt.Chart | alt.LayerChart:
     """Return a line for each column of a table whose index counts days."""
     long = (
         table.rename_axis("day").reset_index().melt("day", var_name="strategy", value_name="mean")
@@ -145,13 +157,13 @@ def _lines(
         color=alt.Color("strategy:N", scale=_scale(styles), legend=_LEGEND),
         tooltip=tooltip,
     )
-    line = base.mark_line(point=not apart, strokeWidth=2.5).encode(
+    line: alt.Chart = base.mark_line(point=not apart, strokeWidth=2.5).encode(
         strokeDash=alt.StrokeDash("strategy:N", scale=_dashes(styles), legend=_LEGEND)
     )
     if not apart:
         return line
     dots = base.mark_point(filled=True, opacity=1, size=60).transform_filter(alt.datum.visit)
-    return alt.layer(line, dots)
+    return alt.LayerChart(layer=[line, dots])
 
 
 def _styles(names: Sequence[str], samplers: Sequence[str] = ()) -> Styles:
@@ -179,7 +191,7 @@ def found(figures: SeasonMetrics, axes: tuple[str, str]) -> alt.Chart:
     """Return the plants found on each day."""
     days = [str(day) for day in range(1, len(figures.found) + 1)]
     table = pd.DataFrame({"day": days, "found": figures.found})
-    return (
+    bars: alt.Chart = (
         alt.Chart(table)
         .mark_bar(color=_COLOURS[0])
         .encode(
@@ -187,8 +199,8 @@ def found(figures: SeasonMetrics, axes: tuple[str, str]) -> alt.Chart:
             y=alt.Y("found:Q", title=axes[1]),
             tooltip=[alt.Tooltip("day", title=axes[0]), alt.Tooltip("found", title=axes[1])],
         )
-        .properties(height=200)
     )
+    return bars.properties(height=200)
 
 
 def load() -> None:
@@ -199,7 +211,7 @@ def load() -> None:
 
 @_in_language
 def bands(
-    curves: dict[str, tuple[NDArray[np.float64], ...]], axes: tuple[str, str],
+    curves: Mapping[str, tuple[Floats, Floats, Floats]], axes: tuple[str, str],
     samplers: Sequence[str] = (), visit_every: int = 1,
 ) -> alt.LayerChart:  # fmt: skip
     """Return a line with its interval for each strategy.
@@ -220,7 +232,7 @@ def bands(
             color=alt.Color("strategy:N", scale=_scale(styles), legend=_LEGEND),
         )
     )  # fmt: skip
-    return alt.layer(band, _lines(table, styles, axes)).properties(height=320)
+    return alt.LayerChart(layer=[band, _lines(table, styles, axes)]).properties(height=320)
 
 
 @_in_language
@@ -228,13 +240,7 @@ def season_days(
     days: list[DayFigures], axes: tuple[str, str, str], named: DayName = _month_and_day
 ) -> alt.LayerChart:
     """Return plants inspected and found on each day of a season; a day without work is a gap."""
-    worked = {one.on: one for one in days if one.inspected}
-    table = pd.DataFrame(
-        [(named(on), one and one.inspected, one and one.found)
-         for on in _dates(days) for one in [worked.get(on)]],
-        columns=["day", "inspected", "found"],
-    )  # fmt: skip
-    table = table.astype({"inspected": "Int64", "found": "Int64"})
+    table = _work_by_day(days, named)
     x = _days(list(table["day"]), axes[0])
     tip = [alt.Tooltip("day", title=axes[0]), alt.Tooltip("inspected:Q", title=axes[1]),
            alt.Tooltip("found:Q", title=axes[2])]  # fmt: skip
@@ -256,7 +262,19 @@ def season_days(
             y=alt.Y("found:Q", title=axes[2], axis=alt.Axis(orient=_sides()[1])),
         )
     )  # fmt: skip
-    return alt.layer(bars, found_).resolve_scale(y="independent").properties(height=220)
+    both: alt.LayerChart = alt.LayerChart(layer=[bars, found_]).resolve_scale(y="independent")
+    return both.properties(height=220)
+
+
+def _work_by_day(days: list[DayFigures], named: DayName) -> pd.DataFrame:
+    """Return plants inspected and found by every day's name; of a day without work, nothing."""
+    worked = {one.on: one for one in days if one.inspected}
+    table = pd.DataFrame(
+        [(named(on), one and one.inspected, one and one.found)
+         for on in _dates(days) for one in [worked.get(on)]],
+        columns=["day", "inspected", "found"],
+    )  # fmt: skip
+    return table.astype({"inspected": "Int64", "found": "Int64"})
 
 
 def _as_dates(days: NDArray[np.datetime64]) -> list[date]:
@@ -296,7 +314,7 @@ def still_out(
     line = base.mark_line(point=True, color=_COLOURS[0]).encode(
         y=alt.Y("expected:Q", title=axes[1])
     )
-    return alt.layer(band, line).properties(height=220)
+    return alt.LayerChart(layer=[band, line]).properties(height=220)
 
 
 @_in_language
@@ -324,27 +342,35 @@ def development(
         tooltip=[alt.Tooltip("day", title=axes[0]),
                  alt.Tooltip("gathered:Q", title=axes[1], format=".0f")],
     )  # fmt: skip
+    lines, (rules, words) = _full_and_dashed(base, table), _marks(marks)
+    today = pd.DataFrame({"day": [named(there.on)]})
+    now = alt.Chart(today).mark_rule(color=_GREY).encode(x=days)
+    return alt.LayerChart(layer=[*lines, rules, words, now]).properties(height=260)
+
+
+def _full_and_dashed(base: alt.Chart, table: pd.DataFrame) -> list[alt.Chart]:
+    """Return the line of days that were measured, and the dashes of those that were guessed."""
     # the dashes begin where the line ends
     before = table["guessed"].shift(-1, fill_value=False)
     parts = [(table[~table["guessed"]], [1, 0]), (table[table["guessed"] | before], [4, 4])]
-    lines = [
+    return [
         base.properties(data=part).mark_line(
             color=_COLOURS[0], strokeWidth=2.5, strokeDash=dashes, point={"size": 12}
         )
         for part, dashes in parts
         if len(part)
     ]
-    marked = pd.DataFrame(marks, columns=["name", "gathered"])
-    rules = alt.Chart(marked).mark_rule(color=_GREY, strokeDash=[2, 2]).encode(y="gathered:Q")
+
+
+def _marks(marks: list[tuple[str, float]]) -> tuple[alt.Chart, alt.Chart]:
+    """Return a rule across at the height of each mark, and its name on it."""
+    marked = alt.Chart(pd.DataFrame(marks, columns=["name", "gathered"]))
     side = _sides()[0]
-    words = (
-        alt.Chart(marked)
-        .mark_text(align=side, dy=8, color=_GREY, fontSize=11)
-        .encode(y="gathered:Q", text="name:N", x=alt.value(0 if side == "left" else "width"))
+    rules = marked.mark_rule(color=_GREY, strokeDash=[2, 2]).encode(y="gathered:Q")
+    words = marked.mark_text(align=side, dy=8, color=_GREY, fontSize=11).encode(
+        y="gathered:Q", text="name:N", x=alt.value(0 if side == "left" else "width")
     )
-    today = pd.DataFrame({"day": [named(there.on)]})
-    now = alt.Chart(today).mark_rule(color=_GREY).encode(x=days)
-    return alt.layer(*lines, rules, words, now).properties(height=260)
+    return rules, words
 
 
 @_in_language
@@ -368,35 +394,19 @@ def ahead(
     line = base.mark_line(color=_COLOURS[1], strokeWidth=2.5).encode(
         y=alt.Y("expected:Q", title=axes[1])
     )
-    return alt.layer(band, line).properties(height=220)
+    return alt.LayerChart(layer=[band, line]).properties(height=220)
 
 
 @_in_language
-def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64], axes: tuple[str, str],
+def row_ages(days_since: Floats, lines: NDArray[np.int64], axes: tuple[str, str],
              signs: Mapping[int, str] | None = None) -> alt.LayerChart:  # fmt: skip
     """Return the days since each row was inspected, ``(r,)``, one beside the other.
 
     `signs` is how rows are shown, by their numbers; None: as these. A row inspected today has a
     tick on the ground, a row never inspected a hollow bar.
     """
-    table = pd.DataFrame({"row": lines, "days": days_since})
-    table = table.groupby("row", as_index=False)["days"].min()  # NaN only where all are
-    table["sign"] = [(signs or {}).get(row, f"{row}") for row in table["row"].tolist()]
-    every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if len(table) <= k * _MOST_ROWS)
-    named = [one.sign != f"{one.row}" for one in table.itertuples()]
-    shown = [
-        sign for k, sign in enumerate(table["sign"])
-        if named[k]
-        # and no number so near before a name that it would take its room
-        or ((k == 0 or not (k + 1) % every) and not any(named[k + 1 : k + 1 + every // 2]))
-    ]  # fmt: skip
+    table = _ages_of_rows(days_since, lines, signs or {})
     never = table["days"].isna()
-    most = 1.0 if never.all() else max(table["days"].max(), 1.0)
-    table["high"] = table["days"].fillna(most)
-    table["said"] = [
-        texts.ROW_NEVER if math.isnan(d) else texts.ROW_TODAY if d == 0 else f"{d:g}"
-        for d in table["days"]
-    ]
     encoding = {
         # a place for each row there is, and none for a number that no row has
         "x": alt.X(
@@ -404,7 +414,7 @@ def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64], axes: tu
             title=axes[0],
             sort=None,
             scale=alt.Scale(domain=table["sign"].tolist()),
-            axis=alt.Axis(values=shown, labelAngle=0, labelOverlap=True),
+            axis=alt.Axis(values=_signs_with_room(table), labelAngle=0, labelOverlap=True),
         ),
         "y": alt.Y("high:Q", title=axes[1], axis=alt.Axis(tickMinStep=1, format="d")),
         "tooltip": [alt.Tooltip("sign", title=axes[0]), alt.Tooltip("said", title=axes[1])],
@@ -418,4 +428,32 @@ def row_ages(days_since: NDArray[np.float64], lines: NDArray[np.int64], axes: tu
     )
     # a layer of nothing is a picture without a name to those who cannot see it
     drawn = [part.encode(**encoding) for part in (seen, today, unseen) if len(part.data)]
-    return alt.layer(*drawn).properties(height=180)
+    return alt.LayerChart(layer=drawn).properties(height=180)
+
+
+def _ages_of_rows(days_since: Floats, lines: NDArray[np.int64], signs: Mapping[int, str]
+                  ) -> pd.DataFrame:  # fmt: skip
+    """Return each row, its days and its sign; how high it is drawn, and what is said of it."""
+    table = pd.DataFrame({"row": lines, "days": days_since})
+    table = table.groupby("row", as_index=False).agg({"days": "min"})  # NaN only where all are
+    table["sign"] = [signs.get(row, f"{row}") for row in table["row"].tolist()]
+    most = 1.0 if table["days"].isna().all() else max(table["days"].max(), 1.0)
+    table["high"] = table["days"].fillna(most)
+    table["said"] = [
+        texts.ROW_NEVER if math.isnan(d) else texts.ROW_TODAY if d == 0 else f"{d:g}"
+        for d in table["days"]
+    ]
+    return table
+
+
+def _signs_with_room(table: pd.DataFrame) -> list[str]:
+    """Return the signs that are written: names, and of the numbers as many as have room."""
+    every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 10**9) if len(table) <= k * _MOST_ROWS)
+    rows = list(zip(table["row"].tolist(), table["sign"].tolist(), strict=True))
+    is_name = [sign != f"{row}" for row, sign in rows]
+    return [
+        sign for k, (_, sign) in enumerate(rows)
+        if is_name[k]
+        # and no number so near before a name that it would take its room
+        or ((k == 0 or not (k + 1) % every) and not any(is_name[k + 1 : k + 1 + every // 2]))
+    ]  # fmt: skip

@@ -51,7 +51,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
         texts.COLUMN_CHANCE: (100 * route.chance).round(1),
     }
     if shown.worked:
-        done = choices.season.history.inspections.on(choices.on)
+        done = choices.open_season.history.inspections.on(choices.on)
         was = dict(zip(done.plant.tolist(), done.result.tolist(), strict=True))
         columns[texts.REPORT_WAS] = [texts.HISTORY_RESULTS[was[p]] for p in route.plant.tolist()]
     return pd.DataFrame(columns, pd.RangeIndex(1, len(route) + 1, name=texts.STOP_NUMBER))
@@ -123,34 +123,30 @@ def _bound(route: Route) -> str:
     return texts.BOUND.format(share=number(math.ceil(1000.0 * above) / 10.0, ".1f"))
 
 
-def said_of_day(choices: Choices, plan: DayPlan) -> None:
+def say_of_day(choices: Choices, plan: DayPlan) -> None:
     """Say what was recorded of the day, and why there is no route where there is none.
 
     And which rows the robot is too wide for, and where its way leaves the plot.
     """
     for told in plan.route.ways_said:
         st.warning(in_words(told))
-    is_said = len(plan.route) or cautions.are_all_closed(choices, plan)
-    known = nothing_left_in_words(plan.scene)
-    said = "" if is_said else texts.NO_STOPS if known is None else in_words(known)
     if choices.season is not None:
         if len(plan.route) and _is_of_nobody(choices):
             st.info(texts.ROUTE_OF_NOBODY)
         now = chosen_day.progress(choices)
-        if is_over(choices, plan):
-            st.info(texts.TODAY_OVER)
-            return
         if now.inspected_today:
             done = {"inspected": now.inspected_today, "found": now.found_today}
-            st.info(texts.TODAY_DONE.format(**done))
+            over = is_over(choices, plan)
+            st.info(texts.TODAY_OVER if over else texts.TODAY_DONE.format(**done))
             return
-    if said:
-        st.warning(said)
+    if not len(plan.route) and not cautions.are_all_closed(choices, plan):
+        known = nothing_left_in_words(plan.scene)
+        st.warning(texts.NO_STOPS if known is None else in_words(known))
 
 
 def _is_of_nobody(choices: Choices) -> bool:
     """Return whether the route shown is planned for one, while several are out with their own."""
-    if choices.season.settings.team or chosen_day.route(choices).worked:
+    if choices.open_season.settings.team or chosen_day.route(choices).worked:
         return False
     kept = chosen_day.planned_and_done(choices)
     return kept is not None and kept.people > 1
@@ -185,24 +181,33 @@ def changes(choices: Choices) -> tuple[str, list[str]]:
     title = texts.CHANGED[kind].format(day=said_day(since, choices.on))
     if choices.on == begins:
         return title, [texts.CHANGED_FIRST]
-    before, now = (chosen_day.figures(choices, day) for day in (str(since), choices.day))
-    found = {"found": before.found, "inspected": before.inspected, "day": said_day(since)}
-    said = [texts.CHANGED_NONE if visit is None else texts.CHANGED_FINDS.format(**found)]
-    treated = {one.on for one in season.treatments() if since <= one.on <= choices.on}
-    said += [
+    if visit is None:
+        return title, [texts.CHANGED_NONE, *_changed(choices, since)]
+    before = chosen_day.figures(choices, str(visit))
+    finds = texts.CHANGED_FINDS.format(
+        found=before.found, inspected=before.inspected, day=said_day(visit)
+    )
+    return title, [finds, *_changed(choices, since)]
+
+
+def _changed(choices: Choices, since: date) -> list[str]:
+    """Return what was treated since a day, and how what is believed changed since its evening."""
+    said_day, days = choices.units.said_day, (str(since), choices.day)
+    treated = {one.on for one in choices.open_season.treatments() if since <= one.on <= choices.on}
+    said: list[str] = [
         texts.CHANGED_TREATED.format(n=chosen_day.treated(choices, str(day)), day=said_day(day))
         for day in sorted(treated)
     ]
-    still = [chosen_day.still_infested(choices, day).expected for day in (str(since), choices.day)]
-    expected = {"now": about(still[1]), "before": about(still[0])}
-    said.append(texts.CHANGED_OUT.format(day=said_day(since), **expected))
-    said += map(in_words, flagged_said(now, chosen_day.flagged(choices)))
-    spots = [len(chosen_day.season_hot_spots(choices, day)) for day in (str(since), choices.day)]
-    if spots[0] != spots[1]:
-        said.append(texts.CHANGED_HOT.format(now=spots[1], before=spots[0]))
+    before, now = (about(chosen_day.still_infested(choices, day).expected) for day in days)
+    said.append(texts.CHANGED_OUT.format(day=said_day(since), now=now, before=before))
+    figures = chosen_day.figures(choices, choices.day)
+    said += map(in_words, flagged_said(figures, chosen_day.flagged(choices)))
+    spots_before, spots = (len(chosen_day.season_hot_spots(choices, day)) for day in days)
+    if spots_before != spots:
+        said.append(texts.CHANGED_HOT.format(now=spots, before=spots_before))
     if rows := _risen(choices, str(since)):
         said.append(texts.CHANGED_ROWS.format(rows=rows))
-    return title, said
+    return said
 
 
 def _risen(choices: Choices, since: str) -> str:
@@ -238,7 +243,7 @@ def _found_lately(choices: Choices) -> dict[int, date]:
     last = chosen_day.last_visit(choices, choices.on)
     if last is None:
         return {}
-    done, until = choices.season.history.inspections, np.datetime64(last, "D")
+    done, until = choices.open_season.history.inspections, np.datetime64(last, "D")
     lately = (done.result == FOUND) & (done.date <= until) & (done.date > until - _WEEK)
     return dict(zip(done.plant[lately].tolist(), done.date[lately].tolist(), strict=True))
 

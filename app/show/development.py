@@ -20,13 +20,14 @@ if TYPE_CHECKING:
 
 def show(choices: Choices) -> None:
     """Show when the next generation is due, and the warmth gathered until then."""
-    pest = choices.season.settings.pest
+    season = choices.open_season
+    pest = season.settings.pest
     if pest is None:
         return
     st.markdown(f"**{pest_figures.title(pest)}**")
-    there = choices.season.development(choices.on)
+    there = season.development(choices.on)
     if there is None:
-        has_weather = choices.season.settings.weather is not None
+        has_weather = season.settings.weather is not None
         st.caption(texts.NO_DEVELOPMENT if has_weather else texts.NEEDS_WEATHER)
         return
     st.markdown(_sentence(choices, there))

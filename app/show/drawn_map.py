@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from babel.core import get_global
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from ..state.drawn_plot import DrawnCorners
     from ..state.plot_edits import Points
     from ..words.units import UnitsInLanguage
+    from .maps.legends import LegendPart
 
 # lines of the grid each way from its middle; how far apart they are, about, near and far
 _LINES, _GRID_M = 25, (10.0, 100.0)
@@ -43,7 +44,7 @@ def content(drawn: DrawnCorners, units: UnitsInLanguage, *, dark: bool) -> MapCo
         place=f"drawing {drawn.at} {drawn_plot.turn()}",
         bounds=bounds(drawn), alt=texts.OUTLINE_ON_MAP.format(n=n), layers=layers,
         switches=switches if middle else (),
-        legend=_legend(middle is not None, units),
+        legend=_legend(units, is_placed=middle is not None),
         draw=Drawable("outline", f"outline {drawn_plot.turn()}", said(drawn.corners, units),
                       points=drawn.corners, lengths=units.lengths_written()),
         ground=below,
@@ -112,7 +113,7 @@ def _grid(middle: tuple[float, float], units: UnitsInLanguage, *, dark: bool) ->
     ]  # fmt: skip
 
 
-def _lines(frame: Frame, step_m: float) -> list[dict[str, Any]]:
+def _lines(frame: Frame, step_m: float) -> list[dict[str, list[list[float]]]]:
     end = _LINES * step_m
     return [
         {"path": np.round(frame.lonlat(np.array(ends)), 7).tolist()}
@@ -121,7 +122,7 @@ def _lines(frame: Frame, step_m: float) -> list[dict[str, Any]]:
     ]
 
 
-def _legend(is_placed: bool, units: UnitsInLanguage) -> list[dict[str, Any]]:  # noqa: FBT001
+def _legend(units: UnitsInLanguage, *, is_placed: bool) -> list[LegendPart]:
     words = texts.LEGEND_ZONE
     if is_placed:
         (_, near), (_, far) = _steps(units)

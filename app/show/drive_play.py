@@ -20,6 +20,8 @@ from .maps import colours, legends, plant_layers
 from .maps.plant_layers import PlantNotes
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.samplers.base import Scene
 
     from ..state.choices import Choices
@@ -38,8 +40,9 @@ def content(choices: Choices, scene: Scene, day: DayInTime | None) -> MapContent
     notes = PlantNotes(scene.chance)
     seen = legends.by_state()
     seen["items"] = seen["items"][:2]  # of the others their chances are shown
-    alt = texts.DRIVE_ALT.format(name=choices.plot.field.name)
-    common = field_map.of_plot(choices) | ({} if day is None else {"alt": alt})
+    common = field_map.of_plot(choices)
+    if day is not None:
+        common["alt"] = texts.DRIVE_ALT.format(name=choices.plot.field.name)
     return MapContent(
         **common,
         layers=[
@@ -126,5 +129,5 @@ def as_data(scene: Scene, day: DayInTime) -> dict[str, object]:
     }
 
 
-def _classes(chance: np.ndarray) -> np.ndarray:
+def _classes(chance: NDArray[np.float64]) -> NDArray[np.int64]:
     return colours.by_chance(chance).rank.astype(np.int64)

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from ..state.estate import PlotState
     from ..state.shared_plots import PlannedTurn
     from .maps.colours import Colour
+    from .maps.labels import Label
+    from .maps.legends import LegendPart
 
 #: the layer in which a tapped plot is looked up
 PLOTS = "plots"
@@ -58,47 +60,52 @@ def said(plot: PlotState) -> str:
 
 def content(plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()) -> MapContent:
     """Return the map of the plots, with the routes of a day's plan."""
-    parts = [
-        (number, part)
-        for number, plot in enumerate(plots)
-        for part in shapely.get_parts(plot.outline)
-    ]
+    return MapContent(
+        "all plots",
+        shapely.total_bounds([plot.outline for plot in plots]).tolist(),
+        texts.PLOTS_ALT.format(n=len(plots), names=listed(plot.name for plot in plots)),
+        [_areas(plots), *_routes(turns), _marks(plots)],
+        legend=_legend(plots, turns),
+        labels=_names(plots, turns),
+    )
+
+
+def _areas(plots: list[PlotState]) -> Layer:
     rows = [
         {
             "p": [
                 np.round(shapely.get_coordinates(ring), 7).tolist()
                 for ring in (part.exterior, *part.interiors)
             ],
-            "t": said(plots[number]),
+            "t": said(plot),
             "n": number,
-            "c": [*_COLOURS[state_of(plots[number])], 200],
+            "c": [*_COLOURS[state_of(plot)], 200],
         }
-        for number, part in parts
+        for number, plot in enumerate(plots)
+        for part in shapely.get_parts(plot.outline)
     ]
-    bounds = shapely.total_bounds([plot.outline for plot in plots]).tolist()
-    areas = Layer(
+    return Layer(
         "PolygonLayer", rows, id=PLOTS, get_polygon="p", get_fill_color="c", stroked=True,
         get_line_color=[60, 70, 65], line_width_min_pixels=1.5,
     )  # fmt: skip
+
+
+def _legend(plots: list[PlotState], turns: tuple[PlannedTurn, ...]) -> list[LegendPart]:
+    """Return the states that there are, and who has which route."""
     states = dict.fromkeys(map(state_of, plots))
     items = [("square", _COLOURS[name], texts.PLOTS_STATES[name]) for name in states]
+    who = {turn.number: turn.who for turn in turns}
+    workers = [("line", _WHO[k % len(_WHO)], name) for k, name in sorted(who.items())]
+    return [legends.part("", items), *([legends.part("", workers)] if workers else [])]
+
+
+def _names(plots: list[PlotState], turns: tuple[PlannedTurn, ...]) -> list[Label]:
+    """Return the name of each plot in its middle, with who works there when."""
     of_plot = {id(turn.state): turn for turn in turns}
-    names = [
+    return [
         {"p": _middle(plot), "t": _named(plot, of_plot.get(id(plot))), "k": "name", "plot": number}
         for number, plot in enumerate(plots)
     ]
-    who = {turn.number: turn.who for turn in turns}
-    workers = [("line", _WHO[k % len(_WHO)], name) for k, name in sorted(who.items())]
-    legend = [legends.part("", items), *([legends.part("", workers)] if workers else [])]
-    alt = texts.PLOTS_ALT.format(n=len(plots), names=listed(plot.name for plot in plots))
-    return MapContent(
-        "all plots",
-        bounds,
-        alt,
-        [areas, *_routes(turns), _marks(plots)],
-        legend=legend,
-        labels=names,
-    )
 
 
 def _marks(plots: list[PlotState]) -> Layer:

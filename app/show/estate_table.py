@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -16,8 +17,16 @@ from ..state.chosen_units import units
 from ..words import texts
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from streamlit.elements.lib.column_types import ColumnConfig
+
     from ..state.estate import PlotState
     from ..state.shared_plots import PlannedTurn
+
+    Column = Sequence[str | float | None]
+    #: columns by their names, and how they are written
+    Columns = tuple[dict[str, Column], dict[str, ColumnConfig]]
 
 # as wide together as the panel of a narrow phone: a number that is cut is another number
 _PX = {"name": 100, "area": 60, "days_since": 56, "expected": 80}
@@ -28,34 +37,48 @@ _LETTERS = 13
 
 def of(
     plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()
-) -> tuple[pd.DataFrame, dict[str, Any]]:
+) -> tuple[pd.DataFrame, dict[str, ColumnConfig]]:
     """Return the table, a row a plot in their order, and how its columns are written."""
-    names, more, area = texts.PLOTS_COLUMNS, texts.PLAN_ALL_COLUMNS, texts.UNITS[units().area]
-    columns: dict[str, list[Any]] = {names["name"]: [shortened(plot.name) for plot in plots]}
-    written = st.column_config.NumberColumn
-    name_px = (_PLANNED_PX if turns else _PX)["name"]
-    how = {names["name"]: st.column_config.TextColumn(width=name_px)}
-    if turns:
-        own = [next((one for one in turns if one.state is plot), None) for plot in plots]
-        columns |= {
-            more["who"]: [one and one.who for one in own],
-            more["when"]: [one and f"{one.begins:%H:%M}-{one.ends:%H:%M}" for one in own],
-            more["finds"]: [one and _rounded(one.route.expected_found) for one in own],
-        }
-        for k in ("who", "when"):
-            how[more[k]] = st.column_config.TextColumn(width=_PLANNED_PX[k])
-        how[more["finds"]] = written(format="localized", width=_PLANNED_PX["finds"])
-        return pd.DataFrame(columns), how
-    columns[area] = _areas(plots)
-    how[area] = written(format="localized", width=_PX["area"], help=texts.AREA_IS)
+    name, px = texts.PLOTS_COLUMNS["name"], (_PLANNED_PX if turns else _PX)["name"]
+    columns, how = _planned(plots, turns) if turns else _states(plots)
+    return (
+        pd.DataFrame({name: [shortened(plot.name) for plot in plots]} | columns),
+        {name: st.column_config.TextColumn(width=px)} | how,
+    )
+
+
+def _planned(plots: list[PlotState], turns: tuple[PlannedTurn, ...]) -> Columns:
+    """Return who works on each plot, when, and what is expected to be found."""
+    names, column = texts.PLAN_ALL_COLUMNS, st.column_config
+    own = [next((one for one in turns if one.state is plot), None) for plot in plots]
+    columns: dict[str, Column] = {
+        names["who"]: [None if one is None else one.who for one in own],
+        names["when"]: [None if one is None else _hours(one) for one in own],
+        names["finds"]: [
+            None if one is None else _rounded(one.route.expected_found) for one in own
+        ],
+    }
+    how = {names[k]: column.TextColumn(width=_PLANNED_PX[k]) for k in ("who", "when")}
+    finds = column.NumberColumn(format="localized", width=_PLANNED_PX["finds"])
+    return columns, how | {names["finds"]: finds}
+
+
+def _hours(turn: PlannedTurn) -> str:
+    return f"{turn.begins:%H:%M}-{turn.ends:%H:%M}"
+
+
+def _states(plots: list[PlotState]) -> Columns:
+    """Return how large each plot is; where any has a season, when it was seen and what is left."""
+    names, area = texts.PLOTS_COLUMNS, texts.UNITS[units().area]
+    number = partial(st.column_config.NumberColumn, format="localized")
+    columns: dict[str, Column] = {area: _areas(plots)}
+    how = {area: number(width=_PX["area"], help=texts.AREA_IS)}
     if any(plot.expected is not None for plot in plots):
         columns[names["days_since"]] = [plot.days_since for plot in plots]
         columns[names["expected"]] = [_rounded(plot.expected) for plot in plots]
-        how |= {
-            names[k]: written(format="localized", width=_PX[k], help=texts.PLOTS_HELP[k])
-            for k in ("days_since", "expected")
-        }
-    return pd.DataFrame(columns), how
+        for k in ("days_since", "expected"):
+            how[names[k]] = number(width=_PX[k], help=texts.PLOTS_HELP[k])
+    return columns, how
 
 
 def shortened(name: str) -> str:

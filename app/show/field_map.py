@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 import streamlit as st
 
@@ -15,9 +15,21 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ..state.choices import Choices
+    from .ground import GroundShown
     from .map_view import MapAnswers, MapContent
 
 _WANTED, _INSTEAD = "map wanted", "wanted instead of a map"
+
+
+class OfPlot(TypedDict):
+    """What all maps of a plot have in common, as `MapContent` has it."""
+
+    place: str
+    bounds: list[float]
+    alt: str
+    ground: GroundShown
+    title: str
+    when: str
 
 
 def clear() -> None:
@@ -54,7 +66,7 @@ def draw() -> None:
         instead()
 
 
-def of_plot(choices: Choices, stops: int = 0) -> dict[str, object]:
+def of_plot(choices: Choices, stops: int = 0) -> OfPlot:
     """Return what all maps of a plot have in common: the place, what is in view, and the words."""
     grid = choices.plot.grid
     finds = int((chosen_day.states(choices) == 1).sum())

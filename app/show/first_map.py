@@ -12,6 +12,8 @@ import shapely
 from ..words import texts
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.plot.field import Field
 
 _SIZE = 1000.0
@@ -31,7 +33,7 @@ def outline(field: Field) -> str:
     wide, tall = (high - low) * flat
     scale = _SIZE / max(wide, tall, 1e-9)
 
-    def placed(ring: np.ndarray) -> str:
+    def placed(ring: NDArray[np.float64]) -> str:
         x, y = ((ring - low) * flat * scale).T
         return "M" + "L".join(f"{a:.1f} {tall * scale - b:.1f}" for a, b in zip(x, y, strict=True))
 

@@ -31,13 +31,14 @@ def show(choices: Choices) -> None:
         st.caption(texts.NOT_LEARNT)
         _list(one.sentence() for one in said)
         return
-    taught = choices.season.taught()
+    taught = choices.open_season.taught()
     notes = [] if taught is None else [in_words(taught)]
     if not chosen_day.progress(choices).inspected:
         notes.append(texts.LEARNT_AT_FIRST)
     notes += [texts.LEARNT_COUNTS_FOR, texts.LEARNT_INTERVALS]
     st.caption(" ".join(notes))
-    _list(one.sentence() for one in (*worth_saying(estimates), *said))
+    worth = (one.sentence() for one in worth_saying(estimates))
+    _list([*worth, *(one.sentence() for one in said)])
 
 
 def _list(sentences: Iterable[Worded]) -> None:

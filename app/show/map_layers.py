@@ -17,11 +17,13 @@ from .maps import colours, labels, legends, marks, plan_layers, plant_layers, ro
 from .maps.plant_layers import PlantNotes
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from pydeck import Layer
 
     from fieldmon.planning.route import Route
 
     from ..state.choices import Choices
+    from .maps.plant_layers import Known
 
 #: the layers of each switch
 PARTS = {
@@ -42,7 +44,7 @@ _FINDS = ("finds0", "finds1", "found")
 
 
 def day_map(
-    choices: Choices, *, above: list | None = None,
+    choices: Choices, *, above: list[Layer] | None = None,
     first: str = "chance", off: tuple[str, ...] = ("records",),
 ) -> MapContent:  # fmt: skip
     """Return the map of the chosen day; `first` names the shade that is on before any is chosen."""
@@ -97,7 +99,7 @@ def shaded(choices: Choices, first: str = "chance") -> tuple[Switch, ...]:
 
 
 def switches(
-    layers: list, off: tuple[str, ...] = (), written: tuple[str, ...] = ("rows",)
+    layers: list[Layer], off: tuple[str, ...] = (), written: tuple[str, ...] = ("rows",)
 ) -> tuple[Switch, ...]:  # fmt: skip
     """Return the switches of the layers that there are, and of the labels that are `written`."""
     there = {layer.id for layer in layers}
@@ -116,13 +118,13 @@ def legend(choices: Choices, *, treated: bool = False) -> list[legends.LegendPar
             *legends.plan(choices.plot.field, dark=dark)]  # fmt: skip
 
 
-def treated(choices: Choices) -> list:
+def treated(choices: Choices) -> list[Layer]:
     """Return what was treated lately, up to the chosen day; made once."""
     season = choices.season
     if season is None:
         return []
 
-    def make() -> list:
+    def make() -> list[Layer]:
         since = choices.on - timedelta(days=_TREATED_DAYS)
         done = [one for one in season.treatments() if since < one.on <= choices.on]
         return marks.treated(done, choices.plot.field, choices.units, dark=choices.dark)
@@ -131,7 +133,7 @@ def treated(choices: Choices) -> list:
     return cached.layers(f"treated {shown}", make)
 
 
-def plan(choices: Choices) -> list:
+def plan(choices: Choices) -> list[Layer]:
     """Return the plot as a plan, below its plants; made once."""
     plot, dark = choices.plot, choices.dark
     return cached.layers(
@@ -146,7 +148,7 @@ def gate(choices: Choices) -> Layer:
     )[0]  # fmt: skip
 
 
-def records(choices: Choices) -> list:
+def records(choices: Choices) -> list[Layer]:
     """Return the records on the map; made once."""
     dark = choices.dark
     return cached.layers(
@@ -160,13 +162,13 @@ def words(choices: Choices) -> list[labels.Label]:
     return [*labels.places(plot), *labels.rows(plot.grid), *labels.blocks(plot.grid)]
 
 
-def plants(choices: Choices) -> list:
+def plants(choices: Choices) -> list[Layer]:
     """Return the plants in all shades, made once for what is known of them."""
     key = f"plants {choices.key} {choices.revision} {choices.day} {choices.dark}"
     return cached.layers(key, partial(_plants, choices))
 
 
-def _plants(choices: Choices) -> list:
+def _plants(choices: Choices) -> list[Layer]:
     grid = choices.plot.grid
     chance, state = chosen_day.chance(choices), chosen_day.states(choices)
     known, level = _known(choices, state), chosen_day.level_range(choices)
@@ -183,7 +185,7 @@ def _plants(choices: Choices) -> list:
     ]
 
 
-def _known(choices: Choices, state: np.ndarray) -> tuple[tuple[str, ...], np.ndarray]:
+def _known(choices: Choices, state: NDArray[np.int8]) -> Known:
     """Return what is known of plants in sentences, and which of them holds for each."""
     looks = finds = np.zeros(len(state), np.int64)
     if choices.season is not None:
@@ -212,9 +214,7 @@ def _said(state: int, age: int, looks: int, finds: int) -> str:
     return said
 
 
-def in_states(
-    choices: Choices, state: np.ndarray, known: tuple[tuple[str, ...], np.ndarray] | None = None
-) -> list:
+def in_states(choices: Choices, state: NDArray[np.int8], known: Known | None = None) -> list[Layer]:
     """Return plants shaded by their state, and the rings of finds."""
     grid, names = choices.plot.grid, texts.LEGEND_STATES
     said = tuple(texts.TIP_STATE.format(state=names[name]) for name in ("never", "clean", "found"))
@@ -225,7 +225,7 @@ def in_states(
     ]
 
 
-def route_of(choices: Choices, route: Route) -> list:
+def route_of(choices: Choices, route: Route) -> list[Layer]:
     """Return the route's layers, made once."""
     return cached.layers(
         _route_key(choices, route), partial(route_layers.route, route, dark=choices.dark)
@@ -238,10 +238,10 @@ def _route_key(choices: Choices, route: Route) -> str:
     return f"route {choices.key} {choices.revision} {choices.day} {shown}"
 
 
-def _hot_layers(choices: Choices) -> list:
+def _hot_layers(choices: Choices) -> list[Layer]:
     key = f"{choices.key} {choices.revision} {choices.day} {choices.dark}"
     return cached.layers(f"hot {key}", partial(_hot, choices))
 
 
-def _hot(choices: Choices) -> list:
+def _hot(choices: Choices) -> list[Layer]:
     return marks.hot(choices.plot.grid, chosen_day.hot_spots(choices), dark=choices.dark)

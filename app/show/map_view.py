@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, field
 from itertools import chain, islice
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import streamlit as st
@@ -142,7 +142,7 @@ class MapContent:
     shades: tuple[Switch, ...] = ()
     legend: list[LegendPart] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
-    play: dict[str, Any] | None = None
+    play: dict[str, object] | None = None
     frames: Frames | None = None
     drive: str | None = None
     draw: Drawable | None = None
@@ -179,7 +179,7 @@ def show(content: MapContent, answers: MapAnswers | None = None) -> None:
     )  # fmt: skip
 
 
-def as_bytes(data: dict[str, Any]) -> bytes:
+def as_bytes(data: dict[str, object]) -> bytes:
     """Return what the browser is sent as JSON of few bytes, written once.
 
     Streamlit writes what is no bytes twice: to send it, and to tell whether it is the same.
@@ -187,9 +187,9 @@ def as_bytes(data: dict[str, Any]) -> bytes:
     return json.dumps(data, ensure_ascii=False, separators=(",", ":")).encode()
 
 
-def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
+def as_data(content: MapContent, answers: MapAnswers) -> dict[str, object]:
     """Return what the browser is sent."""
-    draw, below = content.draw, content.ground
+    below = content.ground
     return {
         "place": content.place,
         "bounds": content.bounds,
@@ -207,12 +207,9 @@ def as_data(content: MapContent, answers: MapAnswers) -> dict[str, Any]:
         "legend": content.legend,
         "labels": content.labels,
         "play": content.play,
-        "frames": None if content.frames is None else _sent(content.frames),
+        "frames": None if content.frames is None else _days(content.frames),
         "drive": content.drive,
-        "draw": draw and {"id": draw.name, "kind": draw.kind, "hint": draw.hint,
-                          "snap": [list(p) for p in draw.snap],
-                          "points": [list(p) for p in draw.points],
-                          "lengths": [list(one) for one in draw.lengths]},
+        "draw": None if content.draw is None else _to_draw(content.draw),
         "taps": answers.tapped is not None,
         "select": answers.selected is not None,
         "picked": run_ends(np.unique(answers.picked)).tolist(),
@@ -232,7 +229,13 @@ def _of_ground(below: GroundShown) -> tuple[Switch, ...]:
     return (Switch("ground", texts.MAP_LAYERS["ground"], ids),) if ids else ()
 
 
-def _sent(frames: Frames) -> dict[str, Any]:
+def _to_draw(draw: Drawable) -> dict[str, object]:
+    return {"id": draw.name, "kind": draw.kind, "hint": draw.hint,
+            "snap": [list(p) for p in draw.snap], "points": [list(p) for p in draw.points],
+            "lengths": [list(one) for one in draw.lengths]}  # fmt: skip
+
+
+def _days(frames: Frames) -> dict[str, object]:
     days = [[deck.published(layer) for layer in layers] for layers in frames.layers]
     return {"key": frames.key, "names": [*frames.names], "layers": days, "now": frames.now}
 

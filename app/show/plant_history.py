@@ -28,6 +28,11 @@ from .maps import plant_layers
 if TYPE_CHECKING:
     from datetime import date
 
+    from numpy.typing import NDArray
+    from pydeck import Layer
+
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.plot.grid import PlantGrid
 
     from ..state.choices import Choices
@@ -58,11 +63,10 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
     if layer.startswith("plants"):
         grid = choices.plot.grid
         label = row_label(grid, np.array([min(index, len(grid) - 1)]))
-        row = int(label.line[0])
-        typed = f"{row}" if grid.row_names else row
-        st.session_state[_row_box(grid)] = typed
-        st.session_state[_PLANT] = int(label.number[0])
-        st.session_state[_TAPPED_AT] = typed, int(label.number[0])
+        row, number = int(label.line[0]), int(label.number[0])
+        st.session_state[_row_box(grid)] = f"{row}" if grid.row_names else row
+        st.session_state[_PLANT] = number
+        st.session_state[_TAPPED_AT] = f"{row}", number
         st.session_state[_TAPPED] = True
 
 
@@ -73,12 +77,12 @@ def tapped(choices: Choices) -> tuple[int, ...]:
     grid = choices.plot.grid
     row, number = (widget_memory.value(key, 1) for key in (_row_box(grid), _PLANT))
     try:
-        return (_plant(grid, row, number),)
+        return (_plant(grid, f"{row}", number),)
     except FieldmonError:
         return ()  # its history says why
 
 
-def layers(choices: Choices) -> list:
+def layers(choices: Choices) -> list[Layer]:
     """Return the ring round the plant whose history is shown, if there is such a plant."""
     return [
         ring for plant in tapped(choices) for ring in plant_layers.chosen(choices.plot.grid, plant)
@@ -95,15 +99,7 @@ def show(choices: Choices) -> None:
     """Show what is known of the plant tapped, or of the one whose row and number are given."""
     st.markdown(f"### {texts.HISTORY}")
     st.caption(texts.HISTORY_TAP)
-    grid = choices.plot.grid
-    row, number = _lowest(grid)
-    show_box, key = widget_memory.show, _row_box(grid)
-    if grid.row_names:
-        row = show_box(st.text_input, texts.HISTORY_ROW, key=key, default=f"{row}")
-    else:
-        row = show_box(st.number_input, texts.HISTORY_ROW, 0, key=key, default=row)
-    number = show_box(st.number_input, texts.HISTORY_PLANT, 0, key=_PLANT, default=number)
-    plant = _plant(grid, row, number)
+    plant = _asked(choices.plot.grid)
     now = first = chosen_day.chance(choices)
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
@@ -119,16 +115,28 @@ def show(choices: Choices) -> None:
     _show_photos(choices, plant)
 
 
+def _asked(grid: PlantGrid) -> int:
+    """Ask for a row and a number, and return the plant that they mean."""
+    lowest_row, lowest = _lowest(grid)
+    show_box, key = widget_memory.show, _row_box(grid)
+    if grid.row_names:
+        row = show_box(st.text_input, texts.HISTORY_ROW, key=key, default=f"{lowest_row}")
+    else:
+        row = f"{show_box(st.number_input, texts.HISTORY_ROW, 0, key=key, default=lowest_row)}"
+    number = show_box(st.number_input, texts.HISTORY_PLANT, 0, key=_PLANT, default=lowest)
+    return _plant(grid, row, number)
+
+
 def _row_box(grid: PlantGrid) -> str:
     """Return the key of the box for the row: names need another than numbers."""
     return f"{_ROW} called" if grid.row_names else _ROW
 
 
-def _plant(grid: PlantGrid, row: int | str, number: int) -> int:
+def _plant(grid: PlantGrid, row: str, number: int) -> int:
     """Return the plant that was tapped, or that is meant by what was typed."""
     if st.session_state.get(_TAPPED_AT) == (row, number):
         return plant_at(grid, int(row), number)
-    return plant_meant(grid, f"{row}", int(number))
+    return plant_meant(grid, row, number)
 
 
 def _lowest(grid: PlantGrid) -> tuple[int, int]:
@@ -182,31 +190,40 @@ def _events(choices: Choices, plant: int) -> list[str]:
     season = choices.season
     if season is None:
         return [texts.HISTORY_NEVER]
-    history = season.history
-    own = history.inspections.plant == plant
-    done, gone = history.inspections.take(own), history.says_gone[own]
-    days, lines = done.date.tolist(), []
-    for k, second in enumerate(done.second.tolist()):
-        result = texts.HISTORY_RESULTS[int(done.result[k])]
-        if gone[k]:
-            result = texts.RESULTS_OF[3]
+    own = season.history.inspections.plant == plant
+    done = season.history.inspections.take(own)
+    days, seconds = done.date.tolist(), done.second.tolist()
+    lines = _inspected(choices, done, season.history.says_gone[own])
+    treated = [one for one in season.treatments() if one.place.plants[plant]]
+    for one in reversed(treated):  # those behind first: places before them stay what they are
+        over_s = one.application.over_s
+        later = [
+            day > one.on or (day == one.on and second > over_s)
+            for day, second in zip(days, seconds, strict=True)
+        ]
+        at = later.index(True) if True in later else len(days)
+        lines.insert(at, _treated(choices, one))
+    return lines if len(done) else [*lines, texts.HISTORY_NEVER]
+
+
+def _inspected(choices: Choices, done: Inspections, gone: NDArray[np.bool_]) -> list[str]:
+    """Return a line for each inspection of a plant; `gone`: whether it said the plant is gone."""
+    lines = []
+    for k, (day, second) in enumerate(zip(done.date.tolist(), done.second.tolist(), strict=True)):
+        result = texts.RESULTS_OF[3] if gone[k] else texts.HISTORY_RESULTS[int(done.result[k])]
         if not np.isnan(done.count[k]):
             result = texts.RESULT_COUNTED.format(result=result, n=number(done.count[k], ",g"))
         beside = [texts.written(said) for said in (done.notes[k], done.who[k]) if said]
-        lines.append(" · ".join([_line(choices, days[k], second, result), *beside]))
-    treated = [one for one in season.treatments() if one.place.plants[plant]]
-    for one in reversed(treated):  # those behind first: places before them stay what they are
-        product, over_s = one.application.product, one.application.over_s
-        said = texts.HISTORY_SPRAYED
-        if product:
-            said = texts.HISTORY_SPRAYED_WITH.format(product=texts.isolated(product))
-        later = [
-            day > one.on or (day == one.on and second > over_s)
-            for day, second in zip(days, done.second.tolist(), strict=True)
-        ]
-        at = later.index(True) if True in later else len(days)
-        lines.insert(at, _line(choices, one.on, over_s, said))
-    return lines if len(done) else [*lines, texts.HISTORY_NEVER]
+        lines.append(" · ".join([_line(choices, day, second, result), *beside]))
+    return lines
+
+
+def _treated(choices: Choices, one: KeptTreatment) -> str:
+    """Return with what a plant was treated, and when that was over."""
+    said = texts.HISTORY_SPRAYED
+    if product := one.application.product:
+        said = texts.HISTORY_SPRAYED_WITH.format(product=texts.isolated(product))
+    return _line(choices, one.on, one.application.over_s, said)
 
 
 def _line(choices: Choices, on: date, second: float, what: str) -> str:

@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 def of_season(choices: Choices) -> Report:
     """Return the report of the season up to the chosen day."""
     made = cached.season_report(
-        choices.key, choices.revision, choices.day, choices.units.of_library, choices.season
+        choices.key, choices.revision, choices.day, choices.units.of_library, choices.open_season
     )
     return made.said_in(language.for_reports(language.current()))
 
 
 def for_certifier(choices: Choices) -> Report:
     """Return the record of the season up to the chosen day, for a certifier."""
-    made = certification_report([choices.season], choices.units.of_library, choices.on)
+    made = certification_report([choices.open_season], choices.units.of_library, choices.on)
     return made.said_in(language.for_reports(language.current()))
 
 

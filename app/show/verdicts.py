@@ -31,13 +31,14 @@ def sentence(ranked: list[Outcome]) -> str:
         return ""
     best, second = ranked[0], ranked[1]
     names = {"best": name(best.strategy), "second": name(second.strategy)}
-    if isnan(second.behind.low):
+    behind = second.behind  # None: of the best alone
+    if behind is None or isnan(behind.low):
         return texts.VERDICT_ONE.format(**names)
-    if not second.behind.low > 0:
+    if not behind.low > 0:
         return texts.VERDICT_TIED.format(**names)
     return texts.VERDICT.format(
-        **names, loss=best.loss.mean, low=second.behind.low, high=second.behind.high,
-        percent=100 * second.behind.mean / best.loss.mean,
+        **names, loss=best.loss.mean, low=behind.low, high=behind.high,
+        percent=100 * behind.mean / best.loss.mean,
     )  # fmt: skip
 
 
@@ -76,11 +77,11 @@ def table(ranked: list[Outcome], *, daily: bool = True) -> pd.DataFrame:
 
     `daily`: whether somebody comes on every day.
     """
-    base = ranked[0].loss.mean
+    least_loss = ranked[0].loss.mean
     return pd.DataFrame(
         {
             texts.COLUMN_STRATEGY: [name(o.strategy) for o in ranked],
-            texts.COLUMN_VERDICT: [_word(o, base) for o in ranked],
+            texts.COLUMN_VERDICT: [_word(o, least_loss) for o in ranked],
             texts.COLUMN_LOSS: [_interval(_none_less(o.loss), ",.0f") for o in ranked],
             texts.COLUMN_FOUND: [_interval(_share(o.detection_pct), ".3g", " %") for o in ranked],
             _visited(daily=daily): [
@@ -97,31 +98,31 @@ def _day(day: float | None) -> str:
     return "–" if day is None else number(day, "g")  # a table takes a dash for a list
 
 
-def _none_less(e: SummaryStatistics) -> SummaryStatistics:
+def _none_less(loss: SummaryStatistics) -> SummaryStatistics:
     """Return an estimate of what is at least 0, which Student's t does not know of."""
-    return replace(e, low=max(e.low, 0.0))
+    return replace(loss, low=max(loss.low, 0.0))
 
 
-def _share(e: SummaryStatistics) -> SummaryStatistics:
+def _share(percent: SummaryStatistics) -> SummaryStatistics:
     """Return an estimate of a percentage within 0 to 100, which Student's t does not know of."""
-    return replace(e, low=max(e.low, 0.0), high=min(e.high, 100.0))
+    return replace(percent, low=max(percent.low, 0.0), high=min(percent.high, 100.0))
 
 
-def _interval(e: SummaryStatistics, form: str, unit: str = "") -> str:
-    mean = number(e.mean, form) + unit
-    if isnan(e.low):
+def _interval(estimate: SummaryStatistics, form: str, unit: str = "") -> str:
+    mean = number(estimate.mean, form) + unit
+    if isnan(estimate.low):
         return mean
-    low, high = number(e.low, form), number(e.high, form)
+    low, high = number(estimate.low, form), number(estimate.high, form)
     return texts.INTERVAL_OF.format(value=mean, low=low, high=high)
 
 
-def _word(o: Outcome, base: float) -> str:
-    if o.behind is None:
+def _word(outcome: Outcome, least_loss: float) -> str:
+    behind = outcome.behind
+    if behind is None:
         return f"★ {texts.BEST}"
-    if isnan(o.behind.low):
+    if isnan(behind.low):
         return texts.ONE_SEASON
-    if not o.behind.low > 0:
+    if not behind.low > 0:
         return texts.NO_DIFFERENCE
-    percent = {name: 100 * getattr(o.behind, of) / base
-               for name, of in (("percent", "mean"), ("low", "low"), ("high", "high"))}  # fmt: skip
-    return texts.WORSE.format(**percent)
+    percent, low, high = (100 * of / least_loss for of in (behind.mean, behind.low, behind.high))
+    return texts.WORSE.format(percent=percent, low=low, high=high)

@@ -39,17 +39,17 @@ class OutLine:
 
 def lines(choices: Choices) -> tuple[OutLine, ...]:
     """Return a line for each who has a code or is of the team."""
-    path = choices.season.path
+    season = choices.open_season
     return tuple(
-        _line(choices, one, heard.last(path, one.name))
-        for one in scouts_out(choices.season, choices.on)
+        _line(choices, one, heard.last(season.path, one.name))
+        for one in scouts_out(season, choices.on)
     )
 
 
 def _line(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> OutLine:
     title = texts.isolated(one.name)
     if one.rows is not None:
-        signs = choices.season.plot.grid.row_signs
+        signs = choices.plot.grid.row_signs
         low, high = (signs.get(row, row) for row in one.rows)
         title = texts.INVITED.format(name=title, low=low, high=high)
     made = texts.OUT_NO_CODE
@@ -89,8 +89,9 @@ def _cautions(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> tuple
 
 def _is_older(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> bool:
     """Return whether the phone goes by another plan of the day than the one given last."""
-    knows = asked is not None and asked.day == choices.on
-    return knows and one.plan is not None and asked.plan != one.plan
+    if asked is None or asked.day != choices.on or one.plan is None:
+        return False
+    return asked.plan != one.plan
 
 
 def _clock_off(fast: timedelta) -> str:

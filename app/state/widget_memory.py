@@ -8,7 +8,7 @@ of a season, then another page, was the sample estate again.
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 import streamlit as st
 
@@ -86,8 +86,23 @@ def put(key: str, new: object) -> None:
         st.session_state[key] = new
 
 
+# of Streamlit's signatures of a box of options, the first is that of a box without any
+@overload
 def show(
-    widget: Callable[..., T], *arguments: object, key: str, default: object = None,
+    widget: Callable[[str, list[str]], T], label: str, options: list[str], /, *, key: str,
+    default: object = None, **settings: object,
+) -> T: ...  # fmt: skip
+
+
+@overload
+def show(
+    widget: Callable[..., T], /, *arguments: object, key: str, default: object = None,
+    **settings: object,
+) -> T: ...  # fmt: skip
+
+
+def show(
+    widget: Callable[..., T], /, *arguments: object, key: str, default: object = None,
     **settings: object,
 ) -> T:  # fmt: skip
     """Show a widget with what was chosen before, on this page or another."""

@@ -65,9 +65,9 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
 
 def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:
     named, day, out = choices.units.short_day, texts.DATE_AXIS, texts.OUT_AXIS
-    axes = (day, texts.INSPECTED_AXIS, texts.FOUND_AXIS)
+    worked = (day, texts.INSPECTED_AXIS, texts.FOUND_AXIS)
     if progress.inspected:  # a chart of nothing says nothing, least of all to who hears it read
-        st.altair_chart(charts.season_days(days, axes, named), alt=texts.FOUND_AXIS)
+        st.altair_chart(charts.season_days(days, worked, named), alt=texts.FOUND_AXIS)
     st.altair_chart(charts.still_out(days, (day, out), named), alt=out)
     st.markdown(f"**{texts.ROW_AGES}**")
     line = choices.plot.grid.row_number

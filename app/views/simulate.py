@@ -17,6 +17,7 @@ from ..words.language import number
 from ..words.strategies import sampler_name
 
 if TYPE_CHECKING:
+    from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.season import SimulatedDay
 
     from ..state.choices import Choices
@@ -42,17 +43,21 @@ def show(choices: Choices) -> None:
         texts.SHOW_SAMPLER, names, default=choices.sampler, required=True,
         format_func=sampler_name, key=f"season_sampler {names}",
     )  # fmt: skip
-    number = st.slider(texts.SHOW_DAY, 1, n_days, min(5, n_days), key="season_day")
+    day = st.slider(texts.SHOW_DAY, 1, n_days, min(5, n_days), key="season_day")
     truth = st.toggle(texts.SHOW_TRUTH, key="truth")
-    field_map.want(simulated_day.content(choices, seasons[name][0], number - 1, truth=truth))
+    days, metrics = seasons[name]
+    field_map.want(simulated_day.content(choices, days, day - 1, truth=truth))
     if every > 1:
-        st.caption(simulated_day.visit(seasons[name][1], number, every))
-    _figures(seasons[name][0][number - 1])
-    figures = {sampler_name(name): value[1] for name, value in seasons.items()}
-    axes = texts.DAY_AXIS, texts.DETECTION_AXIS
-    st.altair_chart(charts.detection(figures, number, axes, names), alt=texts.DETECTION_AXIS)
-    st.altair_chart(charts.found(seasons[name][1], (texts.DAY_AXIS, texts.FOUND_AXIS)),
-                    alt=texts.FOUND_AXIS)  # fmt: skip
+        st.caption(simulated_day.visit(metrics, day, every))
+    _figures(days[day - 1])
+    _charts({of: met for of, (_, met) in seasons.items()}, name, day)
+
+
+def _charts(metrics: dict[str, SeasonMetrics], name: str, day: int) -> None:
+    detected, found = (texts.DAY_AXIS, texts.DETECTION_AXIS), (texts.DAY_AXIS, texts.FOUND_AXIS)
+    named = {sampler_name(of): met for of, met in metrics.items()}
+    st.altair_chart(charts.detection(named, day, detected, [*metrics]), alt=texts.DETECTION_AXIS)
+    st.altair_chart(charts.found(metrics[name], found), alt=texts.FOUND_AXIS)
 
 
 def _names(choices: Choices) -> list[str]:
@@ -63,16 +68,12 @@ def _names(choices: Choices) -> list[str]:
 
 
 def _figures(day: SimulatedDay) -> None:
+    found, visited = (
+        texts.IN_PERCENT.format(value=number(pct, ".0f"))
+        for pct in (day.detection_pct, day.visited_pct)
+    )
     with st.container(horizontal=True):
-        st.metric(
-            texts.FOUND_SO_FAR,
-            texts.IN_PERCENT.format(value=number(day.detection_pct, ".0f")),
-            width="content",
-        )
+        st.metric(texts.FOUND_SO_FAR, found, width="content")
         st.metric(texts.FOUND_TODAY, day.found, width="content")
         st.metric(texts.LEFT, day.left, width="content")
-        st.metric(
-            texts.VISITED_TODAY,
-            texts.IN_PERCENT.format(value=number(day.visited_pct, ".0f")),
-            width="content",
-        )
+        st.metric(texts.VISITED_TODAY, visited, width="content")

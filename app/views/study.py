@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from typing import TYPE_CHECKING
 
 import pandas as pd
 import streamlit as st
@@ -13,6 +14,9 @@ from fieldmon.studies.tidy_csv import csv_text
 
 from ..actions import studying
 from ..words import texts
+
+if TYPE_CHECKING:
+    from fieldmon.studies.thesis.chapter4.study import NoPriorStudy
 
 
 def show() -> None:
@@ -34,17 +38,17 @@ def show() -> None:
             return
         st.session_state["study"] = (asked, made, csv_text(made.cells), report_html(made))
     kept = st.session_state.get("study")
-    if kept is None or kept[0] != asked:
-        return
-    _, made, table_csv, report = kept
+    if kept is not None and kept[0] == asked:
+        _result(f"no_prior_{table}", *kept[1:])
+
+
+def _result(name: str, made: NoPriorStudy, table_csv: str, report: str) -> None:
     for part in made.tables:
         st.markdown(f"**{part.title}**")
         st.markdown("\n".join(f"- {sentence}" for sentence in part.summary))
     st.dataframe(pd.read_csv(io.StringIO(table_csv)), height=400, hide_index=True)
     with st.container(horizontal=True):
         st.download_button(
-            texts.STUDY_REPORT, report, f"no_prior_{table}.html", "text/html", on_click="ignore"
+            texts.STUDY_REPORT, report, f"{name}.html", "text/html", on_click="ignore"
         )
-        st.download_button(
-            texts.STUDY_CSV, table_csv, f"no_prior_{table}.csv", "text/csv", on_click="ignore"
-        )
+        st.download_button(texts.STUDY_CSV, table_csv, f"{name}.csv", "text/csv", on_click="ignore")

@@ -10,9 +10,13 @@ import numpy as np
 from fieldmon.reports import colours as on_paper
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
 Colour = tuple[int, int, int]
+#: with how much of what is below it hides, up to 255
+Translucent = tuple[int, int, int, int]
 # on paper and on a light ground the same
 _LIGHT: tuple[Colour, ...] = on_paper.CHANCE
 CHANCE_FROM = on_paper.CHANCE_FROM
@@ -30,7 +34,8 @@ ROUTE_IN_DARK: Colour = (110, 220, 255)
 CASING: Colour = (255, 255, 255)
 CASING_IN_DARK: Colour = (10, 20, 26)
 GATE: Colour = (0, 140, 90)
-ROWS, ROWS_IN_DARK = (60, 60, 60, 110), (230, 230, 230, 120)
+ROWS: Translucent = (60, 60, 60, 110)
+ROWS_IN_DARK: Translucent = (230, 230, 230, 120)
 HOT: Colour = (20, 26, 30)
 HOT_IN_DARK: Colour = (255, 255, 255)
 ZONE: Colour = (118, 42, 131)
@@ -39,7 +44,8 @@ TREATED: Colour = (0, 104, 116)
 TREATED_IN_DARK: Colour = (150, 230, 120)
 OUTLINE: Colour = (60, 70, 60)
 OUTLINE_IN_DARK: Colour = (190, 200, 190)
-ROWS: Colour = (60, 130, 90)
+# the outline of a plot among answers of all other colours
+AMONG_ANSWERS: Colour = (60, 130, 90)
 PLAIN: Colour = (90, 150, 90)
 BEFORE: Colour = (230, 120, 0)
 # days since a plant was inspected: fresh is pale green, long ago is dark
@@ -79,7 +85,7 @@ class Shade:
     rank: NDArray[np.uint8]
 
     @classmethod
-    def of(cls, colours: list[tuple[int, ...]], rank: NDArray[np.integer]) -> Shade:
+    def of(cls, colours: Sequence[Colour | Translucent], rank: NDArray[np.integer]) -> Shade:
         """Return the shade of these colours, a rank each; where no opacity is named, it is full."""
         table = np.array([(*c, 255) if len(c) == 3 else c for c in colours], np.uint8)
         return cls(table, rank.astype(np.uint8))
@@ -93,7 +99,7 @@ def of_chance(*, dark: bool = False) -> tuple[Colour, ...]:
 def by_chance(chance: NDArray[np.float64], *, dark: bool = False) -> Shade:
     """Return plants shaded by their chance of infestation, in the legend's classes."""
     rank = np.searchsorted(CHANCE_FROM, chance, side="right") - 1
-    return Shade.of([*of_chance(dark=dark)], rank)
+    return Shade.of(of_chance(dark=dark), rank)
 
 
 def by_state(state: NDArray[np.int8]) -> Shade:

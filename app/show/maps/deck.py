@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import pydeck as pdk
 import shapely
+from pydeck import Layer
 from pydeck.bindings.json_tools import default_serialize
 
 from ...state.map_store import JSON, STORE
@@ -20,12 +20,11 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
 
-Layer = pdk.Layer
 # layers are not changed once made; their texts go when they do
 _WRITTEN: WeakKeyDictionary[Layer, bytes] = WeakKeyDictionary()
 
 
-class ArraysLayer(Layer):  # type: ignore[misc]
+class ArraysLayer(Layer):
     """A layer of pydeck's whose data are arrays, sent as bytes beside its JSON.
 
     Parameters
@@ -34,8 +33,8 @@ class ArraysLayer(Layer):  # type: ignore[misc]
         The bytes by the names under which the browser knows them.
     """
 
-    def __init__(self, kind: str, arrays: dict[str, bytes], **settings: Any) -> None:  # noqa: ANN401
-        super().__init__(kind, None, **settings)
+    def __init__(self, kind: str, arrays: dict[str, bytes], **settings: object) -> None:
+        super().__init__(kind, None, **settings)  # type: ignore[no-untyped-call]  # pydeck's own
         self.arrays = arrays
 
 

@@ -50,7 +50,7 @@ def legend(notes: tuple[str, ...]) -> LegendPart:
 
 def numbers(lonlat: Float, found: tuple[RowDirection, ...]) -> list[Label]:
     """Return the number of each direction, at the beginning of its middle row."""
-    made = []
+    made: list[Label] = []
     for k, one in enumerate(found):
         ends = row_ends(lonlat, one.bearing_deg, one.row_spacing_m)
         made.append({"p": ends[len(ends) // 2, 0].round(7).tolist(), "t": f"{k + 1}", "k": "leg"})

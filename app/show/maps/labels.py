@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NotRequired, TypedDict
 
 import numpy as np
 import shapely
@@ -16,9 +16,23 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
 
-    #: ``{"p": [lon, lat], "t": words, "k": kind}``; with ``from``, ``to``: at these zooms only;
-    #: with ``away`` [lon, lat] and ``gap`` (pixels): beyond that place, in that direction
-    Label = dict[str, Any]
+#: a place, words and their kind; with `from` and `to`: at these zooms only; with `away` (lon/lat)
+#: and `gap` (pixels): beyond the place, in that direction
+Label = TypedDict(
+    "Label",
+    {
+        "p": list[float],
+        "t": str,
+        "k": str,
+        "from": NotRequired[float],
+        "to": NotRequired[float],
+        "away": NotRequired[list[float]],
+        "gap": NotRequired[int],
+        "row": NotRequired[int],
+        "plot": NotRequired[int],
+        "tight": NotRequired[bool],
+    },
+)
 
 # a stop's number has room where plants are this far apart on the screen
 _STOP_PX = 16.0
@@ -42,11 +56,11 @@ def stops(route: Route) -> list[Label]:
     aisle = grid.corridor[grid.row[route.plant]]
     first = np.flatnonzero(np.append(True, np.diff(aisle) != 0))
     middle = (first + np.append(first[1:], len(route))) // 2
-    legs = [
+    legs: list[Label] = [
         {"p": lonlat[k].tolist(), "t": f"{number}", "k": "leg", "to": near}
         for number, k in enumerate(middle.tolist(), start=1)
     ]
-    own = [
+    own: list[Label] = [
         {"p": place, "t": f"{number}", "k": "stop", "from": near}
         for number, place in enumerate(lonlat.tolist(), start=1)
     ]
@@ -79,10 +93,11 @@ def places(plot: Plot) -> list[Label]:
     out = side * _to_outline(plot, (x, y), side * _NEAR_ROWS * grid.row_spacing_m)
     ends_m = np.array([[x, y + out], [x, y + out + side]])
     at, away = np.round(grid.frame.lonlat(ends_m), 7).tolist()
-    gate = {"p": at, "away": away, "gap": _RING_PX, "t": texts.LABEL_GATE, "k": "gate"}
+    gate: Label = {"p": at, "away": away, "gap": _RING_PX, "t": texts.LABEL_GATE, "k": "gate"}
     inner = shapely.point_on_surface(shapely.get_parts(plot.field.no_go))
     no_go = np.round(shapely.get_coordinates(inner), 7).tolist()
-    return [gate, *({"p": p, "t": texts.LABEL_NO_GO, "k": "place"} for p in no_go)]
+    inside: list[Label] = [{"p": p, "t": texts.LABEL_NO_GO, "k": "place"} for p in no_go]
+    return [gate, *inside]
 
 
 def _to_outline(plot: Plot, place_m: tuple[float, float], far_m: float) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypedDict
 
 from ...words import texts
 from ...words.language import number
@@ -13,11 +13,20 @@ if TYPE_CHECKING:
 
     from .colours import Colour
 
-    #: ``{"title", "of", "scale", "items": [(sign, colour, words), ...]}``
-    LegendPart = dict[str, Any]
+    #: a sign, its colour, and what it means
+    Item = tuple[str, Colour, str]
 
 
-def part(title: str, items: list[tuple[str, Colour, str]], of: str = "") -> LegendPart:
+class LegendPart(TypedDict):
+    """Signs with their meanings, whose layer or shade they belong to, and whether on a scale."""
+
+    title: str
+    of: str
+    scale: bool
+    items: list[Item]
+
+
+def part(title: str, items: list[Item], of: str = "") -> LegendPart:
     """Return signs with their meanings; `of` names the switch or ``shade:NAME`` they belong to."""
     return {"title": title, "of": of, "scale": False, "items": items}
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
     from ...words.units import UnitsInLanguage
-    from .colours import Colour
+    from .colours import Colour, Translucent
 
 # so many places on a hot spot's edge are tried for its number where its middle is taken
 _ALONG_EDGE = 12
@@ -61,7 +61,8 @@ def _for_number(
     along = shapely.line_interpolate_point(
         shape.exterior, np.arange(_ALONG_EDGE) / _ALONG_EDGE, normalized=True
     )
-    return np.round(shapely.get_coordinates([inside, *along]), 7).tolist()
+    places: list[list[float]] = np.round(shapely.get_coordinates([inside, *along]), 7).tolist()
+    return places
 
 
 def with_hot(layers: list[Layer], spots: list[Layer]) -> list[Layer]:
@@ -120,7 +121,7 @@ def paths(field: Field) -> list[Layer]:
     ]  # fmt: skip
 
 
-def rows(grid: PlantGrid, name: str, colour: Colour, note: str = "") -> Layer:
+def rows(grid: PlantGrid, name: str, colour: Colour | Translucent, note: str = "") -> Layer:
     """Return the rows as lines."""
     lines = [
         {"path": np.round(grid.frame.lonlat(line_m), 7).tolist(), **({"t": note} if note else {})}

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
     from .colours import Colour, Shade
 
+    #: sentences, and which of them holds for each plant ``(n,)``
+    Known = tuple[tuple[str, ...], NDArray[np.integer]]
+
 # plots are not changed once laid; where their plants are goes when they do
 _PLACES: WeakKeyDictionary[PlantGrid, bytes] = WeakKeyDictionary()
 
@@ -39,7 +42,7 @@ class PlantNotes:
     by_rank
         A sentence for each rank of the shade; none: nothing is said.
     known
-        What is known of plants, in sentences, and which of them holds for each plant ``(n,)``.
+        What is known of plants, in sentences.
     level
         How far all chances may be off together, or None; each plant's interval is worked out
         where it is shown.
@@ -47,7 +50,7 @@ class PlantNotes:
 
     chance: NDArray[np.float64] | None = None
     by_rank: tuple[str, ...] = ()
-    known: tuple[tuple[str, ...], NDArray[np.integer]] | None = None
+    known: Known | None = None
     level: LevelRange | None = None
 
 

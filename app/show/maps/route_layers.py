@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from pydeck import Layer
@@ -55,7 +55,7 @@ def gate(aisles: Aisles) -> Layer:
     )  # fmt: skip
 
 
-def _arrows(the_route: Route) -> list[dict[str, Any]]:
+def _arrows(the_route: Route) -> list[dict[str, list[list[float]]]]:
     """Return triangles at even distances along the line, pointing the way it is driven."""
     line = the_route.line_m
     step = np.diff(line, axis=0)
@@ -78,7 +78,7 @@ def _arrows(the_route: Route) -> list[dict[str, Any]]:
     return [{"a": corner} for corner in lonlat.tolist()]
 
 
-def playback(the_route: Route, begins: datetime) -> dict[str, Any] | None:
+def playback(the_route: Route, begins: datetime) -> dict[str, object] | None:
     """Return what plays the day on the map: where who drives is at which second, and the stops."""
     if not len(the_route):
         return None

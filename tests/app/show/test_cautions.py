@@ -35,7 +35,7 @@ def shown(monkeypatch):
 
 def choices(season):
     units = UnitsInLanguage()
-    return SimpleNamespace(season=season, on=BEGINS, units=units, today=None)
+    return SimpleNamespace(season=season, open_season=season, on=BEGINS, units=units, today=None)
 
 
 def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):
@@ -92,7 +92,7 @@ def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(
     monkeypatch.setattr(day, "st", cautions.st)
     shown.clear()
     today.revision = season.revision
-    day.said_of_day(today, today.plan())
+    day.say_of_day(today, today.plan())
     assert shown == []  # not that hours are too short
     cautions.show_today(today, today.plan())
     assert shown[0][1].endswith(texts.KEPT_ALL_CLOSED.format(n=len(given)))
@@ -106,7 +106,7 @@ def test_where_every_plant_is_flagged_today_says_so_and_not_that_hours_are_too_s
     season.record(Inspections.of(every, np.ones(len(every), int), np.datetime64(BEGINS)), "x")
     monkeypatch.setattr(day, "st", cautions.st)
     tomorrow = in_season(season, BEGINS + timedelta(days=1))
-    day.said_of_day(tomorrow, season.plan(tomorrow.on, keep=False))
+    day.say_of_day(tomorrow, season.plan(tomorrow.on, keep=False))
     ((_, said),) = shown
     assert said.startswith(f"Every plant is known: all {len(every)} were found and only flagged.")
 

@@ -29,7 +29,7 @@ def shown(pest, met, on=ON):
     there = None if met is None else developed(pest, met, BEGINS, on)
     settings = SimpleNamespace(pest=pest, weather=met)
     season = SimpleNamespace(settings=settings, development=lambda _: there)
-    return SimpleNamespace(season=season, on=on, units=UnitsInLanguage())
+    return SimpleNamespace(open_season=season, on=on, units=UnitsInLanguage())
 
 
 @pytest.fixture

@@ -29,7 +29,7 @@ def shown(monkeypatch):
         progress = SimpleNamespace(inspected=inspected)
         monkeypatch.setattr(learnt.chosen_day, "progress", lambda _: progress)
         monkeypatch.setattr(learnt.chosen_day, "told_otherwise", lambda _: said)
-        learnt.show(SimpleNamespace(season=SimpleNamespace(taught=lambda: taught)))
+        learnt.show(SimpleNamespace(open_season=SimpleNamespace(taught=lambda: taught)))
         return apart("\n".join(lines[1:])).splitlines()
 
     return show

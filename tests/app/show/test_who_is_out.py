@@ -22,7 +22,8 @@ from tests.monitoring.seasons import BEGINS, a_season
 @pytest.fixture
 def choices(tmp_path):
     season = a_season(tmp_path / "out.gpkg")
-    return SimpleNamespace(season=season, on=BEGINS, is_today=True, units=UnitsInLanguage(),
+    return SimpleNamespace(open_season=season, plot=season.plot, on=BEGINS, is_today=True,
+                           units=UnitsInLanguage(),
                            clock=local_clock(season.plot.field))  # fmt: skip
 
 
@@ -34,21 +35,24 @@ def test_nobody_is_out_where_there_are_no_codes(choices):
 
 
 def test_a_line_says_rows_code_phone_and_how_far(choices):
-    key = scouts.let_in(choices.season, "Ann", (1, 8))
+    key = scouts.let_in(choices.open_season, "Ann", (1, 8))
     (line,) = who_is_out.lines(choices)
     assert (line.title, line.cautions) == ("\u2068Ann\u2069, rows 1 to 8", ())
     assert texts.OUT_SILENT in line.said
-    route = route_ahead(choices.season, BEGINS, Part((1, 8), "Ann")).plant
-    take(choices.season, key, [a_finding(int(route[0]), on=BEGINS)],
+    route = route_ahead(choices.open_season, BEGINS, Part((1, 8), "Ann")).plant
+    take(choices.open_season, key, [a_finding(int(route[0]), on=BEGINS)],
          utc_now() + timedelta(hours=1))  # fmt: skip
     heard.note(
-        choices.season.path, "Ann", BEGINS, DayAhead.of(choices.season, BEGINS).plan_of(PART)
+        choices.open_season.path,
+        "Ann",
+        BEGINS,
+        DayAhead.of(choices.open_season, BEGINS).plan_of(PART),
     )
     (line,) = who_is_out.lines(choices)
     assert f"1 of {len(route)} recorded" in line.said
     assert "has the day since " in line.said
     assert line.cautions == (texts.OUT_CLOCK.format(minutes=60),)
-    heard.note(choices.season.path, "Ann", BEGINS + timedelta(days=1))
+    heard.note(choices.open_season.path, "Ann", BEGINS + timedelta(days=1))
     (line,) = who_is_out.lines(choices)
     assert texts.OUT_OTHER_DAY.format(day="Tue 7 Apr") in line.cautions
 

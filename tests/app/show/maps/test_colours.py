@@ -86,3 +86,9 @@ def test_a_dark_page_has_the_same_classes():
 
 def test_plain_plants_have_one_colour():
     assert len(set(shaded(colours.plain(5)))) == 1
+
+
+def test_lines_of_rows_let_the_plants_under_them_be_seen_on_either_ground():
+    for line in (colours.ROWS, colours.ROWS_IN_DARK):
+        assert len(line) == 4
+        assert line[3] < 128

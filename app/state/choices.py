@@ -78,6 +78,16 @@ class Choices:
     prior: PriorSettings = field(default_factory=PriorSettings)
 
     @property
+    def open_season(self) -> Season:
+        """Return the season that is open, for what only a season has: there must be one."""
+        if self.season is None:
+            raise RuntimeError(
+                f"A season must be open on {self.plot.field.name}, but none is. Ask whether "
+                "`season` is None before what only a season has."
+            )
+        return self.season
+
+    @property
     def name(self) -> str:
         """Return the plot's name, apart from the text around it, whatever its script."""
         return texts.isolated(self.plot.field.name)

@@ -45,9 +45,9 @@ def _show_asking(choices: Choices, plants: tuple[int, ...]) -> None:
 
 
 def _show_one(choices: Choices, one: AskedPhoto) -> None:
-    label = choices.season.label
+    label = choices.open_season.label
     said, ends = st.columns([3, 1], vertical_alignment="center")
-    row = choices.season.plot.grid.row_signs[int(label.line[one.plant])]
+    row = choices.open_season.plot.grid.row_signs[int(label.line[one.plant])]
     plant = label.number[one.plant]
     note = texts.isolated(one.note)
     said.markdown(texts.ASKED_PHOTO.format(row=row, plant=plant, note=note))
@@ -58,12 +58,12 @@ def _show_one(choices: Choices, one: AskedPhoto) -> None:
 @notices.reporting
 def _ask(choices: Choices, plants: tuple[int, ...]) -> str:
     for plant in plants:
-        photos_asked.ask_photo(choices.season, plant, st.session_state[_NOTE])
+        photos_asked.ask_photo(choices.open_season, plant, st.session_state[_NOTE])
     wishes.pick(choices.place, ())
     return ""
 
 
 @notices.reporting
 def _ask_no_more(choices: Choices, name: str) -> str:
-    photos_asked.ask_no_more(choices.season, name)
+    photos_asked.ask_no_more(choices.open_season, name)
     return ""

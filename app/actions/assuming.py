@@ -55,7 +55,7 @@ def _boxes(choices: Choices) -> None:
 
 
 def _boxes_of_season(choices: Choices) -> None:
-    settings = choices.season.settings
+    settings = choices.open_season.settings
     with st.form("assumed_form", border=False):
         st.caption(texts.ASSUMED_LAID)
         # side by side: a low window shows all of it at once
@@ -78,13 +78,13 @@ def _boxes_of_season(choices: Choices) -> None:
 @notices.reporting
 def _change(choices: Choices) -> str:
     """Let a season believe otherwise, from its first morning on."""
-    settings, state = choices.season.settings, st.session_state
+    settings, state = choices.open_season.settings, st.session_state
     prior = replace(settings.prior, background_chance=state["season_background"] / 100)
     belief = replace(settings.belief, treated=state["season_finds"])
     if settings.pest is None:
         rate = state["season_spread"] / 100
         belief = replace(belief, spread=replace(belief.spread, rate_per_day=rate))
     new, said = replace(settings, prior=prior, belief=belief), [texts.ASSUMED_CHANGED]
-    with telling_anew(choices.season, settings, new, said.append):
-        choices.season.change(new, settings)
+    with telling_anew(choices.open_season, settings, new, said.append):
+        choices.open_season.change(new, settings)
     return " ".join(map(in_words, said))

@@ -140,7 +140,7 @@ def begin(choices: Choices) -> str:
 
 def another(choices: Choices) -> None:
     """Offer to begin another season of the plot, laid otherwise, while nothing is recorded."""
-    if choices.season.batches():
+    if choices.open_season.batches():
         return
     st.markdown(texts.ANOTHER_NOTE)
     st.button(texts.ANOTHER, key="begin_another", on_click=_open_files, args=(choices,))
@@ -148,7 +148,7 @@ def another(choices: Choices) -> None:
 
 @notices.reporting
 def _open_files(choices: Choices) -> str:
-    begun_from = st.session_state.get(f"{_FROM} {choices.season.path}")
+    begun_from = st.session_state.get(f"{_FROM} {choices.open_season.path}")
     nothing = plot_files.of_session() is None
     if begun_from is None and not nothing:
         raise SettingError(texts.ANOTHER_ELSEWHERE)

@@ -70,7 +70,7 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
     A day that goes `by` what counted then says so instead: a change is for days to come. So does
     one of a team, whose table says how each works.
     """
-    season = choices.season
+    season = choices.open_season
     st.session_state[_UNUSED] = False
     with work.foot, st.expander(texts.WHO, expanded=work.day is not None):
         settings = season.settings
@@ -100,7 +100,7 @@ def is_unused() -> bool:
 
 def _offer_as_now(choices: Choices) -> None:
     """Offer to plan a day that was missed by what counts now."""
-    now = choices.season.settings
+    now = choices.open_season.settings
     if _is_recorded(choices) or now.team:
         return
     strategy = strategy_name(now.sampler, now.robot.hours, now.robot.look_s)
@@ -109,7 +109,7 @@ def _offer_as_now(choices: Choices) -> None:
 
 
 def _is_recorded(choices: Choices) -> bool:
-    season = choices.season
+    season = choices.open_season
     return len(season.history.on(season.settings.day(choices.on))) > 0
 
 
@@ -120,8 +120,8 @@ def _as_now(choices: Choices) -> str:
 
 def _planned_as_now(choices: Choices) -> str:
     """Plan a day that was missed by what counts now: it goes on by the plan that is kept of it."""
-    with choices.season.as_now(choices.on):
-        choices.season.plan(choices.on, wishes=choices.wishes)
+    with choices.open_season.as_now(choices.on):
+        choices.open_season.plan(choices.on, wishes=choices.wishes)
     return texts.CHANGED_LATE.format(day=choices.units.said_day(choices.on))
 
 
@@ -146,7 +146,7 @@ def _wanted_of_team(
     name: str, choices: Choices
 ) -> tuple[MonitoringSettings, AbstractContextManager[object]]:
     """Say how the one works whose day is shown; return settings with the sampler that is chosen."""
-    settings, starts = choices.season.settings, chosen_day.work_begins(choices)
+    settings, starts = choices.open_season.settings, chosen_day.work_begins(choices)
     robot = settings.member(choices.who).robot
     does = strategy_name(settings.sampler, robot.hours, robot.look_s)
     said = {"name": texts.isolated(choices.who), "strategy": does, "starts": f"{starts:%H:%M}"}
@@ -194,17 +194,17 @@ def _wanted(
 
 
 def _offer_undo(choices: Choices) -> None:
-    before = choices.season.before_change()
+    before = choices.open_season.before_change()
     if before is None:
         return
-    what = in_words(changed(choices.season.settings, before))
+    what = in_words(changed(choices.open_season.settings, before))
     label = texts.UNDO_CHANGE.format(what=what) if what else texts.UNDO_NO_CHANGE
     st.button(label, key="undo_change", icon=":material/undo:", on_click=_undo, args=(choices,))
 
 
 @notices.reporting
 def _change(choices: Choices, wanted: MonitoringSettings, settings: MonitoringSettings) -> str:
-    season = choices.season
+    season = choices.open_season
     season.change(wanted, settings)
     if season.planned_by(choices.on) == season.settings:
         return ""

@@ -66,7 +66,7 @@ def _name(which: str) -> str:
 
 
 def _say_kept(choices: Choices) -> None:
-    settings = choices.season.settings
+    settings = choices.open_season.settings
     if settings.pest is None:
         return
     st.markdown(texts.PEST_KEPT.format(pest=pest_figures.title(settings.pest)))
@@ -79,7 +79,7 @@ def _say_kept(choices: Choices) -> None:
 @notices.reporting
 def _use(choices: Choices) -> str:
     """Let a season believe its nights by the pest and the weather, from the first on."""
-    season = choices.season
+    season = choices.open_season
     settings = season.settings
     pest, weather = chosen_pest.pest(), chosen_pest.met(choices)
     if pest is None and weather is not None:

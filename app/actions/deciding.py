@@ -195,5 +195,5 @@ def _zoned(choices: Choices) -> Zoned:
 
 
 def _report(choices: Choices, advice: Advice, product: str):  # noqa: ANN202 - a report
-    made = advice_report(choices.season, choices.on, advice, choices.units.of_library, product)
+    made = advice_report(choices.open_season, choices.on, advice, choices.units.of_library, product)
     return made.said_in(language.for_reports(language.current()))

@@ -24,6 +24,8 @@ from ..words.language import of_error
 from . import bending, drawing_plot, turning_rows
 
 if TYPE_CHECKING:
+    from pydeck import Layer
+
     from fieldmon.infestation.observations import Observations
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
@@ -187,17 +189,17 @@ def content(
     return made, MapAnswers(drawn=partial(_drawn, choices))
 
 
-def _plain_plants(choices: Choices) -> list:
+def _plain_plants(choices: Choices) -> list[Layer]:
     """Return the plants in one colour, made once."""
     grid = choices.plot.grid
 
-    def make() -> list:
+    def make() -> list[Layer]:
         return [plant_layers.plants(grid, colours.plain(len(grid)))]
 
     return cached.layers(f"plain {choices.key}", make)
 
 
-def _row_lines(choices: Choices) -> list:
+def _row_lines(choices: Choices) -> list[Layer]:
     """Return the rows as lines, as they were found or laid, made once."""
     grid = choices.plot.grid
     if not grid.in_rows:
@@ -207,7 +209,7 @@ def _row_lines(choices: Choices) -> list:
     return cached.layers(key, lambda: [marks.rows(grid, "row-lines", colour)])
 
 
-def _as_it_was(before: Plot | None) -> list:
+def _as_it_was(before: Plot | None) -> list[Layer]:
     if before is None:
         return []
     outline = deck.outline(before.field, "boundary-before", colours.BEFORE)

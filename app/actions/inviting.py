@@ -29,9 +29,9 @@ def let_in(choices: Choices, name: str, rows: tuple[int, int] | None = None) -> 
     An earlier key of that name ends at once. Raise `SettingError` if there is no such part of the
     plot, or no name.
     """
-    key = scouts.let_in(choices.season, name, rows)
+    key = scouts.let_in(choices.open_season, name, rows)
     day = "" if choices.is_today else choices.day
-    season = choices.season.path.stem
+    season = choices.open_season.path.stem
     return scout_page.invitation(phone.base().url, season, key, day, language.current())
 
 
@@ -62,7 +62,7 @@ def _show_codes(choices: Choices) -> None:
         else:
             st.text_input(texts.INVITE_NAME, key="invite_name")
         left, right = st.columns(2)
-        ends = _ends(choices.season)
+        ends = _ends(choices.open_season)
         if choices.plot.grid.row_names:
             left.text_input(texts.INVITE_FIRST, key="invite_first")
             right.text_input(texts.INVITE_LAST, key="invite_last")
@@ -113,7 +113,7 @@ def _invite(choices: Choices) -> str:
     first, last = (None if one in {None, ""} else f"{one}" for one in typed)
     whole = first is None and last is None
     rows = rows_meant(choices.plot.grid, first, last)
-    before = {person_key(one.name) for one in scouts.scouts_of(choices.season)}
+    before = {person_key(one.name) for one in scouts.scouts_of(choices.open_season)}
     state[_SHOWN] = name, let_in(choices, name, None if whole else rows)
     morning.note(choices, morning.SEND)
     return _what_follows(choices, name, had_code=person_key(name) in before)
@@ -124,11 +124,11 @@ def _what_follows(choices: Choices, name: str, *, had_code: bool) -> str:
     said = texts.isolated(name)
     others = ", ".join(
         texts.isolated(other)
-        for one in scouts_out(choices.season, choices.on)
+        for one in scouts_out(choices.open_season, choices.on)
         if person_key(one.name) == person_key(name)
         for other in one.shares
     )  # fmt: skip
-    beside = choices.season.settings.team and choices.season.settings.named(name) is None
+    beside = choices.open_season.settings.team and choices.open_season.settings.named(name) is None
     sentences = [
         texts.INVITE_ENDED.format(name=said) if had_code else "",
         texts.INVITE_SHARED.format(name=said, others=others) if others else "",
@@ -139,6 +139,6 @@ def _what_follows(choices: Choices, name: str, *, had_code: bool) -> str:
 
 @notices.reporting
 def _withdraw_key(choices: Choices, name: str) -> str:
-    scouts.withdraw_key(choices.season, name)
+    scouts.withdraw_key(choices.open_season, name)
     st.session_state.pop(_SHOWN, None)
     return texts.TAKEN_BACK.format(name=texts.isolated(name))

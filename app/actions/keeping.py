@@ -31,7 +31,7 @@ def show(choices: Choices) -> None:
 def _backup(choices: Choices) -> None:
     day = choices.on if choices.today is None else choices.today
     st.download_button(
-        texts.BACKUP, partial(backed_up, choices), f"{choices.season.path.stem} {day}.gpkg",
+        texts.BACKUP, partial(backed_up, choices), f"{choices.open_season.path.stem} {day}.gpkg",
         "application/geopackage+sqlite3", key="backup", icon=":material/download:",
         on_click="ignore", help=texts.BACKUP_HELP,
     )  # fmt: skip
@@ -39,26 +39,26 @@ def _backup(choices: Choices) -> None:
 
 def backed_up(choices: Choices) -> bytes:
     """Return the season's file as it is now, whoever works on it."""
-    return seasons_folder.backup_of(choices.season.path)
+    return seasons_folder.backup_of(choices.open_season.path)
 
 
 def _rename(choices: Choices) -> None:
-    name = choices.season.path.stem
+    name = choices.open_season.path.stem
     with st.container(horizontal=True, vertical_alignment="bottom"):
         widget_memory.show(st.text_input, texts.RENAME_TO, key=_box(choices), default=name)
         acting.at_press(texts.RENAME, _give_name, choices, key="rename")
-    if scouts.scouts_of(choices.season):
+    if scouts.scouts_of(choices.open_season):
         st.caption(texts.RENAME_CODES)
 
 
 def _box(choices: Choices) -> str:
     """Return the key of the box of the name: another season has its own."""
-    return f"rename {choices.season.path.stem}"
+    return f"rename {choices.open_season.path.stem}"
 
 
 @notices.reporting
 def _give_name(choices: Choices) -> str:
-    name, new = choices.season.path.stem, str(widget_memory.value(_box(choices), "")).strip()
+    name, new = choices.open_season.path.stem, str(widget_memory.value(_box(choices), "")).strip()
     if new == name:
         raise SettingError(texts.RENAME_UNSAID.format(name=texts.isolated(name)))
     seasons_folder.rename(name, new)
@@ -68,7 +68,7 @@ def _give_name(choices: Choices) -> str:
 
 def _remove(choices: Choices) -> None:
     """Ask before the season goes off the list."""
-    name = choices.season.path.stem
+    name = choices.open_season.path.stem
     if st.session_state.get(_ASKED) != name:
         st.button(texts.REMOVE, key="remove", on_click=_ask, args=(name,))
         return
@@ -85,7 +85,7 @@ def _ask(name: str) -> None:
 
 @notices.reporting
 def _set_aside(choices: Choices) -> str:
-    name = choices.season.path.stem
+    name = choices.open_season.path.stem
     _ask("")
     path = seasons_folder.set_aside(name)
     _open(plot_source.SAMPLE)

@@ -14,6 +14,8 @@ from ..state import wishes
 from ..words import texts
 
 if TYPE_CHECKING:
+    from pydeck import Layer
+
     from fieldmon.planning.plan import DayPlan
 
     from ..state.choices import Choices
@@ -24,7 +26,7 @@ def take(choices: Choices, plants: tuple[int, ...]) -> None:
     wishes.pick(choices.place, tuple(k for k in plants if 0 <= k < len(choices.plot.grid)))
 
 
-def layers(choices: Choices) -> list:
+def layers(choices: Choices) -> list[Layer]:
     """Return rings round the plants that are picked."""
     some = wishes.picked(choices.place)
     return [plant_layers.picked(choices.plot.grid, np.array(some, np.intp))] if some else []

@@ -228,7 +228,7 @@ def _record_file(choices: Choices) -> str:
     """Record findings from a file: a route filled in, a table, positions, a copy of the season."""
     from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415 - late
 
-    boxes, season = FreshBoxes(_FILE, choices), choices.season
+    boxes, season = FreshBoxes(_FILE, choices), choices.open_season
     brought = boxes.said("findings_file")
     if brought is None:  # taken out again
         return ""
@@ -275,7 +275,7 @@ def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes) -> str:
     who = str(boxes.said("corrected_by") or "").strip()
     if not who:
         raise SettingError(texts.CORRECTED_UNSAID)
-    return texts.CORRECTED.format(n=choices.season.take_corrections(read.copy, read.name, who))
+    return texts.CORRECTED.format(n=choices.open_season.take_corrections(read.copy, read.name, who))
 
 
 def recorded(
@@ -288,7 +288,7 @@ def recorded(
     their file waits with them.
     """
     try:
-        done = choices.season.record(results, source, choices.who or "")
+        done = choices.open_season.record(results, source, choices.who or "")
     except ContradictionError:
         unconfirmed.keep(Unconfirmed(choices.key, choices.day, results, source, form, messages))
         return None
@@ -338,7 +338,7 @@ def ask_about_contradictions(choices: Choices) -> None:
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return
-    season = choices.season
+    season = choices.open_season
     said = season.contradictions(waiting.results).sentences(season.plot.grid)
     if not said:  # what they contradicted was taken back since
         _ask_anew(choices, waiting)
@@ -382,10 +382,10 @@ def _record_these(choices: Choices) -> str:
 
 def show_said_otherwise(choices: Choices) -> None:
     """Show where two people said otherwise of one plant on the chosen day: both count as said."""
-    said = choices.season.contradicting(choices.on)
+    said = choices.open_season.contradicting(choices.on)
     if not len(said):
         return
-    label, signs = choices.season.label, choices.plot.grid.row_signs
+    label, signs = choices.open_season.label, choices.plot.grid.row_signs
     lines = []
     for plant in dict.fromkeys(said.plant.tolist()):
         of = said.take(said.plant == plant)
@@ -412,7 +412,7 @@ def _record_instead(choices: Choices) -> str:
     if waiting is None:
         return ""
     who = choices.who or ""
-    done = choices.season.record_instead(waiting.results, waiting.source, who)
+    done = choices.open_season.record_instead(waiting.results, waiting.source, who)
     return _end_waiting(choices, waiting, done)
 
 
@@ -422,7 +422,7 @@ def _leave_out(choices: Choices) -> str:
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
-    against = choices.season.contradictions(waiting.results).which
+    against = choices.open_season.contradictions(waiting.results).which
     return _settled(choices, np.setdiff1d(np.arange(len(waiting.results)), against))
 
 
@@ -431,7 +431,7 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     if waiting is None:
         return ""
     taken, who = waiting.results.take(which), choices.who or ""
-    done = choices.season.record(taken, waiting.source, who, confirmed=True)
+    done = choices.open_season.record(taken, waiting.source, who, confirmed=True)
     return _end_waiting(choices, waiting, done)
 
 
@@ -462,11 +462,11 @@ def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others
 
 def show_batches(choices: Choices) -> None:
     """Show what was recorded, if anything was, the last one first, each with its undo."""
-    kept = [batch for batch in choices.season.batches() if batch.rows]
+    kept = [batch for batch in choices.open_season.batches() if batch.rows]
     if not kept:
         return
     shown = kept[: _MOST + _more_shown(choices)]
-    contents = choices.season.contents([batch.number for batch in shown])
+    contents = choices.open_season.contents([batch.number for batch in shown])
     with st.expander(texts.BATCHES, expanded=True):
         for batch in shown:
             _show_batch(choices, batch, contents.get(batch.number))
@@ -522,14 +522,14 @@ def _ask_no_undo() -> None:
 def undo(choices: Choices, batch: int) -> str:
     """Take a batch back, unless somebody did so in another window."""
     _ask_no_undo()
-    if batch not in {one.number for one in choices.season.batches() if not one.undone}:
+    if batch not in {one.number for one in choices.open_season.batches() if not one.undone}:
         raise SettingError(texts.UNDONE_BEFORE)
-    return in_words(choices.season.undo(batch, who=choices.who or ""))
+    return in_words(choices.open_season.undo(batch, who=choices.who or ""))
 
 
 @notices.reporting
 def redo(choices: Choices, batch: int) -> str:
     """Let a batch that was undone count again, unless somebody did so in another window."""
-    if batch not in {one.number for one in choices.season.batches() if one.undone}:
+    if batch not in {one.number for one in choices.open_season.batches() if one.undone}:
         raise SettingError(texts.REDONE_BEFORE)
-    return in_words(choices.season.redo(batch, who=choices.who or ""))
+    return in_words(choices.open_season.redo(batch, who=choices.who or ""))

@@ -53,7 +53,7 @@ def _record(choices: Choices, plant: int, result: int) -> str:
     results = Inspections.of(np.array([plant]), np.array([result]), np.datetime64(choices.day))
     done = recording.recorded(choices, results, recording.TYPED_IN)
     if done is not None and done.batch is not None:
-        at = {one.number: one.at for one in choices.season.batches()}
+        at = {one.number: one.at for one in choices.open_season.batches()}
         st.session_state[_LAST] = choices.key, at[done.batch]
     return recording.said_of(choices, done, results)
 
@@ -63,5 +63,5 @@ def _last(choices: Choices) -> int | None:
     key, at = st.session_state.get(_LAST, ("", None))
     if key != choices.key or at is None:
         return None
-    kept = (one.number for one in choices.season.batches() if one.at == at and not one.undone)
+    kept = (one.number for one in choices.open_season.batches() if one.at == at and not one.undone)
     return next(kept, None)

@@ -80,7 +80,7 @@ def undo(choices: Choices, batch: int, after: int) -> None:
 
 def last_tap(choices: Choices) -> tuple[int, str] | None:
     """Return the batch of this person's last tap of the day that counts, and what it said."""
-    who, season = choices.who or "", choices.season
+    who, season = choices.who or "", choices.open_season
     taps = (
         b.number for b in season.batches() if (b.source, b.who, b.undone) == (SOURCE, who, False)
     )
@@ -95,7 +95,7 @@ def last_tap(choices: Choices) -> tuple[int, str] | None:
 
 def can_be_longer(choices: Choices) -> bool:
     """Return whether the day shown would go by other hours: one that is past would not."""
-    return not choices.season.is_earlier(choices.on)
+    return not choices.open_season.is_earlier(choices.on)
 
 
 @notices.reporting
@@ -104,10 +104,10 @@ def longer(choices: Choices) -> str:
 
     Of a team it is the day of the one chosen.
     """
-    settings = choices.season.settings
-    second = choices.season.worked(choices.on, choices.who or "").second
+    settings = choices.open_season.settings
+    second = choices.open_season.worked(choices.on, choices.who or "").second
     # who worked on is hours beyond the end
-    gone_s = np.nanmax(np.append(second, 0.0)) - choices.season.begun_s(
+    gone_s = np.nanmax(np.append(second, 0.0)) - choices.open_season.begun_s(
         choices.on, choices.who or ""
     )
     robot = settings.robot if choices.who is None else settings.member(choices.who).robot
@@ -116,14 +116,14 @@ def longer(choices: Choices) -> str:
     changed = replace(settings, robot=robot)
     if choices.who is not None:
         changed = _with_member(settings, replace(settings.member(choices.who), robot=robot))
-    choices.season.change(changed, settings)
+    choices.open_season.change(changed, settings)
     return _now_used(choices, texts.IN_HOURS.format(hours=number(robot.hours, "g")))
 
 
 def ask_start(choices: Choices) -> None:
     """Where the work begins later than planned, offer to begin now."""
     now, starts = choices.clock.now(), chosen_day.work_begins(choices)
-    begun = len(choices.season.worked(choices.on, choices.who or ""))
+    begun = len(choices.open_season.worked(choices.on, choices.who or ""))
     late = now.date() == choices.on and now > starts
     if not begun and late:
         said = texts.SCOUT_START.format(start=f"{starts:%H:%M}", now=f"{now:%H:%M}")
@@ -134,13 +134,13 @@ def ask_start(choices: Choices) -> None:
 
 @notices.reporting
 def _begin_now(choices: Choices) -> str:
-    settings = choices.season.settings
+    settings = choices.open_season.settings
     starts = choices.clock.now().replace(second=0).time()
     changed = replace(settings, starts=starts)
     if choices.who is not None:  # the others begin as before
         late_s = seconds(starts) - seconds(settings.starts)
         changed = _with_member(settings, replace(settings.member(choices.who), starts_s=late_s))
-    choices.season.change(changed, settings)
+    choices.open_season.change(changed, settings)
     return _now_used(choices, f"{starts:%H:%M}")
 
 

@@ -148,7 +148,7 @@ def _said(boxes: FreshBoxes) -> Application:
 @notices.reporting
 def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | None) -> str:
     """Note a treatment; say what to beware of because of it."""
-    efficacy, season = boxes.said("efficacy"), choices.season
+    efficacy, season = boxes.said("efficacy"), choices.open_season
     said = _said(boxes)
     said = replace(said, operator=said.operator or choices.who or "")
     if efficacy is None and not said.product:
@@ -186,7 +186,7 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
 
 def ask_wait(choices: Choices) -> None:
     """Ask how long a treatment has to be waited for, where no day of harvest is named for it."""
-    first = choices.season.harvest_from(choices.on)
+    first = choices.open_season.harvest_from(choices.on)
     if first is None or first[0] is not None or not (product := first[1].application.product):
         return
     boxes = FreshBoxes("wait", choices)
@@ -203,7 +203,7 @@ def _say_wait(choices: Choices, product: str, boxes: FreshBoxes) -> str:
     days = boxes.said("wait days")
     if days is None:
         raise SettingError(texts.WAIT_UNSAID)
-    choices.season.say_wait(product, int(days), choices.who or "")
+    choices.open_season.say_wait(product, int(days), choices.who or "")
     boxes.empty()
     return texts.WAIT_KEPT.format(product=texts.isolated(product))
 
@@ -211,9 +211,10 @@ def _say_wait(choices: Choices, product: str, boxes: FreshBoxes) -> str:
 def _harvest(choices: Choices) -> None:
     """Show when harvest begins, and change it on demand."""
     ask_wait(choices)
-    harvest = choices.season.settings.harvest
+    settings = choices.open_season.settings
+    harvest = settings.harvest
     st.date_input(
-        texts.HARVEST, harvest, min_value=choices.season.settings.begins, key=f"harvest {harvest}",
+        texts.HARVEST, harvest, min_value=settings.begins, key=f"harvest {harvest}",
         format=choices.units.date_format, help=texts.HARVEST_HELP,
         on_change=_change_harvest, args=(choices, f"harvest {harvest}"),
     )  # fmt: skip
@@ -221,8 +222,8 @@ def _harvest(choices: Choices) -> None:
 
 @notices.reporting
 def _change_harvest(choices: Choices, key: str) -> str:
-    settings = choices.season.settings
-    choices.season.change(
+    settings = choices.open_season.settings
+    choices.open_season.change(
         replace(settings, harvest=st.session_state[key]), settings, choices.who or ""
     )
     return texts.HARVEST_KEPT
@@ -234,7 +235,7 @@ def _change_harvest(choices: Choices, key: str) -> str:
 def _labels(choices: Choices) -> None:
     """Show the products of the season's label table, and take in another table."""
     st.caption(texts.LABELS_NOTE)
-    known = choices.season.labels()
+    known = choices.open_season.labels()
     if known:
         st.markdown(listed(dict.fromkeys(texts.isolated(one.product) for one in known)))
     boxes = FreshBoxes("labels", choices)
@@ -251,7 +252,7 @@ def _take_labels(choices: Choices, boxes: FreshBoxes) -> str:
         return ""
     table = Upload(brought.name, brought.getvalue())
     read = read_labels(table)
-    n = choices.season.keep_labels(read.value, table.name, choices.who or "")
+    n = choices.open_season.keep_labels(read.value, table.name, choices.who or "")
     boxes.empty()
     said = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
     return texts.LABELS_KEPT.format(n=n) + said

@@ -62,10 +62,10 @@ def show(choices: Choices) -> None:
 
 def layers(choices: Choices) -> list[Layer]:
     """Return the rows of each direction, until one is chosen."""
-    found = _open(choices)
-    if not found:
+    found, plants = _open(choices), choices.plot.field.plants
+    if plants is None or not found:
         return []
-    plants, notes = choices.plot.field.plants, _notes(choices, found)
+    notes = _notes(choices, found)
     key = f"directions {choices.key} {choices.units}"
     return cached.layers(key, lambda: drawn_directions.layers(plants, found, notes))
 
@@ -78,8 +78,8 @@ def legend(choices: Choices) -> list[LegendPart]:
 
 def labels(choices: Choices) -> list[Label]:
     """Return the numbers of the directions, as the buttons have them."""
-    found = _open(choices)
-    return drawn_directions.numbers(choices.plot.field.plants, found) if found else []
+    found, plants = _open(choices), choices.plot.field.plants
+    return drawn_directions.numbers(plants, found) if found and plants is not None else []
 
 
 def _open(choices: Choices) -> tuple[RowDirection, ...]:

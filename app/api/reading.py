@@ -82,11 +82,11 @@ def _checked(body: bytes, name: str) -> Any:  # noqa: ANN401 - as described
         sent = json.loads(body, parse_constant=_refused)
     except (ValueError, RecursionError) as error:
         raise ObservationError(f"What is sent must be JSON, but it is not ({error}).") from error
-    for error in _validator(name).iter_errors(sent):
-        where = "/".join(map(str, error.absolute_path)) or "it"
+    for wrong in _validator(name).iter_errors(sent):
+        where = "/".join(map(str, wrong.absolute_path)) or "it"
         raise ObservationError(
             f"What is sent must be as {description.PATH}/openapi.json says, but {where} is not: "
-            f"{error.message[:200]}."
+            f"{wrong.message[:200]}."
         )
     return sent
 

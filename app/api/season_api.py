@@ -29,6 +29,7 @@ from fieldmon.errors import (
     ObservationError,
     SettingError,
 )
+from fieldmon.io.readers.phone_file import day
 from fieldmon.monitoring import findings, photos, photos_asked, scouts
 from fieldmon.monitoring.file_problems import FileHeld
 from fieldmon.monitoring.transactions import waiting_at_most
@@ -71,7 +72,7 @@ async def _plot(request: Request) -> Response:
 
 async def _day(request: Request) -> Response:
     season, scout = await _asked_by(request)
-    on = reading.day(request.query_params.get("on"))
+    on = day(request.query_params.get("on"))
     has = reading.plan(request.query_params.get("plan"))
     return _json(await run_in_threadpool(documents.day_document, season, scout, on, has))
 
@@ -287,4 +288,4 @@ def application() -> Starlette:
     ]
     refusals = {404: _not_found, 405: _wrong_method}
     packed = [Middleware(GZipMiddleware, minimum_size=10_000, compresslevel=4)]
-    return Starlette(routes=routes, exception_handlers=refusals, middleware=packed)  # type: ignore[arg-type]
+    return Starlette(routes=routes, exception_handlers=refusals, middleware=packed)

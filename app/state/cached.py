@@ -8,6 +8,7 @@ leaves out, beside a key that stands for them. `cached_files` and `cached_simula
 
 from __future__ import annotations
 
+from datetime import date
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,7 +29,6 @@ from . import opened_seasons
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from datetime import date
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -166,13 +166,13 @@ def season_plan_now(
 
 def _day_of(of: tuple[str, str | None]) -> tuple[date, day_ahead.Part]:
     day, who = of
-    return np.datetime64(day).item(), day_ahead.Part(name=who or "")
+    return date.fromisoformat(day), day_ahead.Part(name=who or "")
 
 
 @st.cache_resource(max_entries=FEW)
 def estate_plot(key: str, revision: str, day: str, _season: Season) -> EstatePlot:
     """Return a season's plot as its day begins, for a day shared with other plots."""
-    return estate_day.EstatePlot.of(_season, np.datetime64(day).item())
+    return estate_day.EstatePlot.of(_season, date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_DAYS)
@@ -187,16 +187,16 @@ def kept_route(
     revision: str,
     of: tuple[str, str | None],
     _season: Season,
-) -> Array:
+) -> NDArray[np.int32]:
     """Return the plants of the route that was given out for a day; empty if none was."""
     day, who = of
-    return _season.kept_route(np.datetime64(day).item(), who or "")
+    return _season.kept_route(date.fromisoformat(day), who or "")
 
 
 @st.cache_resource(max_entries=_DAYS)
 def planned_only(key: str, revision: str, day: str, _season: Season) -> tuple[date, ...]:
     """Return the planned days up to a day of which nothing is recorded."""
-    return _season.planned_only(np.datetime64(day).item())
+    return _season.planned_only(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=FEW)
@@ -208,7 +208,7 @@ def planned_and_done(
 ) -> PlannedAndDone | None:
     """Return a day's kept plan, held to what was done; None: none was kept."""
     day, who = of
-    return _season.planned_and_done(np.datetime64(day).item(), who)
+    return _season.planned_and_done(date.fromisoformat(day), who)
 
 
 @st.cache_resource(max_entries=FEW)
@@ -220,7 +220,7 @@ def worked(
 ) -> Route:
     """Return a day's route as it was worked; empty if nothing was recorded."""
     day, who = of
-    return worked_route(_season, np.datetime64(day).item(), who)
+    return worked_route(_season, date.fromisoformat(day), who)
 
 
 @st.cache_resource(max_entries=FEW)
@@ -232,37 +232,37 @@ def kept_days(key: str, revision: str, _season: Season) -> tuple[DayFigures, ...
 @st.cache_resource(max_entries=_DAYS)
 def day_figures(key: str, revision: str, day: str, _season: Season) -> DayFigures:
     """Return a day of a season in figures."""
-    return _season.day_figures(np.datetime64(day).item())
+    return _season.day_figures(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS)
 def progress(key: str, revision: str, day: str, _season: Season) -> Progress:
     """Return how far the inspections are after a day of a season."""
-    return _season.progress(np.datetime64(day).item())
+    return _season.progress(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_DAYS)
 def still_infested(key: str, revision: str, day: str, _season: Season) -> PlotEstimate:
     """Return how many plants are still infested after a day of a season, flagged ones too."""
-    return _season.still_infested(np.datetime64(day).item())
+    return _season.still_infested(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS)
 def flagged(key: str, revision: str, day: str, _season: Season) -> float:
     """Return how many plants found are still infested after a day of a season."""
-    return _season.flagged(np.datetime64(day).item())
+    return _season.flagged(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS)
 def learnt(key: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:
     """Return what the inspections up to a day of a season tell of the insects."""
-    return _season.learnt(np.datetime64(day).item())
+    return _season.learnt(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS)
 def told_otherwise(key: str, revision: str, day: str, _season: Season) -> tuple[ToldOtherwise, ...]:
     """Return with which inspections up to a day of a season another detection rate was said."""
-    return _season.told_otherwise(np.datetime64(day).item())
+    return _season.told_otherwise(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)
@@ -270,7 +270,7 @@ def learnt_efficacy(
     key: str, revision: str, day: str, product: str, _season: Season
 ) -> TreatmentEffect | None:
     """Return what a season learnt until a day of how well a product works."""
-    return _season.learnt_efficacy(np.datetime64(day).item(), product)
+    return _season.learnt_efficacy(date.fromisoformat(day), product)
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)
@@ -282,38 +282,38 @@ def advice(
     _season: Season,
 ) -> Advice:
     """Return what a season advises on a day, by these settings."""
-    return _season.advice(np.datetime64(day).item(), settings)
+    return _season.advice(date.fromisoformat(day), settings)
 
 
 @st.cache_resource(max_entries=_MAPS)
 def forecast(key: str, revision: str, day: str, _season: Season) -> Forecast:
     """Return how many plants are infested on the mornings after a day of a season."""
-    return _season.forecast(np.datetime64(day).item())
+    return _season.forecast(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS)
 def season_hot_spots(key: str, revision: str, day: str, _season: Season) -> HotSpots:
     """Return where finds cluster on a day of a season."""
-    number = _season.settings.day(np.datetime64(day).item())
+    number = _season.settings.day(date.fromisoformat(day))
     return hot_spots_on(_season.history, number)
 
 
 @st.cache_resource(max_entries=_MAPS)
 def evening(key: str, revision: str, day: str, _season: Season) -> Array:
     """Return the chance map of a day after what was recorded of it."""
-    return _season.evening(np.datetime64(day).item())
+    return _season.evening(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS)
 def level_range(key: str, revision: str, day: str, _season: Season) -> LevelRange:
     """Return how far that chance map may be off as a whole."""
-    return _season.level_range(np.datetime64(day).item())
+    return _season.level_range(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS)
 def morning(key: str, revision: str, day: str, _season: Season) -> Array:
     """Return the chance map of a morning."""
-    return _season.morning(np.datetime64(day).item())
+    return _season.morning(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)
@@ -325,7 +325,7 @@ def season_report(
     _season: Season,
 ) -> Report:
     """Return the report of a season up to a day."""
-    return reports.season_report(_season, np.datetime64(day).item(), units)
+    return reports.season_report(_season, date.fromisoformat(day), units)
 
 
 def layers(key: str, make: Callable[[], list[Layer]]) -> list[Layer]:

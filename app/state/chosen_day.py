@@ -20,6 +20,8 @@ from fieldmon.plot.local_clock import grid_clock
 from . import cached
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.learnt import Learnt
@@ -99,10 +101,10 @@ def with_bound(choices: Choices, plan: DayPlan) -> DayPlan:
     return _BOUNDED[plan]
 
 
-def given_out(choices: Choices) -> cached.Array:
+def given_out(choices: Choices) -> NDArray[np.int32]:
     """Return the plants of the route that a season keeps as given out for the day, or none."""
     of = choices.day, choices.who
-    return cached.kept_route(choices.key, choices.revision, of, choices.season)
+    return cached.kept_route(choices.key, choices.revision, of, choices.open_season)
 
 
 def is_given_out(choices: Choices, plan: DayPlan) -> bool:
@@ -114,7 +116,7 @@ def is_given_out(choices: Choices, plan: DayPlan) -> bool:
 def planned_and_done(choices: Choices) -> PlannedAndDone | None:
     """Return the plan that a season keeps of the day, held to what was done; None: none."""
     of = choices.day, choices.who
-    return cached.planned_and_done(choices.key, choices.revision, of, choices.season)
+    return cached.planned_and_done(choices.key, choices.revision, of, choices.open_season)
 
 
 def chance(choices: Choices) -> cached.Array:
@@ -126,7 +128,7 @@ def chance(choices: Choices) -> cached.Array:
 
 def evening(choices: Choices, day: str) -> cached.Array:
     """Return ``(n,)`` what a season believes on the evening of a day (ISO)."""
-    return cached.evening(choices.key, choices.revision, day, choices.season)
+    return cached.evening(choices.key, choices.revision, day, choices.open_season)
 
 
 def level_range(choices: Choices) -> LevelRange:
@@ -141,10 +143,10 @@ def level_range(choices: Choices) -> LevelRange:
 
 def morning(choices: Choices, day: str) -> cached.Array:
     """Return ``(n,)`` what a season believed on the morning of a day (ISO)."""
-    return cached.morning(choices.key, choices.revision, day, choices.season)
+    return cached.morning(choices.key, choices.revision, day, choices.open_season)
 
 
-def states(choices: Choices) -> cached.Array:
+def states(choices: Choices) -> NDArray[np.int8]:
     """Return ``(n,)`` found (1), clean (0) or never inspected (-1), by records and inspections."""
     if choices.season is None:
         return cached.newest_records(*_recorded(choices)).state
@@ -159,7 +161,7 @@ def hot_spots(choices: Choices) -> HotSpots:
     return season_hot_spots(choices, choices.day)
 
 
-def finds_apart(choices: Choices) -> tuple[cached.Array, cached.Array] | None:
+def finds_apart(choices: Choices) -> tuple[NDArray[np.bool_], NDArray[np.bool_]] | None:
     """Return ``(n,)`` which finds are only of records, and which count no more; None: no season."""
     if choices.season is None:
         return None
@@ -169,10 +171,10 @@ def finds_apart(choices: Choices) -> tuple[cached.Array, cached.Array] | None:
 
 def season_hot_spots(choices: Choices, day: str) -> HotSpots:
     """Return a season's hot spots on a day (ISO)."""
-    return cached.season_hot_spots(choices.key, choices.revision, day, choices.season)
+    return cached.season_hot_spots(choices.key, choices.revision, day, choices.open_season)
 
 
-def ages(choices: Choices) -> cached.Array:
+def ages(choices: Choices) -> NDArray[np.int64]:
     """Return ``(n,)`` days since each plant was inspected, or its record made; -1: never."""
     newest = cached.newest_records(*_recorded(choices)).day
     since = (np.datetime64(choices.day, "D") - newest).astype(np.int64)
@@ -184,9 +186,9 @@ def ages(choices: Choices) -> cached.Array:
     return np.where(last < 0, recorded, day - last)
 
 
-def counts(choices: Choices) -> tuple[cached.Array, cached.Array]:
+def counts(choices: Choices) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return how often each plant was inspected, and found, in a season up to the day, ``(n,)``."""
-    done = choices.season.history.inspections
+    done = choices.open_season.history.inspections
     here = (done.date <= np.datetime64(choices.day)) & (done.result != SKIPPED)
     n = len(choices.plot.grid)
     finds = here & (done.result == FOUND)
@@ -195,12 +197,12 @@ def counts(choices: Choices) -> tuple[cached.Array, cached.Array]:
 
 def progress(choices: Choices) -> Progress:
     """Return how far a season's inspections are."""
-    return cached.progress(choices.key, choices.revision, choices.day, choices.season)
+    return cached.progress(choices.key, choices.revision, choices.day, choices.open_season)
 
 
 def last_visit(choices: Choices, until: date) -> date | None:
     """Return the last day up to a date on which any plant was inspected; None: there is none."""
-    days = choices.season.history.inspections.inspected.date
+    days = choices.open_season.history.inspections.inspected.date
     days = days[days <= np.datetime64(until, "D")]
     return days[-1].item() if len(days) else None
 
@@ -209,58 +211,58 @@ def planned_only(choices: Choices, until: date) -> tuple[date, ...]:
     """Return the planned days up to a date of which nothing is recorded."""
     if choices.today is not None:  # a day that is not over yet will be
         until = min(until, choices.today - timedelta(days=1))
-    return cached.planned_only(choices.key, choices.revision, str(until), choices.season)
+    return cached.planned_only(choices.key, choices.revision, str(until), choices.open_season)
 
 
 def n_done(choices: Choices) -> int:
     """Return how many plants whoever is shown told of on the day, inspected or not."""
-    told = choices.season.history.inspections.on(choices.on)
+    told = choices.open_season.history.inspections.on(choices.on)
     return len(np.unique(made_by(told, choices.who).plant))
 
 
 def still_infested(choices: Choices, day: str) -> PlotEstimate:
     """Return how many plants are still infested after a day, flagged ones among them."""
-    return cached.still_infested(choices.key, choices.revision, day, choices.season)
+    return cached.still_infested(choices.key, choices.revision, day, choices.open_season)
 
 
 def flagged(choices: Choices) -> float:
     """Return how many of the plants found are still infested, as expected: flagged only."""
-    return cached.flagged(choices.key, choices.revision, choices.day, choices.season)
+    return cached.flagged(choices.key, choices.revision, choices.day, choices.open_season)
 
 
 def learnt(choices: Choices) -> tuple[Learnt, ...]:
     """Return what a season's inspections tell of the insects."""
-    return cached.learnt(choices.key, choices.revision, choices.day, choices.season)
+    return cached.learnt(choices.key, choices.revision, choices.day, choices.open_season)
 
 
 def told_otherwise(choices: Choices) -> tuple[ToldOtherwise, ...]:
     """Return with which inspections another detection rate was said than the season's own."""
-    return cached.told_otherwise(choices.key, choices.revision, choices.day, choices.season)
+    return cached.told_otherwise(choices.key, choices.revision, choices.day, choices.open_season)
 
 
 def forecast(choices: Choices) -> Forecast:
     """Return how many plants are infested after the day shown if nobody inspects any more."""
-    return cached.forecast(choices.key, choices.revision, choices.day, choices.season)
+    return cached.forecast(choices.key, choices.revision, choices.day, choices.open_season)
 
 
 def figures(choices: Choices, day: str) -> DayFigures:
     """Return a day (ISO) of a season in figures."""
-    return cached.day_figures(choices.key, choices.revision, day, choices.season)
+    return cached.day_figures(choices.key, choices.revision, day, choices.open_season)
 
 
 def figures_so_far(choices: Choices) -> list[DayFigures]:
     """Return the days up to the chosen one on which something happened, and that one."""
-    kept = cached.kept_days(choices.key, choices.revision, choices.season)
+    kept = cached.kept_days(choices.key, choices.revision, choices.open_season)
     return [*(one for one in kept if one.on < choices.on), figures(choices, choices.day)]
 
 
 def treated(choices: Choices, day: str) -> int:
     """Return how many plants of a season were treated on a day (ISO)."""
-    on = [one.place.plants for one in choices.season.treatments() if str(one.on) == day]
+    on = [one.place.plants for one in choices.open_season.treatments() if str(one.on) == day]
     return int(np.count_nonzero(np.any(on, axis=0))) if on else 0
 
 
-def found(choices: Choices) -> cached.Array:
+def found(choices: Choices) -> NDArray[np.int32]:
     """Return the plants found on the day, by number; none without a season."""
     if choices.season is None:
         return np.empty(0, np.int32)
@@ -270,7 +272,7 @@ def found(choices: Choices) -> cached.Array:
 
 def season_days(choices: Choices) -> list[str]:
     """Return the days (ISO) of a season from its first up to its last or the chosen one."""
-    season = choices.season
+    season = choices.open_season
     until: date = max(choices.on, season.last_date())
     first = np.datetime64(season.settings.begins, "D")
     return [str(day) for day in np.arange(first, np.datetime64(until, "D") + 1)]

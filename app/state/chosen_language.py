@@ -44,5 +44,5 @@ def carry_over(before: str) -> None:
     for name in chosen_units.KEYS:
         was, new = getattr(usual(before), name), getattr(usual(now), name)
         if was != new and widget_memory.value(name) == was:
-            widget_memory.change((name,), lambda _, new=new: new)
+            widget_memory.put(name, new)
     unit_boxes.carry_over(units_before)

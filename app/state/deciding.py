@@ -63,7 +63,7 @@ def _meant(key: str, now: float) -> float:
 def learnt(choices: Choices) -> TreatmentEffect | None:
     """Return what the season learnt of how well the product works; None: nothing yet."""
     return cached.learnt_efficacy(
-        choices.key, choices.revision, choices.day, product(), choices.season
+        choices.key, choices.revision, choices.day, product(), choices.open_season
     )
 
 
@@ -106,5 +106,5 @@ def product() -> str:
 def advice(choices: Choices) -> Advice:
     """Return what the season advises on the chosen day."""
     return cached.advice(
-        choices.key, choices.revision, choices.day, asked(learnt(choices)), choices.season
+        choices.key, choices.revision, choices.day, asked(learnt(choices)), choices.open_season
     )

@@ -25,7 +25,7 @@ from . import brought_files, plot_edits, plot_files, plot_source, row_settings, 
 from .brought_files import BLOCKS, PLANTS, PLOT, ROWS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import NDArray
     from shapely.geometry.base import BaseGeometry
@@ -164,34 +164,56 @@ def bring(plot: Plot) -> None:
     Its headlands are not known any more.
     """
     field = plot.field
+    brought_files.keep_uploads(PLOT, (Upload(_FILE, _outline(field)),))
+    _bring_plants_or_rows(field)
+    _bring_blocks(field)
+    key = plot_files.outline(plot_files.brought(), lambda *_: 0).key
+    plot_files.draw(key, _drawn_on(field))
+    row_settings.say(key, _said_of_rows(plot))
+
+
+def _outline(field: Field) -> bytes:
+    """Return the boundary of a plot as a GeoJSON file, as `geojson` makes it where it can."""
     parts = shapely.get_parts(field.boundary)
     if len(parts) == 1 and not parts[0].interiors:
-        data = geojson(tuple(parts[0].exterior.coords)[:-1], field.name)
-    else:
-        shape = shapely.geometry.mapping(field.boundary)
-        feature = {"type": "Feature", "properties": {"name": field.name}, "geometry": shape}
-        data = json.dumps(feature, ensure_ascii=False).encode()
-    brought_files.keep_uploads(PLOT, (Upload(_FILE, data),))
-    if field.plants is not None:
-        brought_files.keep_uploads(PLANTS, (Upload(_PLANTS_FILE, measured_plants(field)),))
+        return geojson(tuple(parts[0].exterior.coords)[:-1], field.name)
+    shape = shapely.geometry.mapping(field.boundary)
+    feature = {"type": "Feature", "properties": {"name": field.name}, "geometry": shape}
+    return json.dumps(feature, ensure_ascii=False).encode()
+
+
+def _bring_plants_or_rows(field: Field) -> None:
+    """Bring the measured plants of a plot and what they are called; else the rows drawn on it."""
+    if (plants := field.plants) is not None:
+        called = {"block": field.plant_blocks, "row": field.plant_rows, "plant": field.plant_names}
+        columns = {kind: names.tolist() for kind, names in called.items() if names is not None}
+        said = [{kind: names[k] for kind, names in columns.items()} for k in range(len(plants))]
+        data = _features(shapely.points(plants.tolist()), said)
+        brought_files.keep_uploads(PLANTS, (Upload(_PLANTS_FILE, data),))
     elif len(lines := shapely.get_parts(field.row_lines)):
-        brought_files.keep_uploads(ROWS, (Upload(_ROWS_FILE, _features(lines, [{}] * len(lines))),))
+        data = _features(lines, [{}] * len(lines))
+        brought_files.keep_uploads(ROWS, (Upload(_ROWS_FILE, data),))
+
+
+def _bring_blocks(field: Field) -> None:
     if field.blocks:
         stated = [{"name": one.name, "bearing": one.row_bearing_deg,
                    "row_spacing": one.row_spacing_m, "plant_spacing": one.plant_spacing_m}
                   for one in field.blocks]  # fmt: skip
-        areas = [block.area for block in field.blocks]
-        brought_files.keep_uploads(BLOCKS, (Upload(_BLOCKS_FILE, _features(areas, stated)),))
-    drawn = [plot_edits.Edit(plot_edits.GATE, (field.gate,))] if field.gate is not None else []
-    for kind, lines in (
-        (plot_edits.PATH, shapely.get_parts(field.paths)),
-        (plot_edits.NO_GO, [area.exterior for area in shapely.get_parts(field.no_go)]),
-    ):
-        drawn += [plot_edits.Edit(kind, tuple(line.coords)) for line in lines]
-    files = plot_files.of_session()
-    key = plot_files.outline(files, lambda *_: 0).key
-    plot_files.draw(key, tuple(drawn))
-    row_settings.say(key, _said_of_rows(plot))
+        data = _features([block.area for block in field.blocks], stated)
+        brought_files.keep_uploads(BLOCKS, (Upload(_BLOCKS_FILE, data),))
+
+
+def _drawn_on(field: Field) -> tuple[plot_edits.Edit, ...]:
+    """Return the gate, paths and no-go areas of a plot as if they had been drawn on it."""
+    gate = [] if field.gate is None else [plot_edits.Edit(plot_edits.GATE, (field.gate,))]
+    no_go = (area.exterior for area in shapely.get_parts(field.no_go))
+    return (
+        *gate,
+        *(plot_edits.Edit(plot_edits.PATH, tuple(line.coords))
+          for line in shapely.get_parts(field.paths)),
+        *(plot_edits.Edit(plot_edits.NO_GO, tuple(ring.coords)) for ring in no_go),
+    )  # fmt: skip
 
 
 def _said_of_rows(plot: Plot) -> dict[str, float | bool]:
@@ -220,7 +242,8 @@ def _laid_m(plot: Plot, name: str) -> float:
     if not field.blocks:
         return usual
     unstated = [one.area for one in field.blocks if getattr(one, name) is None]
-    inside = shapely.contains_xy(shapely.union_all(unstated), *grid.lonlat().T)
+    lon, lat = grid.lonlat().T
+    inside = shapely.contains_xy(shapely.union_all(unstated), lon, lat)
     rows = [grid.xy_m[one] for one in np.split(np.arange(len(grid)), grid.row_start[1:-1])
             if inside[one].all() and len(one) > 1]  # fmt: skip
     if name == "plant_spacing_m":
@@ -234,7 +257,7 @@ def _laid_m(plot: Plot, name: str) -> float:
     return float(np.median(steps)) if len(steps) else usual
 
 
-def _features(shapes: Sequence[BaseGeometry], columns: Sequence[dict[str, object]]) -> bytes:
+def _features(shapes: Iterable[BaseGeometry], columns: Sequence[Mapping[str, object]]) -> bytes:
     """Return shapes with their columns as a GeoJSON file."""
     features = [
         {"type": "Feature", "properties": said, "geometry": shapely.geometry.mapping(shape)}
@@ -258,14 +281,6 @@ def geojson(corners: Points, name: str) -> bytes:
     shape = {"type": "Polygon", "coordinates": [[[*at] for at in ring.coords]]}
     feature = {"type": "Feature", "properties": {"name": name}, "geometry": shape}
     return json.dumps(feature, ensure_ascii=False).encode()
-
-
-def measured_plants(field: Field) -> bytes:
-    """Return the measured plants of a plot and what they are called as a GeoJSON file."""
-    called = {"block": field.plant_blocks, "row": field.plant_rows, "plant": field.plant_names}
-    columns = {kind: names.tolist() for kind, names in called.items() if names is not None}
-    said = [{kind: names[k] for kind, names in columns.items()} for k in range(len(field.plants))]
-    return _features(list(shapely.points(field.plants)), said)
 
 
 def data_of_plot() -> bytes | None:

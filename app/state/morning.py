@@ -68,7 +68,7 @@ def _in_season(choices: Choices, plan: DayPlan) -> dict[str, bool]:
     worked = chosen_day.progress(choices).inspected_today > 0
     over = not len(plan.route)
     done = {}
-    if choices.on > choices.season.settings.begins:
+    if choices.on > choices.open_season.settings.begins:
         done[LOOK_BACK] = left_unsaid(choices) is None
     done[PLAN] = worked or chosen_day.is_given_out(choices, plan)
     if not over:
@@ -86,7 +86,7 @@ def left_unsaid(choices: Choices) -> date | None:
     """Return the last planned day of which nothing is recorded, if nothing is of a later one."""
     before = _day_before(choices)
     missing = chosen_day.planned_only(choices, before)
-    recorded = choices.season.history.inspections.date
+    recorded = choices.open_season.history.inspections.date
     recorded = recorded[recorded <= np.datetime64(before, "D")]
     is_last = missing and (not len(recorded) or missing[-1] > recorded[-1].item())
     return missing[-1] if is_last else None

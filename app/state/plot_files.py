@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 #: what is put into cache keys for the sample estate's files
 _SAMPLE = "sample/"
 _LAYING = "laying"
+_NOWHERE = "A plot must have a boundary or measured plants, but its files hold neither."
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +49,13 @@ class Files:
     plants: File | None
     rows: File | None = None
     blocks: File | None = None
+
+    @property
+    def place(self) -> File:
+        """Return the file that says where the plot lies."""
+        if (file := self.plot or self.plants) is None:
+            raise RuntimeError(_NOWHERE)
+        return file
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +117,18 @@ def of_sample() -> Files:
 
 def of_session() -> Files | None:
     """Return the files that this session brought; None while they make no plot."""
-    brought = brought_files.brought()
+    kept = brought_files.brought()
     kinds = (brought_files.PLOT, brought_files.RECORDS, brought_files.PLANTS,
              brought_files.ROWS, brought_files.BLOCKS)  # fmt: skip
-    files = Files(*(brought.get(kind) for kind in kinds))
+    files = Files(*(kept.get(kind) for kind in kinds))
     return None if files.plot is None and files.plants is None else files
+
+
+def brought() -> Files:
+    """Return the same where they make a plot for sure."""
+    if (files := of_session()) is None:
+        raise RuntimeError(_NOWHERE)
+    return files
 
 
 def _sample(kind: str, name: str) -> File:
@@ -132,16 +147,15 @@ def outline(files: Files, which: Which) -> Outline:
     key = f"{key}{files.plot.key}{options}{number}"
     if measured is not None and files.plants is not None:
         far = settled(files.plants, ReadOptions()).far
-        own = cached_files.plants_on(key, far, measured, field)
-        measured, heard = own.value, (*heard, *messages_of(files.plants, own))
+        here = cached_files.plants_on(key, far, measured, field)
+        measured, heard = here.value, (*heard, *messages_of(files.plants, here))
         field = with_plants(field, measured)
     field, drawn_there, longer = _with_drawn(files, field)
     if files.plot.key.startswith(_SAMPLE):
-        field = replace(
-            field, paths=cached_files.paths(_sample("path", sample_estate.PATHS).source)
-        )
+        paths = cached_files.paths(sample_estate.FOLDER / sample_estate.PATHS)
+        field = replace(field, paths=paths)
     said = messages_of(files.plot, read)
-    own = tuple(one for one in said if one.message.feature in (None, field.name))
+    own = (one for one in said if one.message.feature in (None, field.name))
     said = (*own, *heard, *drawn_there)
     return Outline(f"{key}{longer}", field, read.value, measured, said)
 
@@ -185,15 +199,15 @@ def prepared(files: Files, outline: Outline) -> PlotFromFiles:
 
 def _said_of_place(files: Files, plot: Plot) -> tuple[FileMessage, ...]:
     """Return what is doubtful about where the plot lies, of the file that says where."""
-    file = files.plot or files.plants or files.rows
-    exchanged = dict(answers(file.asked)).get("swap_axes") == "yes"
+    asked = files.place.asked
+    exchanged = dict(answers(asked)).get("swap_axes") == "yes"
     said = said_of_place(plot.field, exchanged=exchanged)
-    return tuple(FileMessage(file.asked, message) for message in said)
+    return tuple(FileMessage(asked, message) for message in said)
 
 
 def _said_of_rows(files: Files, plot: Plot) -> tuple[FileMessage, ...]:
     """Return how plants stand in rows, as it is said of the file that tells of them."""
-    file = files.plants or files.rows or files.plot
+    file = files.plants or files.rows or files.place
     return tuple(FileMessage(file.asked, message) for message in Laid(plot).messages)
 
 
@@ -202,13 +216,21 @@ def _plot(files: Files, outline: Outline) -> tuple[Plot, str]:
     st.session_state[_LAYING] = outline.key
     edits, field = drawn(outline.key), outline.field
     if field is None:
-        choices = PlantingChoices(**row_settings(outline.key))
-        sources = PlotSources(plants=files.plants.source)
-        around = cached_files.plot_around(outline.key, choices, sources, outline.measured)
+        around, key = _around(files, outline)
         if not edits:
-            return around, f"{outline.key}{choices}"
+            return around, key
         field = around.field
     return laid(outline.key, edits, field, edits)
+
+
+def _around(files: Files, outline: Outline) -> tuple[Plot, str]:
+    """Return the plot of measured plants about which nobody drew a boundary."""
+    if files.plants is None or outline.measured is None:
+        raise RuntimeError(_NOWHERE)
+    choices = PlantingChoices(**row_settings(outline.key))
+    sources = PlotSources(plants=files.plants.source)
+    around = cached_files.plot_around(outline.key, choices, sources, outline.measured)
+    return around, f"{outline.key}{choices}"
 
 
 def laying() -> str:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .brought_files import File, FileMessage
 
 S = TypeVar("S", "CanopySource", "RiskSource")
-T = TypeVar("T")
+T = TypeVar("T", "Plot", "cached.Array")
 #: what the rasters are kept as
 MISSING, RISK = "missing_plants", "risk"
 #: the keys of the boxes that say how they are read

@@ -157,7 +157,7 @@ def _plan(ready: _Ready, turn: EstateTurn) -> DayPlan:
 
 
 def _ready(plot: PlotState) -> _Ready:
-    return _of_files(plot) if plot.number is not None else _of_season(plot)
+    return _of_season(plot) if plot.number is None else _of_files(plot, plot.number)
 
 
 def _of_season(plot: PlotState) -> _Ready:
@@ -170,10 +170,10 @@ def _of_season(plot: PlotState) -> _Ready:
     return _Ready(plot, key, settings.sampler, known)
 
 
-def _of_files(plot: PlotState) -> _Ready:
+def _of_files(plot: PlotState, number: int) -> _Ready:
     is_sample = plot.source == plot_source.SAMPLE
-    files = plot_files.of_sample() if is_sample else plot_files.of_session()
-    outline = plot_files.outline(files, lambda _file, _fields: plot.number)
+    files = plot_files.of_sample() if is_sample else plot_files.brought()
+    outline = plot_files.outline(files, lambda _file, _fields: number)
     made = plot_files.prepared(files, outline)
     on = sample_estate.LAST_DAY if is_sample else local_clock(made.plot.field).today()
     settings = PlanSettings(Robot(hours=1), sampler(USUAL), assumptions.prior())

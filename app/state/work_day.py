@@ -36,8 +36,8 @@ def begin_from_address(source: str) -> None:
     if st.session_state.setdefault(_READ, False):
         return
     st.session_state[_READ] = True
-    with suppress(ValueError, TypeError):
-        choose(source, date.fromisoformat(st.query_params.get(KEY)))
+    with suppress(ValueError):
+        choose(source, date.fromisoformat(st.query_params.get(KEY, "")))
 
 
 def of(source: str, calendar: Calendar) -> date:

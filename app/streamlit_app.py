@@ -4,6 +4,7 @@ import importlib
 import sys
 from contextlib import ExitStack
 from pathlib import Path
+from types import ModuleType
 
 import streamlit as st
 
@@ -38,7 +39,7 @@ st.html(_HERE / "style" / f"slider_from_{side}.css")
 preload.start()
 
 
-def view(name: str):  # noqa: ANN201 - a page's module
+def view(name: str) -> ModuleType:
     """Return a page's module, loaded when it is turned to."""
     return importlib.import_module(f".views.{name}", __package__)
 

@@ -79,7 +79,9 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
             _offer_as_now(choices)
             return
         wanted, hours = (
-            _wanted(name, settings, work) if choices.who is None else _wanted_of_team(name, choices)
+            _wanted(name, settings, work)
+            if choices.who is None
+            else _wanted_of_team(name, choices, choices.who)
         )
         others = replace(wanted, robot=wanted.robot.with_hours(settings.robot.hours))
         # what was changed with the day is used there
@@ -143,13 +145,13 @@ def _earlier(by: MonitoringSettings, on: date) -> str:
 
 
 def _wanted_of_team(
-    name: str, choices: Choices
+    name: str, choices: Choices, who: str
 ) -> tuple[MonitoringSettings, AbstractContextManager[object]]:
     """Say how the one works whose day is shown; return settings with the sampler that is chosen."""
     settings, starts = choices.open_season.settings, chosen_day.work_begins(choices)
-    robot = settings.member(choices.who).robot
+    robot = settings.member(who).robot
     does = strategy_name(settings.sampler, robot.hours, robot.look_s)
-    said = {"name": texts.isolated(choices.who), "strategy": does, "starts": f"{starts:%H:%M}"}
+    said = {"name": texts.isolated(who), "strategy": does, "starts": f"{starts:%H:%M}"}
     st.caption(texts.TEAM_SETTINGS.format(**said))
     return _with_sampler(settings, f"{name} {settings.sampler}"), nullcontext()
 
@@ -216,7 +218,7 @@ def _change(choices: Choices, wanted: MonitoringSettings, settings: MonitoringSe
 @notices.reporting
 def _undo(choices: Choices) -> str:
     """Take the last change back, and say what it was and what that makes of days past."""
-    season, said = choices.season, []
+    season, said = choices.open_season, list[str]()
     settings = season.settings
     with telling_anew(season, settings, season.before_change() or settings, said.append):
         said.append(taken_back(settings, season.undo_change(choices.who or "")))

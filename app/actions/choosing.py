@@ -118,7 +118,7 @@ def _options() -> list[str]:
 
 
 def _source(options: list[str]) -> str:
-    chosen = widget_memory.show(
+    chosen: str = widget_memory.show(
         st.selectbox, texts.PLOT_FROM, options, key=plot_source.KEY, filter_mode=None,
         label_visibility="collapsed", format_func=_source_name,
     )  # fmt: skip
@@ -173,8 +173,10 @@ def _from_files(source: str, wait: Wait, work: Work) -> Choices | None:
         said = f"{chosen_units.units().said_day(day)} {day.year}"
         st.caption(texts.SAMPLE_NOTE.format(day=said))
         files = plot_files.of_sample()
-    elif (files := plot_files.of_session()) is None:
+    elif (brought := plot_files.of_session()) is None:
         return None
+    else:
+        files = brought
     which, when = st.columns([3, 2])
     with which:
         outline = plot_files.outline(files, _which)
@@ -233,7 +235,8 @@ def mark_day(choices: Choices, part: str) -> None:
     """Say above a part of a room that its day is not today, with the way back."""
     if choices.is_today:
         return
-    day, now = (choices.units.said_day(on, choices.today) for on in (choices.day, choices.today))
+    today = choices.today or choices.on
+    day, now = (choices.units.said_day(on, today) for on in (choices.day, today))
     # below each other: beside the sentence there is no room for the button's words
     said = [texts.OTHER_DAY.format(day=day, today=now)]
     if part in _RECORDING:
@@ -323,12 +326,11 @@ def choose_display() -> None:
         if code != language.ENGLISH:
             st.caption(texts.DRAFT if code in language.DRAFTS else texts.MACHINE_MADE)
         now = chosen_units.units()
-        for key, label, options in zip(
-            chosen_units.KEYS, (texts.LENGTH, texts.AREA, texts.DATE_LIKE),
-            (LENGTHS, AREAS_M2, DATES), strict=True,
-        ):  # fmt: skip
+        options = [*LENGTHS], [*AREAS_M2], [*DATES]
+        labels = texts.LENGTH, texts.AREA, texts.DATE_LIKE
+        for key, label, names_of in zip(chosen_units.KEYS, labels, options, strict=True):
             widget_memory.show(
-                st.selectbox, label, list(options), key=key, default=getattr(now, key),
+                st.selectbox, label, names_of, key=key, default=getattr(now, key),
                 filter_mode=None, format_func=_unit_name, on_change=unit_boxes.carry_over,
                 args=(now,),
             )  # fmt: skip

@@ -27,6 +27,7 @@ from .treating import Zoned
 if TYPE_CHECKING:
     from fieldmon.decisions.thresholds import Threshold
     from fieldmon.monitoring.advice import Advice
+    from fieldmon.reports.content import Report
 
     from ..state.choices import Choices
 
@@ -194,6 +195,6 @@ def _zoned(choices: Choices) -> Zoned:
     return Zoned(shapely.MultiPolygon(list(shapely.get_parts(whole))), advice.in_short())
 
 
-def _report(choices: Choices, advice: Advice, product: str):  # noqa: ANN202 - a report
+def _report(choices: Choices, advice: Advice, product: str) -> Report:
     made = advice_report(choices.open_season, choices.on, advice, choices.units.of_library, product)
     return made.said_in(language.for_reports(language.current()))

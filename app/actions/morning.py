@@ -121,7 +121,7 @@ _HOW_FAR: dict[str, Callable[[Choices, DayPlan], str]] = {
 # -- the button of each
 
 
-def _button(step: Step, label: str, action: Callable[..., object], *arguments: object) -> None:
+def _button(step: Step, label: str, action: Callable[..., None], *arguments: object) -> None:
     st.button(label, on_click=action, args=arguments, **_shown(step))
 
 

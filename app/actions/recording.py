@@ -305,7 +305,7 @@ def said_of(choices: Choices, done: Recorded | None, results: Inspections | None
     """
     if done is None:
         return ""
-    corrected = [texts.CORRECTED.format(n=done.corrected)] if done.corrected else []
+    corrected: list[str] = [texts.CORRECTED.format(n=done.corrected)] if done.corrected else []
     if done.new or done.known or not corrected:
         said = [texts.RECORDED.format(new=done.new, known=done.known)]
         more = (texts.NOTED, done.noted), (texts.COMPLETED, done.filled)

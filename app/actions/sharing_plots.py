@@ -5,9 +5,10 @@ from __future__ import annotations
 import io
 import zipfile
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import streamlit as st
+from streamlit.delta_generator import DeltaGenerator
 
 from fieldmon.io.writers.geojson import route_geojson
 from fieldmon.monitoring.estate_routes import TABLE, plan_table, stems
@@ -68,7 +69,7 @@ def show(plots: list[PlotState]) -> SharedPlots:
 
 def _crew() -> EstateCrew:
     usual = EstateCrew()
-    chosen, columns = {}, []
+    chosen, columns = dict[str, Any](), list[DeltaGenerator]()
     for k, (name, (least, most, step)) in enumerate(_LIMITS.items()):
         # each row has columns of its own: on a phone, how many and their hours stay together
         columns += st.columns(2) if k % 2 == 0 else []
@@ -87,12 +88,12 @@ def _say(made: SharedPlots) -> None:
     plants = sum(len(route) for route in routes)
     finds = sum(route.expected_found for route in routes)
     with st.container(key="lead"):
-        said = texts.PLAN_ALL_LEAD.format(
+        lead = texts.PLAN_ALL_LEAD.format(
             plants=number(plants, ","),
             n=len({one.plot for one in made.turns}),
             finds=about(finds),
         )
-        st.markdown(said)
+        st.markdown(lead)
     st.caption(texts.PLAN_ALL_RULE)
     if made.waiting:
         names = listed(texts.isolated(one.name) for one in made.waiting)

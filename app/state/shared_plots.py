@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from .estate import PlotState
 
     #: told how many plots are ready, and of how many
-    Progress = Callable[[int, int], None]
+    Progress = Callable[[int, int], object]
 
 
 @dataclass(frozen=True)

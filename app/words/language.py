@@ -454,7 +454,8 @@ class _AsKept(Formatter):
 
     def format_field(self, value: Any, format_spec: str) -> str:  # noqa: ANN401
         if "|" in format_spec:  # words chosen by a number
-            return format_spec.split("|")[value != "1"]
+            one, other = format_spec.split("|")
+            return one if value == "1" else other
         return str(value)
 
 

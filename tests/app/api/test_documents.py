@@ -168,8 +168,9 @@ def test_the_rest_is_planned_anew_within_what_is_left(served, scout):
 
 def test_the_board_warns_until_a_phone_has_the_plan_given_last(tmp_path):
     season = a_season(tmp_path / "out.gpkg")
-    choices = SimpleNamespace(season=season, on=BEGINS, is_today=True, units=UnitsInLanguage(),
-                              clock=local_clock(season.plot.field))  # fmt: skip
+    choices = SimpleNamespace(open_season=season, plot=season.plot, on=BEGINS, is_today=True,
+                              clock=local_clock(season.plot.field),
+                              units=UnitsInLanguage())  # fmt: skip
 
     def warned():
         return [one.name for one in who_is_out.lines(choices) if texts.OUT_OLDER in one.cautions]

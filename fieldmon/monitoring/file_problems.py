@@ -37,54 +37,62 @@ def sentences(path: Path, patience_s: float, into: Path | None = None) -> Iterat
             )
         ) from error
     except sqlite3.Error as error:
-        text, code = str(error), sqlite_code(error)
-        if code == sqlite3.SQLITE_NOTADB:
-            raise FileProblem(
-                worded(
-                    "{path} must be the file of a season (a GeoPackage), but "
-                    "it does not begin as one. Check the name; if it was a "
-                    "season, go back to a copy of it.",
-                    path=path,
-                )
-            ) from error
-        if code == sqlite3.SQLITE_INTERRUPT:
-            raise FileProblem(
-                worded(
-                    "Work on a season must come to an end, but a view or a trigger in {path} "
-                    "does not. Open only seasons of people whom you know.",
-                    path=path,
-                )
-            ) from error
-        if code in HELD:
-            raise FileHeld(
-                worded(
-                    "{path} must be free to be written, but another program "
-                    "has held it for {patience_s:.0f} seconds. Close that "
-                    "program (QGIS, a backup?) and try again; nothing was "
-                    "changed.",
-                    path=path,
-                    patience_s=patience_s,
-                )
-            ) from error
-        if code == sqlite3.SQLITE_FULL:
-            raise FileProblem(
-                worded(
-                    "There must be room on the disk for {path}, but it is "
-                    "full. Nothing was changed: make room and try again.",
-                    path=into or path,
-                )
-            ) from error
-        if code in {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN}:
-            raise FileProblem(
-                worded(
-                    "{path} must be a file that can be written, but it cannot "
-                    "({text}). Check its permissions and those of its folder; "
-                    "nothing was changed.",
-                    path=path,
-                    text=text,
-                )
-            ) from error
-        raise damaged(path, text) from error
+        raise _problem(error, path, patience_s, into or path) from error
+
+
+def _problem(error: sqlite3.Error, path: Path, patience_s: float, full: Path) -> FileProblem:
+    """Return what SQLite's error means for somebody who has the file at `path`.
+
+    `full` is what does not fit where the disk is full.
+    """
+    code = sqlite_code(error)
+    if code == sqlite3.SQLITE_NOTADB:
+        return FileProblem(
+            worded(
+                "{path} must be the file of a season (a GeoPackage), but "
+                "it does not begin as one. Check the name; if it was a "
+                "season, go back to a copy of it.",
+                path=path,
+            )
+        )
+    if code == sqlite3.SQLITE_INTERRUPT:
+        return FileProblem(
+            worded(
+                "Work on a season must come to an end, but a view or a trigger in {path} "
+                "does not. Open only seasons of people whom you know.",
+                path=path,
+            )
+        )
+    if code in HELD:
+        return FileHeld(
+            worded(
+                "{path} must be free to be written, but another program "
+                "has held it for {patience_s:.0f} seconds. Close that "
+                "program (QGIS, a backup?) and try again; nothing was "
+                "changed.",
+                path=path,
+                patience_s=patience_s,
+            )
+        )
+    if code == sqlite3.SQLITE_FULL:
+        return FileProblem(
+            worded(
+                "There must be room on the disk for {path}, but it is "
+                "full. Nothing was changed: make room and try again.",
+                path=full,
+            )
+        )
+    if code in {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN}:
+        return FileProblem(
+            worded(
+                "{path} must be a file that can be written, but it cannot "
+                "({text}). Check its permissions and those of its folder; "
+                "nothing was changed.",
+                path=path,
+                text=str(error),
+            )
+        )
+    return damaged(path, str(error))
 
 
 def no_file(path: str | Path) -> FileProblem:

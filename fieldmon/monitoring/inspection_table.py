@@ -21,11 +21,12 @@ from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
     from datetime import date
 
     from numpy.typing import NDArray
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.plot.grid import PlantGrid, RowLabel
 
@@ -102,69 +103,64 @@ def _day(
 
 
 def _check(inspections: Inspections, grid: PlantGrid) -> None:
-    plant = inspections.plant
-    wrong = np.flatnonzero((plant < 0) | (plant >= len(grid)))
-    if wrong.size:
-        raise ObservationError(
-            worded(
-                "A plant's number must be 0 to {value} on this plot, but "
-                "result {found} is of plant {plant}. Is it from another "
-                "plot?",
-                value=len(grid) - 1,
-                found=wrong[0] + 1,
-                plant=plant[wrong[0]],
-            )
-        )
-    if np.isnat(inspections.date).any():
-        first = int(np.flatnonzero(np.isnat(inspections.date))[0])
-        raise ObservationError(
-            worded(
-                "Every result must have a date, but result {value} has none. "
-                "Give the day of the work.",
-                value=first + 1,
-            )
-        )
-    count = inspections.count
-    bad = np.flatnonzero(~(np.isnan(count) | ((count >= 0) & np.isfinite(count))))
-    if bad.size:
-        raise ObservationError(
-            worded(
-                "A count must be 0 or more, but result {value} says {found}.",
-                value=bad[0] + 1,
-                found=inspections.count[bad[0]],
-            )
-        )
-    elsewhere = np.flatnonzero((inspections.result != FOUND) & (count > 0))
-    if elsewhere.size:
-        raise ObservationError(
-            worded(
-                "Only a find has a count of pests, but result {value} is {said!r} and counts "
-                "{found:g}. Say found, or give no count.",
-                value=elsewhere[0] + 1,
-                said=RESULT_NAMES[int(inspections.result[elsewhere[0]])],
-                found=count[elsewhere[0]],
-            )
-        )
-    for row in np.flatnonzero(~np.isnan(inspections.detects)).tolist():
-        if rule := DETECTS.broken(float(inspections.detects[row])):
-            raise ObservationError(
-                worded(
-                    "The chance to see an infested plant (detects) must be {rule}, but result "
-                    "{value} says {found:g}.",
-                    rule=rule, value=row + 1, found=inspections.detects[row],
-                )
-            )  # fmt: skip
+    """Raise `ObservationError` with the first that does not fit."""
+    plant, count, detects = inspections.plant, inspections.count, inspections.detects
+    _refuse(
+        (plant < 0) | (plant >= len(grid)),
+        lambda k: worded(
+            "A plant's number must be 0 to {value} on this plot, but "
+            "result {found} is of plant {plant}. Is it from another "
+            "plot?",
+            value=len(grid) - 1, found=k + 1, plant=plant[k],
+        ),
+    )  # fmt: skip
+    _refuse(
+        np.isnat(inspections.date),
+        lambda k: worded(
+            "Every result must have a date, but result {value} has none. Give the day of the work.",
+            value=k + 1,
+        ),
+    )
+    _refuse(
+        ~(np.isnan(count) | ((count >= 0) & np.isfinite(count))),
+        lambda k: worded(
+            "A count must be 0 or more, but result {value} says {found}.",
+            value=k + 1, found=count[k],
+        ),
+    )  # fmt: skip
+    _refuse(
+        (inspections.result != FOUND) & (count > 0),
+        lambda k: worded(
+            "Only a find has a count of pests, but result {value} is {said!r} and counts "
+            "{found:g}. Say found, or give no count.",
+            value=k + 1, said=RESULT_NAMES[int(inspections.result[k])], found=count[k],
+        ),
+    )  # fmt: skip
+    told = ~np.isnan(detects)
+    told[told] = [DETECTS.broken(each) is not None for each in detects[told].tolist()]
+    _refuse(
+        told,
+        lambda k: worded(
+            "The chance to see an infested plant (detects) must be {rule}, but result "
+            "{value} says {found:g}.",
+            rule=DETECTS.broken(float(detects[k])), value=k + 1, found=detects[k],
+        ),
+    )  # fmt: skip
     second = inspections.second
-    late = np.flatnonzero(~(np.isnan(second) | ((second >= 0) & (second < _DAY_S))))
-    if late.size:
-        raise ObservationError(
-            worded(
-                "A time must lie within its day, but result {value} is "
-                "{found} seconds after midnight.",
-                value=late[0] + 1,
-                found=inspections.second[late[0]],
-            )
-        )
+    _refuse(
+        ~(np.isnan(second) | ((second >= 0) & (second < _DAY_S))),
+        lambda k: worded(
+            "A time must lie within its day, but result {value} is "
+            "{found} seconds after midnight.",
+            value=k + 1, found=second[k],
+        ),
+    )  # fmt: skip
+
+
+def _refuse(wrong: NDArray[np.bool_], say: Callable[[int], Worded]) -> None:
+    """Raise `ObservationError` if any is wrong, and say it of the first."""
+    if wrong.any():
+        raise ObservationError(say(int(wrong.argmax())))
 
 
 def identity(inspections: Inspections, k: int) -> tuple[object, ...]:

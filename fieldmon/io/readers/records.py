@@ -44,6 +44,7 @@ from fieldmon.io.parse.values import (
 )
 from fieldmon.io.readers.date_doubts import broken_times, in_future, mixed_dates
 from fieldmon.io.readers.inspection_file.columns import own_column
+from fieldmon.io.readers.other_counts import about_other_counts
 from fieldmon.io.readers.species import mixed_species
 from fieldmon.io.readers.visits import VISIT_S, first_of_visits, same_places, telling
 from fieldmon.io.readers.wide_tables import by_day
@@ -325,7 +326,10 @@ def _counts(table: _Table) -> _Counts:
         counts.messages.append(seen(worded("Every record was taken as a find, as told.")))
     elif count_name is None:
         raise _what_was_found(table)
-    return counts
+    others = about_other_counts(
+        table.layer, table.options, count_name, table.used(), counts.present
+    )
+    return counts._replace(messages=[*counts.messages, *others.messages])
 
 
 def _what_was_found(table: _Table) -> ChoiceNeeded:

@@ -24,6 +24,7 @@ from fieldmon.io.parse.result_words import (
 )
 from fieldmon.io.parse.values import counted, is_missing, mark_of_counts, number, presence
 from fieldmon.io.readers.inspection_file.plants import PLANT_IN_NAME
+from fieldmon.io.readers.other_counts import about_other_counts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -106,6 +107,9 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
     taken = (columns.result, columns.number_found, *dict(options.columns).values())
     messages += about_confidences(layer.columns, taken)
     seen_so = _put_together(by_result, by_count, messages)
+    others = about_other_counts(layer, options, columns.number_found, columns, seen_so.result)
+    doubt = np.where(seen_so.doubt == "", others.doubt, seen_so.doubt)
+    seen_so = seen_so._replace(doubt=doubt, messages=[*seen_so.messages, *others.messages])
     if columns.result is None:
         return seen_so
     gone = np.array([is_gone(text(v)) for v in layer.column(columns.result)], np.bool_)

@@ -51,6 +51,14 @@ def test_a_word_says_whether_where_no_count_does():
     assert "neither yes nor no: 'maybe'" in said(records, Severity.DOUBTFUL)
 
 
+def test_nothing_of_a_leaf_is_clean_and_any_part_of_it_a_find():
+    records = read(severity=["0%", "30 %", "0,0 %", "100%", ""])
+    assert records.value.present.tolist() == [ABSENT, PRESENT, ABSENT, PRESENT, UNKNOWN]
+    assert np.isnan(records.value.count).all()
+    assert "neither" not in said(records, Severity.DOUBTFUL)
+    assert "no plain number ('30%')" in said(read(count=["30%", "2"]), Severity.DOUBTFUL)
+
+
 def test_a_word_that_contradicts_its_count_is_doubted_and_believed():
     records = read(count=[3, 0, 2], present=["yes", "yes", None])
     assert records.value.present.tolist() == [PRESENT, PRESENT, PRESENT]

@@ -98,3 +98,9 @@ def test_results_in_a_column_of_their_own_drop_no_counts_silently(read):
 )
 def test_which_columns_count_pests_by_their_names(name, does):
     assert counts_pests(name) == does
+
+
+@pytest.mark.parametrize("read", [records, inspections])
+def test_a_german_sheet_is_read_with_its_finds_and_its_counts(read):
+    value = read({"Anzahl Milben": [4, 0], "Befund": ["ja", "nein"]}).value
+    assert value.count.tolist() == [4, 0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple, Self
 
@@ -11,6 +12,7 @@ import shapely
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import dropped, seen
+from fieldmon.io.parse.columns import find, recognised
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -123,9 +125,32 @@ class Layer:
                 if name:
                     self.column(name)
             except ChoiceNeeded as asked:
-                offers = tuple(f"{role}={own}" for own in asked.choices)
+                self._must_name_one(role, name)
+                taken = {other.casefold() for _, other in columns}
+                free = [own for own in asked.choices if own.casefold() not in taken]
+                fits = [own for own in free if find(role, [own]) or not recognised([own])]
+                offers = tuple(f"{role}={own}" for own in fits or asked.choices)
                 raise ChoiceNeeded(asked.args[0], "columns", offers) from None
         return self
+
+    def _must_name_one(self, role: str, name: str) -> None:
+        """Say how to name several columns to who names them at once: ``count=A,present=B``."""
+        several = re.split(r",\s*(?=[a-z]+=)", f"{role}={name}")
+        if len(several) == 1:
+            return
+        known = {own.casefold(): own for own in self.columns}
+        offer = known.get(several[0].partition("=")[2].casefold())
+        raise ChoiceNeeded(
+            worded(
+                "Each column must be named by itself, but {name!r} names {n}. Give the option once "
+                "for each: {each}.",
+                name=f"{role}={name}",
+                n=len(several),
+                each=", ".join(f"columns={one}" for one in several),
+            ),
+            "columns",
+            () if offer is None else (f"{role}={offer}",),
+        )
 
     def column(self, name: str) -> NDArray[np.object_]:
         """Return a column by its name, capitals aside; raise `ChoiceNeeded` where there is none."""

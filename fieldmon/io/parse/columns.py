@@ -40,12 +40,16 @@ _NAMES = {
     "quantity mites nmites mitecount numberofmites pests npests pestcount insects adults females "
     "anzahl zahl menge stück stueck conteo cantidad recuento "
     "effectif comptage conteggio contagem quantidade מספר כמות ספירה כמותאקריות מספראקריות "
-    "aantal mitesperleaf tetranychus mitesleaf",
+    "aantal mitesperleaf tetranychus mitesleaf anzahlmilben milbenanzahl milbenzahl milben "
+    "anzahlschädlinge anzahltiere numerodeacaros numeroacaros nacaros acaros conteodeacaros "
+    "nombredacariens nombreacariens nbacariens acariens numerodiacari acari aantalmijten mijten "
+    "אקריות מספרהאקריות ספירתאקריות عدد العدد عددالاكاروسات عددالعناكب عددالافات",
     "present": "occurrencestatus presence present presenceabsence pa detected detection infested "
     "infected positive severity befall result found status infestation presencia presente "
     "presenza présence vorhanden befallen nachweis presença "
     "resultado résultat risultato ergebnis uitslag wynik sonuç результат 结果 結果 نتيجة תוצאה "
-    "נוכחות נגוע נמצא ממצא disease diseased symptom symptoms",
+    "נוכחות נגוע נמצא ממצא disease diseased symptom symptoms befund befunde hallazgo hallazgos "
+    "constat ממצאים נגיעות الاصابة اصابة مصاب النتيجة",
     "species": "scientificname species taxon taxonname pest pestname art schädling schaedling "
     "especie espécie espèce specie plaga praga ravageur parassita מין מזיק vernacularname organism",
     "stage": "lifestage stage stadium developmentstage estadio estádio stade stadio שלב דרגה",

@@ -44,17 +44,30 @@ evet|var|bulundu|pozitif|bulaşık|hasta
 _CLEAN = """
 no|false|f|absent|negative|neg|n|none|nil|zero|clean|clear|healthy|nothing|not found|not detected
 nil found|no pests|ok|okay|free|background|0
+not infested|uninfested|non-infested|no infestation|none found|none seen|none detected|nothing found
+no mites|no mites found|no pests found|no pest|not infected|not present|undetected|pest free
+pest-free|no symptoms
+kein befund|ohne befund|nicht befallen|unbefallen|keine milben|keine schädlinge|nichts gefunden
 nein|keine|keiner|kein befall|nicht gefunden|sauber|befallsfrei|gesund|negativ|nichts|ohne befall
+niet aangetast|geen aantasting|geen mijten
 nee|geen|niet gevonden|schoon|gezond|negatief|afwezig
+pas infesté|pas infestée|non infesté|non infestée|aucune infestation|pas d'infestation
+aucun acarien|non trouvé|non détecté
 non|aucun|aucune|absent|absente|négatif|négative|sain|saine|propre|pas trouvé|rien|indemne
+no infestado|no infestada|sin infestación|sin infestacion|sin plaga|sin plagas|sin ácaros
+sin acaros|no detectado|no detectada|no presente
 ausente|ninguno|ninguna|negativo|negativa|sano|sana|limpio|limpia|no encontrado|no encontrada|nada
+non infestato|non infestata|nessuna infestazione|nessun acaro
+não infestado|não infestada|sem infestação|sem praga|sem pragas|sem ácaros
 libre|assente|nessuno|nessuna|pulito|pulita|non trovato|non trovata|niente|indenne
 não|nao|nenhum|nenhuma|limpo|limpa|sadio|sadia|saudável|são|não encontrado|nao encontrado
 nie|brak|zdrowy|zdrowa|ujemny|czysty
 hayır|hayir|yok|temiz|sağlıklı|negatif|bulunamadı
 нет|негатив|чисто|здоров|здоровый|здорово|отрицательно|отрицательный|не найдено|не обнаружено
 όχι|υγιές|υγιής|καθαρό|αρνητικό|αρνητικός
+לא נגוע|לא נגועה|אין נגיעות|ללא נגיעות|אין אקריות|ללא אקריות|אין מזיקים|ללא מזיקים|לא נמצאו
 לא|לא נמצא|לא נמצאה|נקי|נקייה|אין|ללא|שלילי|שלילית|בריא
+غير مصاب|غير مصابة|لا إصابة|لا اصابة|لا توجد إصابة|لا توجد اصابة|بدون إصابة|بدون اصابة|لا شيء
 لا|غير موجود|سليم|سليمة|نظيف|سلبي|لا يوجد
 नहीं|स्वस्थ|नकारात्मक|नहीं मिला
 无|無|否|阴性|陰性|没有|沒有|健康|なし|いいえ

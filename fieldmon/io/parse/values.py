@@ -154,6 +154,7 @@ class CellCount(NamedTuple):
 
 
 _BOUND = re.compile(r"^(<=|>=|<|>|~|≈|≤|≥|ca\.?|about|approx\.?)?\s*([\d.,]+)\s*(\+)?$")
+_PART = re.compile(r"^(\d+(?:[.,]\d+)?)\s*[%\u066a]$")
 _RANGE = re.compile(r"^([\d.,]+)\s*(?:-|–|to|bis|a)\s*([\d.,]+)$")
 
 
@@ -171,6 +172,10 @@ def counted(cell: str, decimal: str = ".") -> CellCount:
     said = meaning(word)
     if said is not None:
         return CellCount(np.nan if said == PRESENT else 0.0, said, is_rough=False)
+    if part := _PART.match(word):
+        # of a leaf: nothing is none, and how many are on 30 % of it nobody can say
+        some = number(part.group(1).replace(",", ".")) > 0
+        return CellCount(np.nan if some else 0.0, PRESENT if some else ABSENT, is_rough=some)
     return _roughly(word, decimal)
 
 

@@ -43,7 +43,9 @@ from fieldmon.io.parse.values import (
     presence,
 )
 from fieldmon.io.readers.date_doubts import broken_times, in_future, mixed_dates
-from fieldmon.io.readers.inspection_file.columns import own_column
+from fieldmon.io.readers.inspection_file.columns import names_in, own_column
+from fieldmon.io.readers.inspection_file.results import results_in_names
+from fieldmon.io.readers.other_counts import about_other_counts
 from fieldmon.io.readers.species import mixed_species
 from fieldmon.io.readers.visits import VISIT_S, first_of_visits, same_places, telling
 from fieldmon.io.readers.wide_tables import by_day
@@ -324,8 +326,23 @@ def _counts(table: _Table) -> _Counts:
         counts.present[:] = PRESENT
         counts.messages.append(seen(worded("Every record was taken as a find, as told.")))
     elif count_name is None:
+        counts = _by_names(table)
+    others = about_other_counts(
+        table.layer, table.options, count_name, table.used(), counts.present
+    )
+    return counts._replace(messages=[*counts.messages, *others.messages])
+
+
+def _by_names(table: _Table) -> _Counts:
+    """Return what the names of waypoints say; ask what was found where fewer than half say it."""
+    name = names_in(table.layer)
+    said = [] if name is None else results_in_names(table.layer, name, table.options)
+    if not said or 2 * sum(one.is_said for one in said) < len(said):
         raise _what_was_found(table)
-    return counts
+    every = Remedy("columns", "present=", worded("Take every record as a find"))
+    read = guessed(worded("What was found was read from the names."), name, every)
+    number = np.array([one.how_many for one in said], dtype=np.float64)
+    return _Counts(number, np.array([one.result for one in said], dtype=np.int8), [read])
 
 
 def _what_was_found(table: _Table) -> ChoiceNeeded:

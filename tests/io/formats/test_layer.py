@@ -69,3 +69,26 @@ def test_a_table_is_as_long_as_its_columns_and_has_nothing_to_check():
     assert len(Layer("x", {})) == 0
     assert ROWS.checked() is ROWS
     assert ROWS.saying(seen("Here.")).messages == (seen("Here."),)
+
+
+FOUND = Layer("x", {name: column([1]) for name in ("lon", "date", "row", "A", "B", "Milben")})
+
+
+def test_what_is_offered_for_a_column_is_known_as_nothing_else():
+    with pytest.raises(ChoiceNeeded) as asked:
+        FOUND.with_roles((("count", "C"), ("present", "B")))
+    assert asked.value.choices == ("count=A", "count=Milben")
+    with pytest.raises(ChoiceNeeded) as asked:
+        FOUND.with_roles((("date", "C"),))
+    assert asked.value.choices == ("date=date", "date=A", "date=B")
+    only = Layer("x", {"lon": column([1])})
+    with pytest.raises(ChoiceNeeded) as asked:
+        only.with_roles((("count", "C"),))
+    assert asked.value.choices == ("count=lon",)
+
+
+@pytest.mark.parametrize("written", ["A,present=B", "a, present=B"])
+def test_two_columns_named_at_once_are_to_be_named_one_by_one(written):
+    with pytest.raises(ChoiceNeeded, match=r"columns=count=[aA], columns=present=B") as asked:
+        FOUND.with_roles((("count", written),))
+    assert asked.value.choices == ("count=A",)

@@ -47,3 +47,16 @@ def test_a_column_taken_already_plays_no_second_role():
 
 def test_those_that_could_play_some_role_are_recognised():
     assert recognised(["Lon", "colour", "תאריך"]) == {"Lon", "תאריך"}
+
+
+@pytest.mark.parametrize(
+    ("role", "name"),
+    [
+        *(("count", one) for one in ("Anzahl Milben", "Milben", "Milbenzahl", "Número de ácaros")),
+        *(("count", one) for one in ("ácaros", "nombre d'acariens", "acariens", "אקריות", "عدد")),
+        *(("count", one) for one in ("מספר האקריות", "عدد الأكاروسات")),
+        *(("present", one) for one in ("Befund", "hallazgo", "constat", "ממצאים", "الإصابة")),
+    ],
+)
+def test_finds_and_counts_are_called_by_their_names_in_many_languages(role, name):
+    assert find(role, ["crop", name]) == name

@@ -28,6 +28,9 @@ def test_no_word_says_two_things():
             (w, ABSENT)
             for w in ("gesund", "schoon", "não", "sain", "pulita", "zdrowy", "Not_found.")
         ),
+        *((w, ABSENT) for w in ("not infested", "No infestation.", "none found", "no mites")),
+        *((w, ABSENT) for w in ("kein Befund", "nicht befallen", "sin plaga", "non infesté")),
+        *((w, ABSENT) for w in ("לא נגוע", "אין נגיעות", "غير مصاب", "لا توجد إصابة")),
     ],
 )
 def test_a_word_is_known_in_any_case(word, says):

@@ -51,6 +51,28 @@ def test_a_word_says_whether_where_no_count_does():
     assert "neither yes nor no: 'maybe'" in said(records, Severity.DOUBTFUL)
 
 
+def test_nothing_of_a_leaf_is_clean_and_any_part_of_it_a_find():
+    records = read(severity=["0%", "30 %", "0,0 %", "100%", ""])
+    assert records.value.present.tolist() == [ABSENT, PRESENT, ABSENT, PRESENT, UNKNOWN]
+    assert np.isnan(records.value.count).all()
+    assert "neither" not in said(records, Severity.DOUBTFUL)
+    assert "no plain number ('30%')" in said(read(count=["30%", "2"]), Severity.DOUBTFUL)
+
+
+def test_waypoints_say_in_their_names_what_was_found_where_nothing_else_does():
+    records = read(name=["+3", "-", "0", "clean", "R3/17 +", "007"])
+    assert records.value.present.tolist() == [PRESENT, ABSENT, ABSENT, ABSENT, PRESENT, UNKNOWN]
+    np.testing.assert_array_equal(records.value.count, [3, *[np.nan] * 5])
+    (guess,) = [one for one in records.of(Severity.GUESSED) if one.feature == "name"]
+    assert (guess.remedy.option, guess.remedy.value) == ("columns", "present=")
+    every = read(ANY.choose("columns", "present="), name=["+3", "-", "0", "clean"])
+    assert every.value.present.tolist() == [PRESENT] * 4
+    # of others a word here and there says nothing
+    with pytest.raises(ChoiceNeeded) as asked:
+        read(name=["gate", "shed", "x", "tank"])
+    assert "present=name" not in asked.value.choices
+
+
 def test_a_word_that_contradicts_its_count_is_doubted_and_believed():
     records = read(count=[3, 0, 2], present=["yes", "yes", None])
     assert records.value.present.tolist() == [PRESENT, PRESENT, PRESENT]

@@ -87,7 +87,7 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     result = options.column("present") or _result_name(layer, count)
     marks = None
     if result is None and count is None:
-        marks = next((n for n in names if plain(n) in {"name", "title", "label"}), None)
+        marks = names_in(layer)
         if marks is None:
             raise ChoiceNeeded(
                 worded(
@@ -113,6 +113,11 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     return InspectionColumns(
         result, count, marks, plant, line, number, face, arrive, block, leaf, species
     )
+
+
+def names_in(layer: Layer) -> str | None:
+    """Return the column of the names of waypoints, which may say what was found; None: no such."""
+    return next((n for n in layer.columns if plain(n) in {"name", "title", "label"}), None)
 
 
 def _open(layer: Layer) -> list[str]:

@@ -24,10 +24,12 @@ from fieldmon.io.parse.result_words import (
 )
 from fieldmon.io.parse.values import counted, is_missing, mark_of_counts, number, presence
 from fieldmon.io.readers.inspection_file.plants import PLANT_IN_NAME
+from fieldmon.io.readers.other_counts import about_other_counts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.io.options import RecordOptions
     from fieldmon.io.readers.inspection_file.columns import InspectionColumns
     from fieldmon.io.readers.inspection_options import InspectionOptions
 
@@ -52,7 +54,7 @@ class SeenResults(NamedTuple):
     unread: NDArray[np.bool_]
 
 
-class _CellResult(NamedTuple):
+class CellResult(NamedTuple):
     """What one cell says."""
 
     result: int
@@ -61,14 +63,13 @@ class _CellResult(NamedTuple):
     is_read: bool = True
 
 
-_SILENT = _CellResult(UNKNOWN, np.nan, is_said=False)
+_SILENT = CellResult(UNKNOWN, np.nan, is_said=False)
 
 
 def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> SeenResults:
     """Return what was seen at each plant of a layer."""
     if columns.marks is not None:
-        words = ResultWords(["+"], options)
-        said = [_of_mark(text(v), words) for v in layer.column(columns.marks)]
+        said = results_in_names(layer, columns.marks, options)
         return _put_together(said, [_SILENT] * len(said), [])
     by_result, by_count = [_SILENT] * len(layer), [_SILENT] * len(layer)
     messages: list[ImportMessage] = []
@@ -106,10 +107,19 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
     taken = (columns.result, columns.number_found, *dict(options.columns).values())
     messages += about_confidences(layer.columns, taken)
     seen_so = _put_together(by_result, by_count, messages)
+    others = about_other_counts(layer, options, columns.number_found, columns, seen_so.result)
+    doubt = np.where(seen_so.doubt == "", others.doubt, seen_so.doubt)
+    seen_so = seen_so._replace(doubt=doubt, messages=[*seen_so.messages, *others.messages])
     if columns.result is None:
         return seen_so
     gone = np.array([is_gone(text(v)) for v in layer.column(columns.result)], np.bool_)
     return seen_so._replace(gone=gone & (seen_so.result == UNKNOWN))
+
+
+def results_in_names(layer: Layer, name: str, options: RecordOptions) -> list[CellResult]:
+    """Return what the names of waypoints in a column say."""
+    words = ResultWords(["+"], options)
+    return [_of_mark(text(v), words) for v in layer.column(name)]
 
 
 def _mark(
@@ -125,7 +135,7 @@ def _mark(
 
 
 def _put_together(
-    by_result: list[_CellResult], by_count: list[_CellResult], messages: list[ImportMessage]
+    by_result: list[CellResult], by_count: list[CellResult], messages: list[ImportMessage]
 ) -> SeenResults:
     """Return what result and count say together.
 
@@ -159,7 +169,7 @@ def _put_together(
     return SeenResults(result, how_many, doubt.astype(np.str_), said_any, messages, gone, unread)
 
 
-def _unread(cells: list[str], known: dict[str, _CellResult]) -> list[ImportMessage]:
+def _unread(cells: list[str], known: dict[str, CellResult]) -> list[ImportMessage]:
     odd = [cell for cell in cells if not known[cell].is_read]
     if not odd:
         return []
@@ -176,7 +186,7 @@ def _unread(cells: list[str], known: dict[str, _CellResult]) -> list[ImportMessa
     return [doubtful(said, None, remedy if one else None)]
 
 
-def _of_word(cell: str, mark: str, words: ResultWords) -> _CellResult:
+def _of_word(cell: str, mark: str, words: ResultWords) -> CellResult:
     """Return what a cell for a result says: a word in many languages, a sign, or a count.
 
     A lone minus is "clean" only in a column that has a plus somewhere, else it is nothing. A number
@@ -185,33 +195,33 @@ def _of_word(cell: str, mark: str, words: ResultWords) -> _CellResult:
     word = " ".join(cell.casefold().replace("_", " ").split())
     plus = _PLUS.match(word)
     if plus:
-        return _CellResult(PRESENT, counted(plus.group(1) or "").number, is_said=True)
+        return CellResult(PRESENT, counted(plus.group(1) or "").number, is_said=True)
     if word in NOT_INSPECTED:
-        return _CellResult(UNKNOWN, np.nan, is_said=True)
+        return CellResult(UNKNOWN, np.nan, is_said=True)
     meant = words[cell]
     if meant is not None and not np.isfinite(number(word)):
-        return _CellResult(meant, np.nan, is_said=True)
+        return CellResult(meant, np.nan, is_said=True)
     result = presence(word)
     if result == UNKNOWN:
-        return _CellResult(UNKNOWN, np.nan, is_said=False, is_read=is_missing(word))
+        return CellResult(UNKNOWN, np.nan, is_said=False, is_read=is_missing(word))
     read = counted(word, mark)
     how_many = read.number if read.number > 1 and not read.is_rough else np.nan
-    return _CellResult(result, how_many, is_said=True)
+    return CellResult(result, how_many, is_said=True)
 
 
-def _of_count(cell: str, mark: str) -> _CellResult:
+def _of_count(cell: str, mark: str) -> CellResult:
     """Return what a cell for a count says; ``<5`` is a find that was not counted."""
     if cell.strip().casefold() in NOT_INSPECTED:
-        return _CellResult(UNKNOWN, np.nan, is_said=True)
+        return CellResult(UNKNOWN, np.nan, is_said=True)
     read = counted(cell.removeprefix("+"), mark)
     if read.present == UNKNOWN:
-        return _CellResult(UNKNOWN, np.nan, is_said=False, is_read=not read.is_rough)
+        return CellResult(UNKNOWN, np.nan, is_said=False, is_read=not read.is_rough)
     # "no" and "0" count nothing; a range or a bound is a find, not a number
     number = read.number if read.present == PRESENT and not read.is_rough else np.nan
-    return _CellResult(read.present, 0.0 if read.present == ABSENT else number, is_said=True)
+    return CellResult(read.present, 0.0 if read.present == ABSENT else number, is_said=True)
 
 
-def _of_mark(name: str, words: ResultWords) -> _CellResult:
+def _of_mark(name: str, words: ResultWords) -> CellResult:
     """Return what a waypoint's name says: ``+3``, ``+``, ``-``, ``0``, ``clean``, ``R3/17 +2``.
 
     A number alone is none: handhelds number their waypoints 001, 002.
@@ -221,12 +231,12 @@ def _of_mark(name: str, words: ResultWords) -> _CellResult:
     for sign in (name.strip(), last):
         plus = _PLUS.match(sign)
         if plus:
-            return _CellResult(PRESENT, counted(plus.group(1) or "").number, is_said=True)
+            return CellResult(PRESENT, counted(plus.group(1) or "").number, is_said=True)
         if sign in MINUS:
-            return _CellResult(ABSENT, np.nan, is_said=True)
+            return CellResult(ABSENT, np.nan, is_said=True)
     bare = PLANT_IN_NAME.sub(" ", name).strip()
     if bare == "0":
-        return _CellResult(ABSENT, np.nan, is_said=True)
+        return CellResult(ABSENT, np.nan, is_said=True)
     if not bare or re.fullmatch(r"[\d\s]+", bare):
         return _SILENT
     said = _of_word(bare, ".", words)

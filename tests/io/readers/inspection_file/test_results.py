@@ -22,6 +22,8 @@ def read(options=None, **columns):
     ("word", "result"),
     [
         *((w, PRESENT) for w in ("yes", "TRUE", "1", "found", "x", "✓", "ja", "sí", "oui", "כן")),
+        *((w, PRESENT) for w in ("30%", "0,5 %")),
+        *((w, ABSENT) for w in ("0%", "0.0 %")),
         *((w, PRESENT) for w in ("+", "+3", "7", "<5", "3-5", "befall", "נגוע", "gefunden")),
         *((w, ABSENT) for w in ("no", "False", "0", "clean", "nein", "לא", "נקי", "not found")),
         *((w, UNKNOWN) for w in ("not inspected", "could_not_inspect", "skipped", "לא נבדק")),

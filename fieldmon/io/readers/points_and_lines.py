@@ -29,6 +29,7 @@ from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.places import Plants
 from fieldmon.io.readers.plots import blocks_of
+from fieldmon.plot.rounding import too_coarse
 from fieldmon.plot.row_detection import distinct, frame_around
 from fieldmon.plot.row_drawing import rows_from_posts
 
@@ -95,6 +96,7 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         messages.append(dropped(said))
     gone |= corners
     here = np.flatnonzero(~gone)
+    messages += _of_rounding(found.lonlat[here], found.step_m, labels[1][here])
     kept = here[distinct(found.lonlat[here])]
     n_doubles = len(here) - len(kept)
     if n_doubles and options.doubles is None:
@@ -116,6 +118,18 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         if role in columns and (names == "").any():
             messages.append(_of_blanks(names, columns[role]))
     return Imported(plants, (*layer.messages, *messages))
+
+
+def _of_rounding(
+    lonlat: NDArray[np.float64], step_m: float, row: NDArray[np.str_]
+) -> list[ImportMessage]:
+    """Return a doubt where plants are rounded too coarsely; refuse them where that hides rows."""
+    rounding = too_coarse(lonlat, step_m, named=bool((row != "").all()))
+    if rounding is None:
+        return []
+    if rounding.hides_rows:
+        raise FileProblem(rounding.sentence)
+    return [doubtful(rounding.sentence)]
 
 
 def _is_constant(layer: Layer, column: str | None) -> bool:

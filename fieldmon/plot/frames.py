@@ -12,6 +12,7 @@ from fieldmon.compute.arguments import must_be
 from fieldmon.compute.wording import first_few
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.near_doubles import near_doubles
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.projection import M_PER_DEGREE
 from fieldmon.plot.rounding import step_of, too_coarse
@@ -109,6 +110,8 @@ def boundary_and_plants(
     xy = shapely.get_coordinates(frame.geometry.iloc[there][kinds == "Point"].to_numpy())
     lonlat = shapely.get_coordinates(places)
     said += _of_rounding(lonlat, step_of(xy) * _metres(frame.crs), names)
+    if doubles := near_doubles(lonlat):
+        said.append(doubles.sentence)
     return boundary, lonlat, names, said
 
 

@@ -59,9 +59,10 @@ def too_coarse(lonlat: Float, step_m: float, *, named: bool) -> Rounding | None:
     xy_m = frame_around(places).xy_m(places)
     near_m = cKDTree(xy_m).query(xy_m, 2)[0][:, 1]
     apart_m = float(np.median(near_m))
-    if step_m <= _DOUBTED * apart_m or _is_exact(places, times, near_m):
-        return None
     hidden = step_m > _REFUSED * apart_m
+    exact = _is_even(times, near_m) and (not hidden or _is_filled(places))
+    if step_m <= _DOUBTED * apart_m or exact:
+        return None
     kinds = {"step": distance_figure(step_m), "apart": distance_figure(apart_m)}
     if hidden and not named:
         said = worded(
@@ -80,10 +81,15 @@ def too_coarse(lonlat: Float, step_m: float, *, named: bool) -> Rounding | None:
     return Rounding(said, hides_rows=False)
 
 
-def _is_exact(places: Float, times: NDArray[np.intp], near_m: Float) -> bool:
-    """Return whether places ``(n, 2)`` are a lattice that rounding left as it is."""
-    n, n_all = len(places), int(times.sum())
-    few_share = n_all - n < _SHARED * n_all or np.ptp(times) == 0
-    filled = len(np.unique(places[:, 0])) * len(np.unique(places[:, 1])) < _SPARSE * n
+def _is_even(times: NDArray[np.intp], near_m: Float) -> bool:
+    """Return whether places are evenly apart, and shared by few plants or by as many each."""
+    n, n_all = len(times), int(times.sum())
     low_m, high_m = np.quantile(near_m, [0.1, 0.9])
-    return bool(few_share and filled and high_m - low_m < _EVEN * np.median(near_m))
+    few = n_all - n < _SHARED * n_all or np.ptp(times) == 0
+    return bool(few and high_m - low_m < _EVEN * np.median(near_m))
+
+
+def _is_filled(places: Float) -> bool:
+    """Return whether places ``(n, 2)`` fill the lattice of their columns and lines."""
+    columns, lines = (len(np.unique(one)) for one in places.T)
+    return columns * lines < _SPARSE * len(places)

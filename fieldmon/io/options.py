@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Literal, Self, TypeAlias
@@ -70,6 +71,9 @@ def source_name(source: Source) -> str:
     return Path(source).name or str(source)
 
 
+_FARTHEST_DOUBLES_M = 10.0
+
+
 @dataclass(frozen=True)
 class ReadOptions:
     """What can be chosen for any file.
@@ -104,7 +108,8 @@ class ReadOptions:
         What 35.26.33 means: ``"dms"``, degrees, minutes and seconds; ``"dm"``, degrees and minutes
         with decimals. None: nothing.
     doubles
-        ``"one"``: of plants closer than 5 cm to each other, one is kept.
+        ``"one"``: of plants closer than 5 cm to each other, one is kept. ``"0.5"``: of those closer
+        than so many metres.
     far
         ``"keep"``: a few plants over a kilometre from all others, and those outside their plot,
         stay. ``"drop"``: plants just outside their plot go, too.
@@ -171,7 +176,7 @@ class ReadOptions:
             ("The decimal mark", self.decimal, (".", ",")),
             ("Whether a line names the columns", self.header, ("yes", "no")),
             ("What 35.26.33 means", self.degrees, ("dms", "dm")),
-            ("What is done with doubles", self.doubles, ("one",)),
+            ("What is done with doubles", self._doubles_word, ("one",)),
             ("What is done with plants far away", self.far, FAR),
         ):
             if told is not None and told not in words:
@@ -186,6 +191,19 @@ class ReadOptions:
                         told=told,
                     )
                 )
+
+    @property
+    def _doubles_word(self) -> str | None:
+        """Return what is said of doubles unless it is a distance."""
+        return None if self.doubles_m else self.doubles
+
+    @property
+    def doubles_m(self) -> float | None:
+        """Return how near to each other plants are one, if a distance is said, else None."""
+        with suppress(ValueError):
+            metres = float(self.doubles or "")
+            return metres if 0.0 < metres <= _FARTHEST_DOUBLES_M else None
+        return None
 
     def column(self, role: str) -> str | None:
         """Return the column named by hand for a role, or None."""

@@ -12,11 +12,15 @@ from fieldmon.compute.arguments import must_be
 from fieldmon.compute.wording import first_few
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.near_doubles import near_doubles
 from fieldmon.plot.plant_names import PlantNames
+from fieldmon.plot.projection import M_PER_DEGREE
+from fieldmon.plot.rounding import step_of, too_coarse
 
 if TYPE_CHECKING:
     from geopandas import GeoDataFrame, GeoSeries
     from numpy.typing import NDArray
+    from pyproj import CRS
 
     from fieldmon.plot.grid import PlantGrid
 
@@ -102,8 +106,29 @@ def boundary_and_plants(
     boundary = MultiPolygon(list(shapely.get_parts(areas.iloc[0]))) if len(areas) else None
     places = points.to_numpy()
     which = np.repeat(there[kinds == "Point"], shapely.get_num_coordinates(places))
-    said = _of_no_place(frame, there)
-    return boundary, shapely.get_coordinates(places), _names_in(frame, which), said
+    said, names = _of_no_place(frame, there), _names_in(frame, which)
+    xy = shapely.get_coordinates(frame.geometry.iloc[there][kinds == "Point"].to_numpy())
+    lonlat = shapely.get_coordinates(places)
+    said += _of_rounding(lonlat, step_of(xy) * _metres(frame.crs), names)
+    if doubles := near_doubles(lonlat):
+        said.append(doubles.sentence)
+    return boundary, lonlat, names, said
+
+
+def _metres(crs: CRS) -> float:
+    """Return how many metres one in the coordinates of a system is."""
+    return M_PER_DEGREE if crs.is_geographic else 1.0
+
+
+def _of_rounding(lonlat: NDArray[np.float64], step_m: float, names: PlantNames) -> list[str]:
+    """Return a doubt where plants are rounded too coarsely; refuse them where that hides rows."""
+    named = names.row is not None and bool((names.row != "").all())
+    rounding = too_coarse(lonlat, step_m, named=named)
+    if rounding is None:
+        return []
+    if rounding.hides_rows:
+        raise PlotError(rounding.sentence)
+    return [rounding.sentence]
 
 
 def _placed(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:

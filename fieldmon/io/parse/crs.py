@@ -18,7 +18,7 @@ from pyproj.transformer import TransformerGroup
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.import_report import ImportMessage, doubtful, seen
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, seen
 from fieldmon.plot.local_clock import at_sea
 
 if TYPE_CHECKING:
@@ -44,6 +44,9 @@ _COMMON = (
 _MOST_TRIED = 1000
 _MOST_OFFERED = 8
 _NEAR_KM = 300.0
+_MOST_ALIKE = 4
+#: what files call a system whose name they do not have
+_NAMELESS = frozenset({"unnamed", "unknown"})
 
 
 class CrsCandidate(NamedTuple):
@@ -70,6 +73,10 @@ class Transformation:
         Always x, y in; longitude, latitude out. None: they are degrees WGS84 already.
     missing_grid
         File that a better one would need and that is not on this machine.
+    datum_lost
+        Whether nothing says how the datum lies to WGS84.
+    alike
+        Code and name of known systems of the same projection, on datums of their own.
     """
 
     code: str
@@ -77,6 +84,8 @@ class Transformation:
     accuracy_m: float | None = None
     transformer: pyproj.Transformer | None = None
     missing_grid: str | None = None
+    datum_lost: bool = False
+    alike: tuple[tuple[str, str], ...] = ()
 
     def lonlat(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return degrees ``(n, 2)``; not finite where the system does not reach."""
@@ -89,6 +98,8 @@ class Transformation:
         """Return what there is to say about the accuracy."""
         if self.transformer is None:
             return []
+        if self.datum_lost:
+            return [self._of_lost_datum()]
         stated = worded("PROJ states no accuracy for this")
         if self.accuracy_m is not None:
             stated = worded("PROJ states {accuracy_m:g} m for this", accuracy_m=self.accuracy_m)
@@ -106,6 +117,25 @@ class Transformation:
                 )
             )
         ]
+
+    def _of_lost_datum(self) -> ImportMessage:
+        """Return the doubt where everything may lie, with the systems that may be meant."""
+        said = worded(
+            "The datum of {name} is not known, so all may lie some 100 m beside its place.",
+            name=self.name,
+        )
+        if not self.alike:
+            how = worded("Name the coordinate system, as in crs=EPSG:2039.")
+            return doubtful(f"{said} {how}")
+        listed = ", ".join(f"{code} ({name})" for code, name in self.alike)
+        said = worded(
+            "{said} Name the coordinate system; of the same projection are {listed}.",
+            said=said,
+            listed=listed,
+        )
+        (code, name), *others = self.alike
+        label = worded("Read as {name}", name=name)
+        return doubtful(said, None, Remedy("crs", code, label, tuple(c for c, _ in others)))
 
 
 def system(text: str) -> pyproj.CRS:
@@ -154,7 +184,61 @@ def transformation_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Transfo
         grids = group.unavailable_operations[0].grids
         missing = next((grid.short_name for grid in grids if not grid.available), None)
     accuracy = best.accuracy if best.accuracy >= 0 else None
-    return Transformation(code, name, accuracy, best, missing)
+    # where PROJ knows nothing of the datum it takes it for WGS84, and calls that ballpark; MapInfo
+    # files that lose theirs are left with WGS84 itself
+    lost = _is_ballpark(best) and _is_unknown(flat)
+    alike = _alike(flat, *rough) if lost or not _is_named(flat) else ()
+    return Transformation(code, name, accuracy, best, missing, lost or bool(alike), alike)
+
+
+def _is_ballpark(way: pyproj.Transformer) -> bool:
+    return "Ballpark" in way.description
+
+
+def _is_unknown(crs: pyproj.CRS) -> bool:
+    """Return whether PROJ knows no way from a datum to WGS84 anywhere."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        ways = TransformerGroup(crs, WGS84, always_xy=True, allow_ballpark=True)
+    return not ways.unavailable_operations and all(map(_is_ballpark, ways.transformers))
+
+
+def _is_named(crs: pyproj.CRS) -> bool:
+    """Return whether a system is one that people know, or has a name of its own."""
+    return crs.name not in _NAMELESS or crs.to_authority(min_confidence=70) is not None
+
+
+def _alike(crs: pyproj.CRS, lon: float, lat: float) -> tuple[tuple[str, str], ...]:
+    """Return code and name of systems used at a place that project as this one does."""
+    own = _projection(crs)
+    if own is None or not (np.isfinite(lon) and np.isfinite(lat)):
+        return ()
+    found = []
+    for code, info in _projected().items():
+        if not _covers(info, lon, lat):
+            continue
+        other = pyproj.CRS(code)
+        if _projection(other) == own:
+            differs = _ellipsoid(other) != _ellipsoid(crs)
+            found.append((differs, code not in _COMMON, _extent(info), code, info.name))
+    return tuple((code, name) for *_, code, name in sorted(found)[:_MOST_ALIKE])
+
+
+def _ellipsoid(crs: pyproj.CRS) -> tuple[float, float] | None:
+    """Return the size and the flattening of the earth of a system, as far as texts keep them."""
+    body = crs.ellipsoid
+    if body is None:
+        return None
+    return round(body.semi_major_metre, 1), round(body.inverse_flattening, 4)
+
+
+def _projection(crs: pyproj.CRS) -> dict[str, float] | None:
+    """Return the figures of a projection that has any, rounded to what texts keep of them."""
+    way = crs.coordinate_operation
+    if not crs.is_projected or way is None:
+        return None
+    figures = {p.name: round(float(p.value) * p.unit_conversion_factor, 7) for p in way.params}
+    return {name: value for name, value in figures.items() if value}
 
 
 def code_of(crs: pyproj.CRS) -> str:

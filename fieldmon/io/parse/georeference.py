@@ -22,6 +22,7 @@ from fieldmon.io.parse.crs import (
     utm_zone,
 )
 from fieldmon.plot.projection import M_PER_DEGREE
+from fieldmon.plot.rounding import step_of
 
 if TYPE_CHECKING:
     import pyproj
@@ -36,7 +37,6 @@ _FAR_KM, _ASKED_KM = 20.0, 1000.0
 _FAR_FROM_USE_KM, _FAR_FROM_ZONE_KM = 50.0, 600.0
 #: systems of the whole earth put numbers of no size off the coast of Ghana
 _OF_NOWHERE_DEG = 0.1
-_LOOKED_AT = 5_000
 _NAMED = 3
 
 
@@ -98,7 +98,7 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
         _check_metres(xy, lonlat, crs, options)
     _check_landing(lonlat, crs)
     _check_near(xy, lonlat, through.code, options)
-    step_m = _step(xy) * (M_PER_DEGREE if crs.is_geographic else 1.0)
+    step_m = step_of(xy) * (M_PER_DEGREE if crs.is_geographic else 1.0)
     doubts = [*_outside(xy, lonlat, crs, options), *_distance(lonlat, options)]
     return Georeferenced(lonlat, step_m, (*messages, *more, *through.messages(), *doubts))
 
@@ -340,12 +340,3 @@ def _distance(lonlat: NDArray[np.float64], options: ReadOptions) -> list[ImportM
             )
         ]
     return [doubtful(worded("It lies {away:.0f} km from the plot or place nearby.", away=away))]
-
-
-def _step(xy: NDArray[np.float64]) -> float:
-    """Return the step of rounding: 0.001 where all coordinates have at most three decimals."""
-    some = xy[:: max(1, len(xy) // _LOOKED_AT)]
-    for decimals in range(9):
-        if np.abs(np.round(some, decimals) - some).max(initial=0.0) < 1e-10:
-            return float(10.0**-decimals)
-    return 0.0

@@ -47,8 +47,8 @@ if TYPE_CHECKING:
     from fieldmon.io.options import ReadOptions
 
 _WGS84 = "OGC:CRS84"
-#: coordinates rounded to more than this cannot tell neighbouring plants apart; five decimals of a
-#: degree, 1.1 m, still can
+#: coordinates rounded to more than this cannot tell neighbouring plants apart, whatever their
+#: spacing is
 _COARSE_M = 1.5
 _ZONE_COLUMNS = {"zone", "utmzone", "zona", "zonautm", "huso", "fuseau", "gridzone", "utm"}
 #: of eight degrees each, from 80 south; from the equator to 90 south are 10 000 km of northing

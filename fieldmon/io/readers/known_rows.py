@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Severity, WrongRows, doubtful, seen
 from fieldmon.io.parse.columns import plain
-from fieldmon.io.parse.values import is_missing, numbers
+from fieldmon.io.parse.values import is_missing, number, numbers
 from fieldmon.plot.planting import PLANTED
 
 if TYPE_CHECKING:
@@ -28,6 +29,15 @@ class KnownRows(NamedTuple):
 
 
 _NAMED = 5
+_WITH_UNIT = re.compile(r"([-+]?[\d.,]+)\s*([^\s\d.,].*)")
+_FOOT_M = 0.3048
+_UNITS_M = {
+    **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
+    **dict.fromkeys(("cm", "centimetres", "centimeters"), 0.01),
+    "mm": 0.001,
+    **dict.fromkeys(("'", "’", "′", "ft", "foot", "feet"), _FOOT_M),
+    **dict.fromkeys(('"', "”", "″", "in", "inch", "inches"), _FOOT_M / 12),
+}
 _COLUMNS = {
     "row_bearing_deg": ("row_bearing_deg", "row_bearing", "bearing", "row_azimuth", "azimuth"),
     "row_spacing_m": (
@@ -57,7 +67,8 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
             values.append([None] * len(names))
             continue
         used.append(f"{column!r}")
-        stated = numbers(layer.column(column))
+        cells = layer.column(column)
+        stated = numbers(cells) if setting == "row_bearing_deg" else _metres(cells)
         # 0 and less stand for what nobody knows
         usable = np.isfinite(stated) & ((stated > 0) | (setting == "row_bearing_deg"))
         values.append([float(v) if good else None for v, good in zip(stated, usable, strict=True)])
@@ -73,6 +84,16 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
         )
     )
     return dict(zip(names, rows, strict=True)), [said, *wrong]
+
+
+def _metres(cells: NDArray[np.object_]) -> NDArray[np.float64]:
+    """Return distances in metres ``(n,)``, each in the unit it is written in; NaN in any other."""
+    stated = numbers(cells)
+    for k, cell in enumerate(map(text, cells)):
+        if found := _WITH_UNIT.match(cell.casefold()):
+            value = number(found[1], "," if "," in found[1] else ".")
+            stated[k] = value * _UNITS_M.get(found[2].rstrip("."), np.nan)
+    return stated
 
 
 def left_aside(

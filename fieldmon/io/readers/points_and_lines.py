@@ -29,6 +29,8 @@ from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.places import Plants
 from fieldmon.io.readers.plots import blocks_of
+from fieldmon.plot.near_doubles import near_doubles
+from fieldmon.plot.rounding import too_coarse
 from fieldmon.plot.row_detection import distinct, frame_around
 from fieldmon.plot.row_drawing import rows_from_posts
 
@@ -47,6 +49,8 @@ _FAR_M, _RARE = 1000.0, 10
 # no plot is so wide
 _ELSEWHERE_DEG = 1.0
 _NAMED = 5
+# so near to each other no two plants stand
+_SAME_M = 0.05
 # so many positions may be corners of a plot that holds such a share of the others, and so many
 # marks tell them from plants
 _LEAST_CORNERS, _MOST_CORNERS, _MOST_MARKS = 3, 20, 20
@@ -95,17 +99,21 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         messages.append(dropped(said))
     gone |= corners
     here = np.flatnonzero(~gone)
-    kept = here[distinct(found.lonlat[here])]
+    messages += _of_rounding(found.lonlat[here], found.step_m, labels[1][here])
+    apart_m = options.doubles_m or _SAME_M
+    kept = here[distinct(found.lonlat[here], apart_m)]
     n_doubles = len(here) - len(kept)
     if n_doubles and options.doubles is None:
         raise _about_doubles(found.layer, np.union1d(kept, np.flatnonzero(gone)))
     if n_doubles:
         said = worded(
-            "{n_doubles} of {n} plants stood within 5 cm of another one; left out.",
+            "{n_doubles} of {n} plants stood within {apart} of another one; left out.",
             n_doubles=n_doubles,
             n=len(here),
+            apart=f"{100 * apart_m:g} cm" if apart_m < 1 else distance_figure(apart_m),
         )
         messages.append(dropped(said))
+    messages += _of_near_doubles(found.lonlat[kept])
     left_out, said_of_strays = _strays(found.lonlat[kept], labels[-1][kept], options)
     kept = kept[~left_out]
     block, row, plant = (label[kept] for label in labels)
@@ -116,6 +124,27 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         if role in columns and (names == "").any():
             messages.append(_of_blanks(names, columns[role]))
     return Imported(plants, (*layer.messages, *messages))
+
+
+def _of_rounding(
+    lonlat: NDArray[np.float64], step_m: float, row: NDArray[np.str_]
+) -> list[ImportMessage]:
+    """Return a doubt where plants are rounded too coarsely; refuse them where that hides rows."""
+    rounding = too_coarse(lonlat, step_m, named=bool((row != "").all()))
+    if rounding is None:
+        return []
+    if rounding.hides_rows:
+        raise FileProblem(rounding.sentence)
+    return [doubtful(rounding.sentence)]
+
+
+def _of_near_doubles(lonlat: NDArray[np.float64]) -> list[ImportMessage]:
+    """Return a doubt about plants that may be one, with the distance that makes them one."""
+    doubles = near_doubles(lonlat)
+    if doubles is None:
+        return []
+    remedy = Remedy("doubles", f"{doubles.within_m:g}", worded("Keep one of each"))
+    return [doubtful(doubles.sentence, remedy=remedy)]
 
 
 def _is_constant(layer: Layer, column: str | None) -> bool:

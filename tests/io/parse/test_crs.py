@@ -1,5 +1,7 @@
 """Coordinate systems: named, guessed from where data would land, and turned into degrees."""
 
+import re
+
 import numpy as np
 import pyproj
 import pytest
@@ -55,6 +57,46 @@ def test_a_grid_of_metres_lands_where_proj_says_and_its_accuracy_is_told(lon, la
     (said,) = way.messages()
     assert "UTM zone 36N (EPSG:32636)" in said.sentence
     assert said.severity in {Severity.SEEN, Severity.DOUBTFUL}
+
+
+@pytest.mark.parametrize(
+    ("code", "at", "first"),
+    [
+        (27700, (451_000.0, 291_000.0), "EPSG:27700"),
+        (31370, (150_000.0, 170_000.0), "EPSG:31370"),
+        (28992, (155_000.0, 463_000.0), "EPSG:28992"),
+        (23030, (500_000.0, 4_500_000.0), "EPSG:23030"),
+        (4314, (9.0, 50.0), None),
+    ],
+)
+def test_a_datum_without_a_known_name_is_doubted_with_the_systems_that_project_alike(
+    code, at, first
+):
+    known = pyproj.CRS(code).to_wkt("WKT1_ESRI")
+    nameless = re.sub(r'(PROJCS|GEOGCS|DATUM)\["[^"]+"', r'\1["unknown"', known)
+    (said,) = transformation_from(system(nameless), at).messages()
+    assert said.severity is Severity.DOUBTFUL
+    assert "some 100 m beside" in said.sentence
+    if first is None:
+        assert "crs=EPSG:2039" in said.sentence
+        assert said.remedy is None
+    else:
+        assert (said.remedy.option, said.remedy.value) == ("crs", first)
+
+
+@pytest.mark.parametrize(("code", "at"), [(2039, ITM), (28992, (155_000.0, 463_000.0))])
+def test_a_nameless_grid_left_with_wgs84_as_its_datum_is_doubted_as_those_of_mapinfo(code, at):
+    grid = pyproj.CRS(code)
+    left = pyproj.crs.ProjectedCRS(grid.coordinate_operation, "unnamed").to_wkt()
+    (said,) = transformation_from(system(left), at).messages()
+    assert said.severity is Severity.DOUBTFUL
+    assert f"EPSG:{code} ({grid.name})" in said.sentence
+
+
+def test_a_grid_of_ones_own_on_wgs84_is_not_doubted():
+    own = pyproj.CRS("+proj=tmerc +lat_0=30.3 +lon_0=35.1 +k=1 +x_0=1000 +y_0=1000 +datum=WGS84")
+    (said,) = transformation_from(own, (1000.0, 1000.0)).messages()
+    assert said.severity is Severity.SEEN
 
 
 def test_the_height_of_a_compound_system_is_left_aside():

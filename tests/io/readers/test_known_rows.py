@@ -17,13 +17,33 @@ def test_each_plot_gets_what_its_own_line_says():
 
 
 @pytest.mark.parametrize(
-    ("value", "said"), [(0, 0), (None, 0), ("-999", 0), (-3, 1), ("none", 1), ("3 m", 1)]
+    ("value", "said"),
+    [(0, 0), (None, 0), ("-999", 0), (-3, 1), ("none", 1), ("3 yd", 1), ("3 m x 2", 1)],
 )
 def test_a_spacing_that_is_none_is_not_taken_and_said_if_it_was_meant(value, said):
     known, (_, *doubts) = known_rows(table(row_spacing_m=[value, 4]), NAMES)
     assert known["a"].row_spacing_m is None
     assert len(doubts) == said
     assert all(f"a ({str(value)!r})" in one.sentence for one in doubts)
+
+
+@pytest.mark.parametrize(
+    ("said", "metres"),
+    [
+        ("11'", 3.3528),
+        ("11 ft", 3.3528),
+        ("11ft.", 3.3528),
+        ("1.2 m", 1.2),
+        ("3,5 m", 3.5),
+        ("350 cm", 3.5),
+        ('60"', 1.524),
+        ("3.5", 3.5),
+    ],
+)
+def test_a_spacing_is_in_the_unit_it_is_written_in(said, metres):
+    known, _ = known_rows(table(row_spacing=[said, "4"]), NAMES)
+    assert known["a"].row_spacing_m == pytest.approx(metres)
+    assert known["b"].row_spacing_m == 4.0
 
 
 def test_rows_may_run_north_and_west_of_it():

@@ -16,7 +16,7 @@ from pyproj.enums import PJType
 from pyproj.exceptions import CRSError, ProjError
 from pyproj.transformer import TransformerGroup
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, seen
 from fieldmon.plot.local_clock import at_sea
@@ -126,7 +126,7 @@ class Transformation:
         )
         if not self.alike:
             how = worded("Name the coordinate system, as in crs=EPSG:2039.")
-            return doubtful(f"{said} {how}")
+            return doubtful(joined(" ", (said, how)))
         listed = ", ".join(f"{code} ({name})" for code, name in self.alike)
         said = worded(
             "{said} Name the coordinate system; of the same projection are {listed}.",

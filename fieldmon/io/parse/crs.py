@@ -125,8 +125,8 @@ class Transformation:
             name=self.name,
         )
         if not self.alike:
-            how = worded("Name the coordinate system, as in crs=EPSG:2039.")
-            return doubtful(f"{said} {how}")
+            how = worded("{said} Name the coordinate system, as in crs=EPSG:2039.", said=said)
+            return doubtful(how)
         listed = ", ".join(f"{code} ({name})" for code, name in self.alike)
         said = worded(
             "{said} Name the coordinate system; of the same projection are {listed}.",

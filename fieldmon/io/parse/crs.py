@@ -16,7 +16,7 @@ from pyproj.enums import PJType
 from pyproj.exceptions import CRSError, ProjError
 from pyproj.transformer import TransformerGroup
 
-from fieldmon.compute.wording import joined, worded
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, seen
 from fieldmon.plot.local_clock import at_sea
@@ -125,8 +125,8 @@ class Transformation:
             name=self.name,
         )
         if not self.alike:
-            how = worded("Name the coordinate system, as in crs=EPSG:2039.")
-            return doubtful(joined(" ", (said, how)))
+            how = worded("{said} Name the coordinate system, as in crs=EPSG:2039.", said=said)
+            return doubtful(how)
         listed = ", ".join(f"{code} ({name})" for code, name in self.alike)
         said = worded(
             "{said} Name the coordinate system; of the same projection are {listed}.",

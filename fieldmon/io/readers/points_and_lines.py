@@ -110,7 +110,7 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
             "{n_doubles} of {n} plants stood within {apart} of another one; left out.",
             n_doubles=n_doubles,
             n=len(here),
-            apart=f"{100 * apart_m:g} cm" if apart_m < 1 else distance_figure(apart_m),
+            apart=worded("{apart_cm:g} cm", apart_cm=100 * apart_m),
         )
         messages.append(dropped(said))
     messages += _of_near_doubles(found.lonlat[kept])

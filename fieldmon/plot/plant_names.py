@@ -60,8 +60,9 @@ def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) ->
 
     A number is one at the end of a name. Where half of the rows have one, and no two the same,
     rows keep theirs; where no two of a block have the same, too, and count on from block to block.
-    Rows without one then get one beyond all others. Plants keep theirs if these tell all plants of
-    each row apart. Else they count from 1. Names that are just their numbers are not kept.
+    Rows without one then get one beyond all others. Plants keep theirs in rows where these tell
+    all apart, if half of the rows are such. Else they count from 1. Names that are just their
+    numbers are not kept.
     """
     if not grid.in_rows or all(one is None for one in names):
         return grid
@@ -81,7 +82,7 @@ def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) ->
         grid = replace(grid, line_named=_beyond_numbers(own, in_block))
     if names.plant is not None:
         plants = _numbers(names.plant)[of]
-        grid = replace(grid, plant_called=plants if _tells_apart(grid, plants) else None)
+        grid = replace(grid, plant_called=_plants_called(grid, plants))
         number = row_label(grid).number
         grid = replace(grid, plant_named=_beyond_numbers(names.plant[of], number))
     return grid
@@ -151,11 +152,23 @@ def _lines_named(line: NDArray[np.integer], rows: NDArray[np.str_]) -> NDArray[n
     return np.array(["\n".join(one) for one in own], np.str_)
 
 
-def _tells_apart(grid: PlantGrid, plants: Int) -> bool:
-    """Tell whether numbers ``(n,)`` tell the plants of each line apart."""
-    keys = np.stack([grid.row_line[grid.row], plants], axis=1)
+def _plants_called(grid: PlantGrid, plants: Int) -> Int | None:
+    """Return the number of each plant from those in their names ``(n,)``; None: all from 1."""
+    line = grid.row_line[grid.row]
+    mixed = np.unique(line[_not_told_apart(grid, plants)])
+    if 2 * len(mixed) > len(np.unique(line)):
+        return None
+    from_one = row_label(replace(grid, plant_called=None)).number
+    return np.where(np.isin(line, mixed), from_one, plants)
+
+
+def _not_told_apart(grid: PlantGrid, plants: Int) -> Int:
+    """Return which plants have no number ``(n,)``, or that of another one of their line."""
     vines = np.unique(grid.vine)
-    return bool((plants >= 0).all()) and len(np.unique(keys[vines], axis=0)) == len(vines)
+    keys = np.stack([grid.row_line[grid.row[vines]], plants[vines]], axis=1)
+    _, which, many = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+    wrong: Int = vines[(plants[vines] < 0) | (many[which.ravel()] > 1)]
+    return wrong
 
 
 def said_of_numbers(grid: PlantGrid) -> list[str]:
@@ -233,10 +246,13 @@ def _of_plants(grid: PlantGrid) -> str:
     if grid.plant_named is None:
         return ""
     label = row_label(grid)
+    shown = np.arange(min(len(grid), 2))
+    if grid.plant_called is not None:
+        shown = np.flatnonzero(_numbers(grid.plant_named) == label.number)[:2]
     some = [
         worded("{name} is plant {number} of row {row}", name=name, number=n, row=row)
         for name, n, row in zip(
-            grid.plant_named[:2].tolist(), label.number[:2], label.line[:2], strict=True
+            grid.plant_named[shown].tolist(), label.number[shown], label.line[shown], strict=True
         )
     ]
     if grid.plant_called is None:
@@ -245,9 +261,42 @@ def _of_plants(grid: PlantGrid) -> str:
 
 
 def doubts_of_numbers(grid: PlantGrid) -> list[str]:
+    """Return what is to be said of names that are numbers of other rows, or of other plants."""
+    return [said for said in (_doubt_of_rows(grid), _doubt_of_plants(grid)) if said]
+
+
+def _doubt_of_plants(grid: PlantGrid) -> str:
+    """Return which plants take the numbers in their names from all of their row."""
+    if grid.plant_named is None:
+        return ""
+    plants = _numbers(grid.plant_named)
+    wrong = _not_told_apart(grid, plants)
+    # where most have none, or share theirs, numbers are meant otherwise
+    if not 0 < 2 * len(wrong) <= len(np.unique(grid.vine)):
+        return ""
+    line = row_label(grid).line[wrong].tolist()
+    names = grid.plant_named[wrong].tolist()
+    some = [
+        worded("{name} in row {row}", name=name or "?", row=grid.row_signs.get(row, row))
+        for name, row in dict.fromkeys(zip(names, line, strict=True))
+    ]
+    where = (
+        worded("in all rows")
+        if grid.plant_called is None
+        else worded("in {n} {n:row|rows}", n=len(set(line)))
+    )
+    return worded(
+        "Plants count from 1 {where}, not by the numbers in their names, as these do not tell them "
+        "apart: {some}. Give each plant of a row a number of its own in the file.",
+        where=where,
+        some=first_few(some, _NAMED),
+    )
+
+
+def _doubt_of_rows(grid: PlantGrid) -> str:
     """Return what is to be said of rows whose names are numbers of other rows."""
     if grid.line_named is None or (grid.line_called is not None and grid.counts_on):
-        return []
+        return ""
     own = zip(grid.line_named.tolist(), grid.line_number.tolist(), strict=True)
     here = set(grid.line_number.tolist())
     both = [
@@ -257,11 +306,9 @@ def doubts_of_numbers(grid: PlantGrid) -> list[str]:
         if name.isdecimal() and int(name) != n and int(name) in here
     ]
     if not both:
-        return []
-    return [
-        worded(
-            "Rows are called {some} in the file, which are numbers of other rows here: such a row "
-            "is refused wherever rows are written. Give each row a number of its own in the file.",
-            some=first_few(list(dict.fromkeys(both)), _NAMED),
-        )
-    ]
+        return ""
+    return worded(
+        "Rows are called {some} in the file, which are numbers of other rows here: such a row "
+        "is refused wherever rows are written. Give each row a number of its own in the file.",
+        some=first_few(list(dict.fromkeys(both)), _NAMED),
+    )

@@ -187,6 +187,30 @@ def test_rows_that_are_called_by_numbers_of_other_rows_are_doubted():
         assert doubts_of_numbers(named(rows).grid) == []
 
 
+@pytest.mark.parametrize(("odd", "said"), [("7", "7 in row 1"), ("", "? in row 1"), ("x", "x in")])
+@pytest.mark.parametrize("faces", [1, 2])
+def test_one_number_that_tells_no_plant_apart_takes_them_from_its_row_alone(odd, said, faces):
+    plants = np.array([f"{2 * k + 3}" for k in PLANT], "<U3")
+    plants[4] = odd
+    plot = named(ROW + 1, plants, faces=faces)
+    rows, numbers = labels(plot)
+    assert rows == (ROW + 1).tolist()
+    assert numbers[10:] == (2 * PLANT + 3)[10:].tolist()
+    assert numbers[:10] == [*range(1, 11)]
+    (doubt,) = plot.doubts
+    assert doubt.startswith("Plants count from 1 in 1 row, not by the numbers in their names")
+    assert said in doubt
+    assert "5 is plant 2 of row 1" not in " ".join(said_of_numbers(plot.grid))
+
+
+def test_numbers_that_tell_few_plants_apart_are_no_numbers():
+    plot = named(ROW + 1, PLANT // 2 + 1)
+    assert labels(plot)[1] == (PLANT + 1).tolist()
+    assert plot.doubts == ()
+    (doubt,) = named(ROW + 1, np.where(PLANT == 4, 8, PLANT + 3)).doubts
+    assert doubt.startswith("Plants count from 1 in all rows")
+
+
 def test_what_stands_at_rows_on_maps_has_their_names_where_these_are_no_numbers():
     assert signs(named(6 - ROW)) == ["6", "5", "4", "3", "2", "1"]
     assert signs(named([f"R{6 - k}" for k in ROW])) == ["6", "5", "4", "3", "2", "1"]

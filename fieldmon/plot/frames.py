@@ -9,13 +9,14 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.compute.arguments import must_be
+from fieldmon.compute.rounding_step import step_of
 from fieldmon.compute.wording import first_few
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_label, row_label
 from fieldmon.plot.near_doubles import near_doubles
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.projection import M_PER_DEGREE
-from fieldmon.plot.rounding import step_of, too_coarse
+from fieldmon.plot.rounding import too_coarse
 
 if TYPE_CHECKING:
     from geopandas import GeoDataFrame, GeoSeries

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     Float = NDArray[np.float64]
 
-_LOOKED_AT = 5_000
 # rounded to a greater part of how far plants stand apart, rows are to be looked at, and seen where
 # there are none
 _DOUBTED, _REFUSED = 1 / 3, 0.55
@@ -32,18 +31,6 @@ class Rounding(NamedTuple):
 
     sentence: str
     hides_rows: bool
-
-
-def step_of(xy: Float) -> float:
-    """Return the step of rounding: 0.001 where all coordinates have at most three decimals.
-
-    0 where they are not rounded.
-    """
-    some = xy[:: max(1, len(xy) // _LOOKED_AT)]
-    for decimals in range(9):
-        if np.abs(np.round(some, decimals) - some).max(initial=0.0) < 1e-10:
-            return float(10.0**-decimals)
-    return 0.0
 
 
 def too_coarse(lonlat: Float, step_m: float, *, named: bool) -> Rounding | None:

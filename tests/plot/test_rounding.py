@@ -5,12 +5,13 @@ import numpy as np
 import pytest
 from shapely import Point
 
+from fieldmon.compute.rounding_step import step_of
 from fieldmon.errors import FileProblem, ImportDoubt, PlotError
 from fieldmon.io.options import ReadOptions
 from fieldmon.io.readers.points_and_lines import plants_of
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
-from fieldmon.plot.rounding import step_of, too_coarse
+from fieldmon.plot.rounding import too_coarse
 from tests.io.tables_of_cells import sentences, table
 
 M = 111_320.0

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
+from fieldmon.compute.rounding_step import step_of
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, repaired, seen
@@ -22,7 +23,6 @@ from fieldmon.io.parse.crs import (
     utm_zone,
 )
 from fieldmon.plot.projection import M_PER_DEGREE
-from fieldmon.plot.rounding import step_of
 
 if TYPE_CHECKING:
     import pyproj

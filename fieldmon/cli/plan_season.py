@@ -101,14 +101,15 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
 def _refuse_worked(season: Season, on: date, now: time, team: list[str]) -> None:
     """Refuse a time before somebody's last result: hours already worked are no hours left."""
     for name in team or [""]:
-        second = season.worked(on, name).second
+        worked = season.worked(on, name)
+        second = worked.second
         if not len(second) or not isfinite(second[-1]):
             continue
         if season.left_s(on, now, name) < season.left_s(on, None, name) + _MINUTE_S:
             continue
         last = datetime.combine(on, time()) + timedelta(seconds=float(second[-1]))
         whose = f"{name}'s last result" if name else "the last result"
-        number = season.number_of(season.worked(on, name))
+        number = season.number_of(worked)
         file = shlex.quote(str(season.path))
         raise SettingError(
             f"--now must not be before what was found, but it is {now:%H:%M} and {whose} of {on} "

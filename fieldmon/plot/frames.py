@@ -15,13 +15,12 @@ from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_label, row_label
 from fieldmon.plot.near_doubles import near_doubles
 from fieldmon.plot.plant_names import PlantNames
-from fieldmon.plot.projection import M_PER_DEGREE
-from fieldmon.plot.rounding import too_coarse
+from fieldmon.plot.projection import metres_per_unit
+from fieldmon.plot.rounding import doubts_of_rounding
 
 if TYPE_CHECKING:
     from geopandas import GeoDataFrame, GeoSeries
     from numpy.typing import NDArray
-    from pyproj import CRS
 
     from fieldmon.plot.grid import PlantGrid
 
@@ -110,26 +109,11 @@ def boundary_and_plants(
     said, names = _of_no_place(frame, there), _names_in(frame, which)
     xy = shapely.get_coordinates(frame.geometry.iloc[there][kinds == "Point"].to_numpy())
     lonlat = shapely.get_coordinates(places)
-    said += _of_rounding(lonlat, step_of(xy) * _metres(frame.crs), names)
+    step_m = step_of(xy) * metres_per_unit(frame.crs)
+    said += doubts_of_rounding(lonlat, step_m, names.row, PlotError)
     if doubles := near_doubles(lonlat):
         said.append(doubles.sentence)
     return boundary, lonlat, names, said
-
-
-def _metres(crs: CRS) -> float:
-    """Return how many metres one in the coordinates of a system is."""
-    return M_PER_DEGREE if crs.is_geographic else 1.0
-
-
-def _of_rounding(lonlat: NDArray[np.float64], step_m: float, names: PlantNames) -> list[str]:
-    """Return a doubt where plants are rounded too coarsely; refuse them where that hides rows."""
-    named = names.row is not None and bool((names.row != "").all())
-    rounding = too_coarse(lonlat, step_m, named=named)
-    if rounding is None:
-        return []
-    if rounding.hides_rows:
-        raise PlotError(rounding.sentence)
-    return [rounding.sentence]
 
 
 def _placed(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:

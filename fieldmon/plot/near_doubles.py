@@ -6,10 +6,9 @@ from math import ceil
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import worded
-from fieldmon.plot.row_detection import frame_around
+from fieldmon.plot.row_detection import frame_around, nearest_m
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,7 +32,7 @@ def near_doubles(lonlat: NDArray[np.float64]) -> NearDoubles | None:
     if len(lonlat) < _ENOUGH:
         return None
     xy_m = frame_around(lonlat).xy_m(lonlat)
-    near_m = cKDTree(xy_m).query(xy_m, 2)[0][:, 1]
+    near_m = nearest_m(xy_m)
     usual_m = float(np.median(near_m))
     close = near_m < _NEAR * usual_m
     between = np.count_nonzero(near_m < _USUAL * usual_m) - np.count_nonzero(close)

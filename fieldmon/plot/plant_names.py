@@ -270,6 +270,8 @@ def _doubt_of_plants(grid: PlantGrid) -> str:
     if grid.plant_named is None:
         return ""
     plants = _numbers(grid.plant_named)
+    if grid.plant_called is not None and (plants == grid.plant_called).all():
+        return ""
     wrong = _not_told_apart(grid, plants)
     # where most have none, or share theirs, numbers are meant otherwise
     if not 0 < 2 * len(wrong) <= len(np.unique(grid.vine)):

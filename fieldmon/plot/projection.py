@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from pyproj import Transformer
+from pyproj import CRS, Transformer
 from pyproj.enums import TransformDirection
 
 from fieldmon.compute.kinds import must_be_of
@@ -24,6 +24,11 @@ _FARTHEST_M = 200_000.0
 M_PER_DEGREE = 111_320.0
 # longitudes that differ by more lie on both sides of 180, unless they are wrong
 _ROUND_DEG = 350.0
+
+
+def metres_per_unit(crs: CRS) -> float:
+    """Return, roughly, how many metres one in the coordinates of a system is."""
+    return M_PER_DEGREE if crs.is_geographic else 1.0
 
 
 def goes_round(lon: ArrayLike) -> bool:

@@ -5,14 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
-from fieldmon.plot.row_detection import frame_around
+from fieldmon.plot.row_detection import frame_around, nearest_m
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from fieldmon.errors import FieldmonError
 
     Float = NDArray[np.float64]
 
@@ -33,6 +34,22 @@ class Rounding(NamedTuple):
     hides_rows: bool
 
 
+def doubts_of_rounding(
+    lonlat: Float, step_m: float, row: NDArray[np.str_] | None, refusal: type[FieldmonError]
+) -> list[str]:
+    """Return a doubt where plants ``(n, 2)`` are rounded too coarsely.
+
+    Raise the `refusal` where that hides rows: those that a name in `row` tells are not hidden.
+    """
+    named = row is not None and bool((row != "").all())
+    rounding = too_coarse(lonlat, step_m, named=named)
+    if rounding is None:
+        return []
+    if rounding.hides_rows:
+        raise refusal(rounding.sentence)
+    return [rounding.sentence]
+
+
 def too_coarse(lonlat: Float, step_m: float, *, named: bool) -> Rounding | None:
     """Return what to say of plants ``(n, 2)`` rounded to a step; None where they stand far enough.
 
@@ -44,7 +61,7 @@ def too_coarse(lonlat: Float, step_m: float, *, named: bool) -> Rounding | None:
     if len(places) < 2:
         return None
     xy_m = frame_around(places).xy_m(places)
-    near_m = cKDTree(xy_m).query(xy_m, 2)[0][:, 1]
+    near_m = nearest_m(xy_m)
     apart_m = float(np.median(near_m))
     hidden = step_m > _REFUSED * apart_m
     exact = _is_even(times, near_m) and (not hidden or _is_filled(places))

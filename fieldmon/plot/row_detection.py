@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     Float = NDArray[np.float64]
 
+#: so near to each other no two plants stand
+SAME_PLANT_M = 0.05
 _BINS_PER_DEG = 4
 _EDGE_SMOOTH_DEG = 2.0
 # plants this part of the usual distance beside a line are on it
@@ -196,10 +198,16 @@ def _longest(seen: list[_LinesSeen], best: _LinesSeen) -> tuple[_LinesSeen, list
     return longest, [lines for lines in good if lines is not longest]
 
 
-def distinct(lonlat: Float, apart_m: float = 0.05) -> NDArray[np.intp]:
+def distinct(lonlat: Float, apart_m: float = SAME_PLANT_M) -> NDArray[np.intp]:
     """Return which plants ``(k,)`` are left if of those closer than `apart_m` the first is kept."""
     pairs = cKDTree(frame_around(lonlat).xy_m(lonlat)).query_pairs(apart_m, output_type="ndarray")
     return np.setdiff1d(np.arange(len(lonlat)), pairs[:, 1])
+
+
+def nearest_m(xy_m: Float) -> Float:
+    """Return how far the nearest other plant is from each ``(n,)``, of two plants or more."""
+    near_m: Float = cKDTree(xy_m).query(xy_m, k=2)[0][:, 1]
+    return near_m
 
 
 def frame_around(lonlat: Float) -> Frame:
@@ -254,7 +262,7 @@ class _Pairs(NamedTuple):
     @classmethod
     def of(cls, east_north_m: Float) -> _Pairs:
         n = len(east_north_m)
-        near_m = float(np.median(cKDTree(east_north_m).query(east_north_m, k=2)[0][:, 1]))
+        near_m = float(np.median(nearest_m(east_north_m)))
         if near_m == 0:
             raise PlotError(
                 worded(

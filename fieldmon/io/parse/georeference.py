@@ -22,7 +22,7 @@ from fieldmon.io.parse.crs import (
     transformation_from,
     utm_zone,
 )
-from fieldmon.plot.projection import M_PER_DEGREE
+from fieldmon.plot.projection import metres_per_unit
 
 if TYPE_CHECKING:
     import pyproj
@@ -98,7 +98,7 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
         _check_metres(xy, lonlat, crs, options)
     _check_landing(lonlat, crs)
     _check_near(xy, lonlat, through.code, options)
-    step_m = step_of(xy) * (M_PER_DEGREE if crs.is_geographic else 1.0)
+    step_m = step_of(xy) * metres_per_unit(crs)
     doubts = [*_outside(xy, lonlat, crs, options), *_distance(lonlat, options)]
     return Georeferenced(lonlat, step_m, (*messages, *more, *through.messages(), *doubts))
 

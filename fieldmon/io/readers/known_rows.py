@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.units import LENGTHS
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Severity, WrongRows, doubtful, seen
@@ -30,13 +31,12 @@ class KnownRows(NamedTuple):
 
 _NAMED = 5
 _WITH_UNIT = re.compile(r"([-+]?[\d.,]+)\s*([^\s\d.,].*)")
-_FOOT_M = 0.3048
 _UNITS_M = {
     **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
     **dict.fromkeys(("cm", "centimetres", "centimeters"), 0.01),
     "mm": 0.001,
-    **dict.fromkeys(("'", "’", "′", "ft", "foot", "feet"), _FOOT_M),
-    **dict.fromkeys(('"', "”", "″", "in", "inch", "inches"), _FOOT_M / 12),
+    **dict.fromkeys(("'", "’", "′", "ft", "foot", "feet"), LENGTHS["ft"]),
+    **dict.fromkeys(('"', "”", "″", "in", "inch", "inches"), LENGTHS["ft"] / 12),
 }
 _COLUMNS = {
     "row_bearing_deg": ("row_bearing_deg", "row_bearing", "bearing", "row_azimuth", "azimuth"),
@@ -72,7 +72,7 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
         # 0 and less stand for what nobody knows
         usable = np.isfinite(stated) & ((stated > 0) | (setting == "row_bearing_deg"))
         values.append([float(v) if good else None for v, good in zip(stated, usable, strict=True)])
-        wrong += left_aside(column, layer.column(column), usable | (stated == 0), names)
+        wrong += left_aside(column, cells, usable | (stated == 0), names)
         wrong += _out_of_range(setting, column, values[-1], names)
     if not used:
         return {}, []

@@ -30,8 +30,8 @@ from fieldmon.io.parse.positions import located
 from fieldmon.io.readers.places import Plants
 from fieldmon.io.readers.plots import blocks_of
 from fieldmon.plot.near_doubles import near_doubles
-from fieldmon.plot.rounding import too_coarse
-from fieldmon.plot.row_detection import distinct, frame_around
+from fieldmon.plot.rounding import doubts_of_rounding
+from fieldmon.plot.row_detection import SAME_PLANT_M, distinct, frame_around
 from fieldmon.plot.row_drawing import rows_from_posts
 
 if TYPE_CHECKING:
@@ -49,8 +49,6 @@ _FAR_M, _RARE = 1000.0, 10
 # no plot is so wide
 _ELSEWHERE_DEG = 1.0
 _NAMED = 5
-# so near to each other no two plants stand
-_SAME_M = 0.05
 # so many positions may be corners of a plot that holds such a share of the others, and so many
 # marks tell them from plants
 _LEAST_CORNERS, _MOST_CORNERS, _MOST_MARKS = 3, 20, 20
@@ -99,8 +97,9 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         messages.append(dropped(said))
     gone |= corners
     here = np.flatnonzero(~gone)
-    messages += _of_rounding(found.lonlat[here], found.step_m, labels[1][here])
-    apart_m = options.doubles_m or _SAME_M
+    coarse = doubts_of_rounding(found.lonlat[here], found.step_m, labels[1][here], FileProblem)
+    messages += map(doubtful, coarse)
+    apart_m = options.doubles_m or SAME_PLANT_M
     kept = here[distinct(found.lonlat[here], apart_m)]
     n_doubles = len(here) - len(kept)
     if n_doubles and options.doubles is None:
@@ -124,18 +123,6 @@ def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
         if role in columns and (names == "").any():
             messages.append(_of_blanks(names, columns[role]))
     return Imported(plants, (*layer.messages, *messages))
-
-
-def _of_rounding(
-    lonlat: NDArray[np.float64], step_m: float, row: NDArray[np.str_]
-) -> list[ImportMessage]:
-    """Return a doubt where plants are rounded too coarsely; refuse them where that hides rows."""
-    rounding = too_coarse(lonlat, step_m, named=bool((row != "").all()))
-    if rounding is None:
-        return []
-    if rounding.hides_rows:
-        raise FileProblem(rounding.sentence)
-    return [doubtful(rounding.sentence)]
 
 
 def _of_near_doubles(lonlat: NDArray[np.float64]) -> list[ImportMessage]:

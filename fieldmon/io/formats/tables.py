@@ -101,55 +101,76 @@ def _delimiter(content: str) -> str:
 
 
 def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer:
+    """Return rows of cells as a layer, its columns named by the line above the records."""
     limits.check("records", len(rows), limits.RECORDS, name)
     rows, head = _headed(rows, name, header)
-    messages: list[ImportMessage] = []
-    if header == "no":
-        said = worded(
-            "{name} has no line of names: its columns are called column 1 to {n}.",
-            name=name,
-            n=len(rows[0]),
-        )
-        messages.append(seen(said))
-    elif head:
-        messages.append(
-            seen(
-                worded(
-                    "{head} {head:line|lines} above the column names {head:was|were} passed over.",
-                    head=head,
-                )
-            )
-        )
     limits.check("columns", len(rows[head]), limits.COLUMNS, name)
     names = _names(rows[head])
-    twice = [name for name, n in Counter(map(text, rows[head])).items() if name and n > 1]
-    if twice:
-        said = worded(
-            "Several columns are called {names}: the first keeps its name, the next is {other}.",
-            names=", ".join(twice),
-            other=f"{twice[0]}_2",
-        )
-        messages.append(doubtful(said))
-    body = [row for row in rows[head + 1 :] if any(map(_is_filled, row))]
-    if _is_remark(rows[head]):
-        body = [row for row in body if text(row[0]) != "#" or any(map(_is_filled, row[1:]))]
+    body = _body(rows, head)
     if not body:
         raise FileProblem(
             worded("{name} must hold records below its column names, but holds none.", name=name)
         )
-    longer = sum(len(row) > len(names) and any(text(v) for v in row[len(names) :]) for row in body)
-    if longer:
-        messages.append(
-            dropped(
-                worded(
-                    "{longer} {longer:line has|lines have} more cells than there are columns; "
-                    "those were left out.",
-                    longer=longer,
-                )
-            )
-        )
+    messages = (
+        *_about_header(name, len(rows[0]), head, header),
+        *_about_repeated_names(rows[head]),
+        *_about_longer(body, len(names)),
+    )
     above = "\n".join(", ".join(text(v) for v in row) for row in rows[:head])
-    return Layer(name, _columns(names, body), messages=tuple(messages), above=above)
+    return Layer(name, _columns(names, body), messages=messages, above=above)
+
+
+def _body(rows: list[list[Any]], head: int) -> list[list[Any]]:
+    """Return the records below the column names: neither empty lines nor bare ``#``."""
+    body = [row for row in rows[head + 1 :] if any(map(_is_filled, row))]
+    if _is_remark(rows[head]):
+        body = [row for row in body if text(row[0]) != "#" or any(map(_is_filled, row[1:]))]
+    return body
+
+
+def _about_header(
+    name: str, n_columns: int, head: int, header: str | None
+) -> tuple[ImportMessage, ...]:
+    """Return what to say of which line names the columns."""
+    if header == "no":
+        said = worded(
+            "{name} has no line of names: its columns are called column 1 to {n}.",
+            name=name,
+            n=n_columns,
+        )
+        return (seen(said),)
+    if not head:
+        return ()
+    said = worded(
+        "{head} {head:line|lines} above the column names {head:was|were} passed over.", head=head
+    )
+    return (seen(said),)
+
+
+def _about_repeated_names(cells: list[Any]) -> tuple[ImportMessage, ...]:
+    """Return a doubt about columns of one name."""
+    twice = [name for name, n in Counter(map(text, cells)).items() if name and n > 1]
+    if not twice:
+        return ()
+    said = worded(
+        "Several columns are called {names}: the first keeps its name, the next is {other}.",
+        names=", ".join(twice),
+        other=f"{twice[0]}_2",
+    )
+    return (doubtful(said),)
+
+
+def _about_longer(body: list[list[Any]], n_columns: int) -> tuple[ImportMessage, ...]:
+    """Return what was left out of lines with more cells than there are columns."""
+    longer = sum(len(row) > n_columns and any(map(text, row[n_columns:])) for row in body)
+    if not longer:
+        return ()
+    said = worded(
+        "{longer} {longer:line has|lines have} more cells than there are columns; "
+        "those were left out.",
+        longer=longer,
+    )
+    return (dropped(said),)
 
 
 def _headed(rows: list[list[Any]], name: str, header: str | None) -> tuple[list[list[Any]], int]:

@@ -53,8 +53,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fieldmon.monitoring.batches import Batch, BatchContents
+    from fieldmon.monitoring.merging import MergedCopy
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.tables import KeptMessage
+    from fieldmon.monitoring.treatments import KeptTreatment
 
 
 #: why treatments do not count any more after merging, as `MergedCopy` has them
@@ -535,45 +537,35 @@ class SeasonRecords(OpenSeason):
                 # nobody writes there from here on
                 contradict = contradictions(other.inspections, held)
                 clock = local_clock(self.plot.field)
-                treated = [treatments.kept(one, self._inside, clock) for one in (db, theirs)]
+                here, there = (treatments.kept(one, self._inside, clock) for one in (db, theirs))
                 taken = merging.merge(db, theirs)
             self._refresh(db)
             # what either copy took back or corrected contradicts nothing
             contradict = contradict.still(self._inspections(db))
-            moved = bool(taken.numbers)
+            ended = _ended(here, there, taken)
             states, labels = season_log.states(db), label_table.read(db)
-            here, there = treated
-            gone = [(one, why) for why, each, no_more in zip(_GONE, (here, there, here), taken.gone,
-                    strict=True) for one in each if one.number in no_more]  # fmt: skip
             if states != was:
-                undone = [f"{one.application.product or 'a product that nobody named'} on {one.on}"
-                          for one, why in gone if why != _GONE[1]]  # fmt: skip
-                season_log.append(
-                    db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
-                    moved=moved, numbers=taken.numbers, undone=undone,
-                    chosen=taken.chosen, more=str(more_in_words(taken.noted)),
-                )  # fmt: skip
-            by_number = {one.number: one for one in treatments.kept(db, self._inside, clock)}
-            twice = (
-                cautions.same_plants_twice(by_number[one], by_number[other])
-                for one, other in taken.alike
-            )
-            twice_said = tuple(said for said in twice if said)
+                _log_merged(db, states, told, taken, ended)
+            twice = _recorded_twice(treatments.kept(db, self._inside, clock), taken)
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
-        undone_in_one = (
-            cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in gone
+        no_more = (
+            cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in ended
         )
-        said = *contradict.sentences(self.plot.grid), *taken.differing, *twice_said, *undone_in_one
         return Merged(
-            taken.new,
-            said,
-            taken.taken_back,
-            moved,
-            taken.treatments,
-            taken.codes,
-            overlaps,
-            taken.chosen,
-            taken.noted,
+            new=taken.new,
+            contradictions=(
+                *contradict.sentences(self.plot.grid),
+                *taken.differing,
+                *twice,
+                *no_more,
+            ),
+            taken_back=taken.taken_back,
+            moved=bool(taken.numbers),
+            treatments=taken.treatments,
+            codes=taken.codes,
+            overlaps=overlaps,
+            chosen=taken.chosen,
+            noted=taken.noted,
         )
 
     def batches(self) -> tuple[Batch, ...]:
@@ -601,3 +593,52 @@ def _by_those_known(known: dict[str, str], told: Inspections) -> Inspections:
     """Return inspections whose people are written as they are known."""
     names = [as_written(known, str(name)) for name in told.who]
     return replace(told, who=np.array(names, object))
+
+
+def _ended(
+    here: Sequence[KeptTreatment], there: Sequence[KeptTreatment], taken: MergedCopy
+) -> list[tuple[KeptTreatment, str]]:
+    """Return the treatments of two copies that do not count any more, each with why."""
+    return [
+        (one, why)
+        for why, counted, gone in zip(_GONE, (here, there, here), taken.gone, strict=True)
+        for one in counted
+        if one.number in gone
+    ]
+
+
+def _log_merged(
+    db: sqlite3.Connection,
+    states: dict[str, str],
+    told: list[dict[str, str]],
+    taken: MergedCopy,
+    ended: list[tuple[KeptTreatment, str]],
+) -> None:
+    """Note that another copy was taken in, with the entries that its log `told` beside ours."""
+    undone = [
+        f"{one.application.product or 'a product that nobody named'} on {one.on}"
+        for one, why in ended
+        if why != _GONE[1]
+    ]
+    season_log.append(
+        db,
+        "merged",
+        states=states,
+        new=taken.new,
+        entries=len(told),
+        theirs=told,
+        moved=bool(taken.numbers),
+        numbers=taken.numbers,
+        undone=undone,
+        chosen=taken.chosen,
+        more=str(more_in_words(taken.noted)),
+    )
+
+
+def _recorded_twice(counting: Sequence[KeptTreatment], taken: MergedCopy) -> list[str]:
+    """Return a sentence for each two treatments that may be one, recorded in either copy."""
+    by_number = {one.number: one for one in counting}
+    said = (
+        cautions.same_plants_twice(by_number[one], by_number[other]) for one, other in taken.alike
+    )
+    return [one for one in said if one]

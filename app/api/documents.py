@@ -33,7 +33,7 @@ from fieldmon.monitoring.plant_states import hot_spots_on, shown_states
 from fieldmon.planning.skips import left_out
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
-from ..state import heard
+from ..state import last_heard
 
 if TYPE_CHECKING:
     from datetime import date
@@ -92,7 +92,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
     route, history = route_ahead(season, on, part), season.history
     ahead = DayAhead.of(season, on)
     settings, plan, member = ahead.settings, ahead.plan_of(part), ahead.member(part)
-    heard.note(season.path, scout.name, on, plan if has is None else has)
+    last_heard.note(season.path, scout.name, on, plan if has is None else has)
     robot = season.plot.aisles.worked_by(settings.robot if member is None else member.robot)
     hours = work_hours(season, on, part)
     known = shown_states(history, settings.day(on))
@@ -144,7 +144,7 @@ def rest_document(
         route = planned_again(season, on, part, seconds_left)
         plan = DayAhead.of(season, on).plan_of(part)
         told = _route(route, season.reads(on, scout.name))
-    heard.note(season.path, scout.name, on, plan)
+    last_heard.note(season.path, scout.name, on, plan)
     return _json({"day": on.isoformat(), "route": told, "plan": plan})
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import estimate, figure, worded
+from fieldmon.infestation.jump_reach import kernel_means
 from fieldmon.infestation.origins import (
     ANYWHERE,
     ARRIVE,
@@ -20,7 +21,6 @@ from fieldmon.infestation.origins import (
     Estimate,
 )
 from fieldmon.infestation.plot_estimate import estimate_plot
-from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:

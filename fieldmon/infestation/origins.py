@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 #: infested on the first morning, among plants that the first map suspected as much as the average
 #: one or more, and among the others; from outside, anywhere or by the plot's edge; by the plant
-#: beside it; overlooked at an inspection; and by jumps of each kernel of `reach.kernels`, from
+#: beside it; overlooked at an inspection; and by jumps of each kernel of `jump_reach.kernels`, from
 #: `JUMPED` on
 AT_START, ANYWHERE, BY_EDGE, BY_ADJACENT, OVERLOOKED, AT_START_ELSEWHERE, JUMPED = range(7)
 N_ORIGINS = JUMPED + 6

@@ -19,7 +19,7 @@ from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import best_zones, outlines
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.reach import RADIUS
+from fieldmon.infestation.jump_reach import RADIUS
 from fieldmon.io.spray_rate import USUAL_RATE_L_HA, litres_figure, must_be_rate
 from fieldmon.io.writers.treatment_map import TreatmentMap
 from fieldmon.samplers.decide import Decide

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.jump_reach import kernel_means
 from fieldmon.infestation.learnt import Learnt, _length, learnt_from, worth_saying
 from fieldmon.infestation.origins import ANYWHERE, AT_START, AT_START_ELSEWHERE, BY_EDGE, JUMPED
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_plot
-from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Movement, Pest

@@ -839,11 +839,11 @@ FOUND_AGAIN = (
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
 CORRECTED_BY = "Who corrected"
 CORRECTED_BY_HELP = (
-    "Findings that QGIS or QField changed or deleted in a copy of this season come in as "
+    "Inspections that QGIS or QField changed or deleted in a copy of this season come in as "
     "corrections, under this name."
 )
 CORRECTED_UNSAID = (
-    "Corrections must have an author, but nobody is named. Say who corrected the findings."
+    "Corrections must have an author, but nobody is named. Say who corrected the inspections."
 )
 CORRECTED = Plural("{n} correction taken", "{n} corrections taken")
 RECORD_FILE_IN = (

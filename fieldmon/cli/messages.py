@@ -174,7 +174,7 @@ def assumed_in_words(assumed: Iterable[Assumed]) -> str:
 
 
 def tell_drafts(sentences: Iterable[str]) -> None:
-    """Print which findings of another program do not count."""
+    """Print which inspections that another program added do not count."""
     for sentence in sentences:
         typer.echo(sentence, err=True)
 

@@ -65,7 +65,7 @@ def take(
             other = OutsideChange(INSPECTIONS.name, fid, "delete", stood)
             copy_corrections.stand_back(db, other, batch)
             taken.append(other)
-    batches.count_findings(db)
+    batches.count_inspections(db)
     batches.end(db, batch, len(inspections))
     touch(db, INSPECTIONS.name)
     return tuple(outside_changes.in_words(db, one) for one in taken)

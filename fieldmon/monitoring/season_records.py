@@ -192,8 +192,9 @@ class SeasonRecords(OpenSeason):
     def record_instead(self, inspections: Inspections, source: str = "", who: str = "") -> Recorded:
         """Add inspections; where they contradict what is recorded, they hold in its place.
 
-        Those are a batch of corrections, the others one of findings. Undoing the corrections brings
-        back what stood there before. Of results that contradict each other the later one holds.
+        Those are a batch of corrections, the others one of inspections. Undoing the corrections
+        brings back what stood there before. Of results that contradict each other the later one
+        holds.
 
         Parameters
         ----------
@@ -414,7 +415,7 @@ class SeasonRecords(OpenSeason):
         return int(number)
 
     def take_drafts(self) -> tuple[str, ...]:
-        """Let findings count that another program added to the file itself.
+        """Let inspections count that another program added to the file itself.
 
         They are a batch of their own. Return a sentence for each that does not count, and why; it
         stays as it is. Where more was changed, nothing is taken before that is settled.

@@ -68,7 +68,7 @@ def rows_of(
             read = rows_in(open_layer(source, own, workroom), own, source_name(source))
         except (ChoiceNeeded, FileProblem):
             continue  # this one has no columns for inspections
-        said = seen(worded("Findings were read from layer {layer}.", layer=info.layer))
+        said = seen(worded("Inspections were read from layer {layer}.", layer=info.layer))
         if len(read.value):
             return Imported(read.value, (said, *read.messages))
         said_nothing.append(Imported(read.value, (said, *read.messages)))
@@ -152,7 +152,7 @@ def _about_silence(
         )
     silent = ~(results.said | results.unread)  # what is written and cannot be read is said apart
     if silent.any():
-        what = worded("no finding in the name") if in_names else worded("not filled in")
+        what = worded("no result in the name") if in_names else worded("not filled in")
         messages.append(
             seen(
                 worded(

@@ -7,6 +7,9 @@ added to it (`treatments.known_by`). Everything is put in the order in which it 
 that it does not matter which copy takes in the other; what a copy recorded later stays so, whatever
 its clock said. Inspections that both copies begin with, and that come out where they are, are left
 there: of a long season these are nearly all.
+
+What is refused here pages may show, so that it is `worded`; what came of merging only commands and
+programs say.
 """
 
 from __future__ import annotations
@@ -246,7 +249,7 @@ def _merge_treatments(
     These by their digests and the numbers that their batches have now.
     """
     own = [copied["treatments"] for copied in copies]
-    treated = _merged_findings(own, numbers, set(), {})
+    treated = _merged_rows(own, numbers, set(), {})
     treatments.settle(treated)
     _write(db, schema.TREATMENTS, treated)
     held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
@@ -376,10 +379,9 @@ def _of_no_pest(db: sqlite3.Connection, other: sqlite3.Connection) -> Iterator[s
     """Yield a sentence where `db` names a pest, and another names none but found something."""
     pest, named = _pests(db, other)
     if pest and not named and _counting(other, 0) - _counting(db, 0):
-        yield worded(
-            "Only one copy names a pest, {pest}: what the other found counts as found of it, too. "
-            "If that one looked for another pest, undo its batches.",
-            pest=pest,
+        yield (
+            f"Only one copy names a pest, {pest}: what the other found counts as found of it, too. "
+            "If that one looked for another pest, undo its batches."
         )
 
 
@@ -508,7 +510,7 @@ def _merge_inspections(
     counts = "SELECT digest FROM inspections WHERE digest = ? AND undone = 0 AND fid <= ?"
     digests = {row["digest"] for rows in copies for row in rows}
     counting = {held for one in digests for (held,) in db.execute(counts, (one, stay))}
-    _write(db, schema.INSPECTIONS, _merged_findings(copies, numbers, counting, gone), stay)
+    _write(db, schema.INSPECTIONS, _merged_rows(copies, numbers, counting, gone), stay)
 
 
 def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: list[Numbers]) -> int:
@@ -566,7 +568,7 @@ def _spans(db: sqlite3.Connection) -> dict[int, tuple[int, int, int]]:
     return {number: (first, last, count) for number, first, last, count in db.execute(spans)}
 
 
-def _merged_findings(
+def _merged_rows(
     copies: list[list[Row]], numbers: list[Numbers], counting: set[str], gone: Corrected
 ) -> list[Row]:
     """Return inspections or treatments of both copies, once each, in the order of their batches.

@@ -217,14 +217,14 @@ def counts_no_more(one: KeptTreatment, label: ProductLabel | None, why: str) -> 
 
 
 def same_plants_twice(one: KeptTreatment, other: KeptTreatment) -> str:
-    """Return that two sprayings with one product on one day may be one; "": of other plants."""
+    """Return that two treatments with one product on one day may be one; "": of other plants."""
     n = int(np.count_nonzero(one.place.plants & other.place.plants))
     if not n:
         return ""
     product = one.application.product or "a product that nobody named"
     first, second = sorted((one.batch, other.batch))
     return (
-        f"Two sprayings of {counted(n, 'plant')} with {product} on {one.on}: batches {first} and "
+        f"Two treatments of {counted(n, 'plant')} with {product} on {one.on}: batches {first} and "
         f"{second}. Both count; undo one if it was the same."
     )
 

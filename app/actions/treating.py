@@ -57,7 +57,7 @@ def show(choices: Choices, zones: Callable[[], Zoned] | None = None) -> None:
     choices
         With a season.
     zones
-        Returns where it was, as the zones of a decision, when it is noted; None: on the whole
+        Returns where it was, as the zones of a decision that are on the page; None: on the whole
         plot, unless a part is named or selected.
     """
     # what was typed on one page is of its own place
@@ -175,8 +175,9 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
     if beware:
         notices.warn()
     noted = texts.TREATED
-    if plants is not None:
-        n = int(np.count_nonzero(plants))
+    if plants is not None or zoned is not None:
+        (kept,) = (one for one in season.treatments() if one.batch == done.batch)
+        n = int(np.count_nonzero(kept.place.plants))
         noted = texts.TREATED_PART.format(plants=texts.PLANTS_COUNTED.format(n=n))
     return "\n- ".join([noted, *beware])
 

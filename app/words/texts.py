@@ -932,7 +932,14 @@ TREAT_UNSAID = (
     "it kills, as on the label or by experience."
 )
 DECIDE_TREATED = "The zones were treated"
-DECIDE_NO_ZONE = "By what is asked now there is no zone to treat, so nothing was noted."
+DECIDE_TREATED_NOTE = (
+    "Noted are the zones that you see here: {plants}, {area}. Were others sprayed, from a file of "
+    "before? Note their rows under *Record*."
+)
+DECIDE_ASKED_SINCE = (
+    "What is asked was changed since these zones were drawn, so nothing was noted. Look at the "
+    "zones as they are now, and note the treatment again."
+)
 TREAT_RECORD = "What a certifier asks: dose, waiting period, who and why"
 TREAT_DOSE, TREAT_UNIT = "Dose of the product", "Unit of the dose"
 TREAT_WATER = "Water, l/{area}"

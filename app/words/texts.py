@@ -934,9 +934,11 @@ TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", 
 TREAT_ROWS, TREAT_ROWS_HELP = "Rows (empty: the whole plot)", "Rows as people count, such as 3-5,8."
 TREAT_SELECTED = "Only the {plants} selected on the map"
 TREAT_TWICE = (
-    "A treatment is of rows or of what is selected on the map, but both are said. Empty the box of "
-    "rows, or treat not only what is selected."
+    "A treatment is of rows, of what is selected on the map or of a file's area, but two of them "
+    "are said. Leave one."
 )
+TREAT_FILE = "File of the area that was sprayed"
+TREAT_FILE_HELP = "As it was downloaded on Decide, or any file of areas."
 TREATED_PART = "Treatment noted, of {plants}."
 TREAT_UNSAID = (
     "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
@@ -944,8 +946,8 @@ TREAT_UNSAID = (
 )
 DECIDE_TREATED = "The zones were treated"
 DECIDE_TREATED_NOTE = (
-    "Noted are the zones that you see here: {plants}, {area}. Were others sprayed, from a file of "
-    "before? Note their rows under *Record*."
+    "Noted are the zones that you see here: {plants}, {area}. If others were sprayed, from a file "
+    "of before, drop that file."
 )
 DECIDE_ASKED_SINCE = (
     "What is asked was changed since these zones were drawn, so nothing was noted. Look at the "

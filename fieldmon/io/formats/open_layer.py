@@ -100,7 +100,7 @@ def _read(staged: StagedMember, options: ReadOptions) -> Layer:
     spatial = tuple(one.name for one in listed if one.geometry_type is not None)
     # a plain table beside maps is read only when it is asked for by name
     asked = names if options.layer in names else spatial or names
-    return _only_layer(staged, options, asked, _OF_SEASON if _SEASONS <= {*names} else "")
+    return _only_layer(staged, options, asked, _OF_SEASON if {*names} >= _SEASONS else "")
 
 
 def _parquet(path: Path, name: str, _: ReadOptions) -> Layer:
@@ -145,7 +145,7 @@ def _gdal_layers(staged: StagedMember) -> list[GdalLayer]:
 def _only_layer(
     staged: StagedMember, options: ReadOptions, names: tuple[str, ...], more: str = ""
 ) -> Layer:
-    """Return the layer named, or the only one that holds anything; `more` goes with the question."""
+    """Return the layer named, or the only one that holds anything; `more` is of the question."""
     if options.layer is not None:
         if options.layer in names:
             return _layer(staged, options.layer, options)

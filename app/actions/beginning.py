@@ -73,21 +73,32 @@ def ask(choices: Choices, place: str) -> None:
 def begin_or_ask(choices: Choices, place: str) -> None:
     """Begin a season where people or files said how its rows run; else ask first."""
     if assumptions.are_rows_assumed(choices):
-        assumptions.ask(choices, place)
+        _ask_if_named(choices, place)
     else:
         begin(choices)
 
 
+@notices.reporting
+def _ask_if_named(choices: Choices, place: str) -> str:
+    """Ask whether the rows are right, unless the season cannot be called so anyway."""
+    seasons_folder.new_path(_named(choices))
+    assumptions.ask(choices, place)
+    return ""
+
+
 def _form(choices: Choices) -> None:
-    with st.form("begin", border=False):
-        st.text_input(texts.SEASON_NAME, _proposed(choices), key=_name_box(choices))
-        if kept := seasons_folder.names():
-            st.selectbox(
-                texts.EARLIER, [None, *kept], key="season_earlier", help=texts.EARLIER_HELP,
-                format_func=lambda name: texts.NO_EARLIER if name is None else name,
-            )  # fmt: skip
-        acting.at_press(texts.BEGIN, begin_or_ask, choices, "form", key="begin_form",
-                        at_once=False, button=st.form_submit_button)  # fmt: skip
+    # no form of Streamlit's: what is typed in one counts only for its own button
+    st.text_input(texts.SEASON_NAME, _proposed(choices), key=_name_box(choices))
+    if kept := seasons_folder.names():
+        st.selectbox(
+            texts.EARLIER, [None, *kept], key="season_earlier", help=texts.EARLIER_HELP,
+            format_func=lambda name: texts.NO_EARLIER if name is None else name,
+        )  # fmt: skip
+    acting.at_press(texts.BEGIN, begin_or_ask, choices, "form", key="begin_form", at_once=False)
+
+
+def _named(choices: Choices) -> str:
+    return str(st.session_state.get(_name_box(choices), _proposed(choices))).strip()
 
 
 def _proposed(choices: Choices) -> str:
@@ -115,7 +126,7 @@ def _earlier() -> EarlierSeason | None:
 @notices.reporting
 def begin(choices: Choices) -> str:
     """Keep what is chosen as a season from now on."""
-    name = st.session_state.get(_name_box(choices), _proposed(choices)).strip()
+    name = _named(choices)
     settings = MonitoringSettings(
         choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,
         belief=BeliefSettings(treated=widget_memory.value(_FINDS, True), earlier=_earlier()),

@@ -17,6 +17,7 @@ from ..state.tried_answers import tried_of_records
 from ..words import texts
 from ..words.answers import in_short
 from ..words.language import in_words, of_error
+from . import bringing_seasons
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
@@ -49,6 +50,8 @@ def show() -> None:
                                    on_change=_take, args=(kind,))  # fmt: skip
         if not dropped:
             _kept(kind)
+        if kind == PLOT:
+            bringing_seasons.show()
 
 
 def show_raster(label: str, kind: str) -> None:
@@ -82,7 +85,9 @@ def _kept(kind: str) -> None:
 
 
 def _take(kind: str) -> None:
-    brought_files.keep(kind, st.session_state.get(brought_files.box(kind)) or [])
+    parts = st.session_state.get(brought_files.box(kind)) or []
+    if kind != PLOT or not bringing_seasons.is_held(parts):
+        brought_files.keep(kind, parts)
 
 
 def _take_one(kind: str) -> None:

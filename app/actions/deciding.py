@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
 import shapely
 import streamlit as st
 
@@ -26,7 +27,7 @@ from .treating import Zoned
 
 if TYPE_CHECKING:
     from fieldmon.decisions.thresholds import Threshold
-    from fieldmon.monitoring.advice import Advice
+    from fieldmon.monitoring.advice import Advice, AdviceSettings
     from fieldmon.reports.content import Report
 
     from ..state.choices import Choices
@@ -181,16 +182,22 @@ def files(choices: Choices, advice: Advice) -> None:
 
 def treated(choices: Choices, advice: Advice) -> None:
     """Take down that the zones were treated, and with what; what was advised is kept with it."""
-    if len(advice.zones):
-        with st.expander(texts.DECIDE_TREATED):
-            treating.show(choices, partial(_zoned, choices))
-
-
-def _zoned(choices: Choices) -> Zoned:
-    """Return the zones by what is asked now."""
-    advice = deciding.advice(choices)
     if not len(advice.zones):
-        raise SettingError(texts.DECIDE_NO_ZONE)
+        return
+    with st.expander(texts.DECIDE_TREATED):
+        plants = texts.PLANTS_COUNTED.format(n=int(np.count_nonzero(advice.sprayed)))
+        area = choices.units.square(advice.zones.m2)
+        st.caption(texts.DECIDE_TREATED_NOTE.format(plants=plants, area=area))
+        treating.show(choices, partial(_zoned, advice, deciding.asked()))
+
+
+def _zoned(advice: Advice, drawn: AdviceSettings) -> Zoned:
+    """Return the zones that were on the page, whatever was found since: those were treated.
+
+    `drawn` are the boxes then: by what is typed since, nobody saw zones.
+    """
+    if deciding.asked() != drawn:
+        raise SettingError(texts.DECIDE_ASKED_SINCE)
     whole = shapely.union_all(advice.outlines)
     return Zoned(shapely.MultiPolygon(list(shapely.get_parts(whole))), advice.in_short())
 

@@ -26,6 +26,8 @@ REMOVED = "removed"
 FOLDER = "FIELDMON_SEASONS"
 _ENDING = ".gpkg"
 _LONGEST = 80
+# what no name of a file may hold
+_NO_LETTERS = re.compile(r'[\\/:*?"<>|\x00-\x1f]')
 
 
 def folder() -> Path:
@@ -50,7 +52,7 @@ def _lies_there(file: Path) -> bool:
 
 def path_of(name: str) -> Path:
     """Return the file of a season; raise `SettingError` if the name leads out of the folder."""
-    if not name or re.search(r'[\\/:*?"<>|\x00-\x1f]', name) or name.startswith("."):
+    if not name or _NO_LETTERS.search(name) or name.startswith("."):
         raise SettingError(texts.SEASON_NAMED.format(name=name))
     if len(name) > _LONGEST:
         raise SettingError(texts.SEASON_LONG.format(most=_LONGEST, n=len(name)))
@@ -85,7 +87,46 @@ def set_aside(name: str) -> Path:
     path = path_of(name)
     aside = path.parent / REMOVED
     aside.mkdir(exist_ok=True)
-    names = chain((name,), (f"{name} ({n})" for n in count(2)))
-    free = next(to for one in names if not (to := aside / f"{one}{_ENDING}").exists())
+    free = _free(aside, name)
     Store(path).move(free)
     return free
+
+
+def removed() -> list[str]:
+    """Return the names of the seasons that are listed no more, in order."""
+    aside = folder() / REMOVED
+    files: Iterable[Path] = aside.glob(f"*{_ENDING}") if aside.is_dir() else ()
+    return sorted(file.stem for file in files if not file.is_symlink() and is_season(file))
+
+
+def bring_back(name: str) -> str:
+    """List a season again that is listed no more; return its name, another if that is taken."""
+    path_of(name)  # or raise
+    free = _free(folder(), name)
+    Store(folder() / REMOVED / f"{name}{_ENDING}").move(free)
+    return free.stem
+
+
+def is_of_season(data: bytes) -> bool:
+    """Tell whether these bytes are the file of a season."""
+    with working_folder() as here:
+        copy = Path(here) / f"copy{_ENDING}"
+        copy.write_bytes(data)
+        return is_season(copy)
+
+
+def take_in(data: bytes, name: str) -> str:
+    """Keep the file of a season, such as a backup; return its name, another if that is taken."""
+    plain = _NO_LETTERS.sub("-", name).strip(". ")[: _LONGEST - len(" (99)")] or "season"
+    free = _free(new_path(plain).parent, plain)
+    with working_folder() as here:
+        copy = Path(here) / f"copy{_ENDING}"
+        copy.write_bytes(data)
+        Store(copy).back_up(free)
+    return free.stem
+
+
+def _free(where: Path, name: str) -> Path:
+    """Return a file that is not there yet, of this name or with a number behind it."""
+    names = chain((name,), (f"{name} ({n})" for n in count(2)))
+    return next(to for one in names if not (to := where / f"{one}{_ENDING}").exists())

@@ -445,7 +445,7 @@ WAYS_IN = {"sample": "Try the sample", "file": "My plot", "season": "Open a seas
 NO_SEASONS = (
     "There is no season here yet. One begins with a plot: bring yours or try the sample, then "
     "press Begin a season on Today. Seasons are files in the folder {folder}: one that was made "
-    "elsewhere is opened by putting it there."
+    "elsewhere is put there, or dropped where a plot's file goes."
 )
 TO_ROUTE = "Show today's route"
 
@@ -459,7 +459,8 @@ BEGIN_NOTE = (
 KEEPING = "The season's file: backup, name, removal"
 BACKUP = "Download a backup"
 BACKUP_HELP = (
-    "The whole season as one file, as it is now. Put into the folder of seasons, it is a season."
+    "The whole season as one file, as it is now. Dropped where a plot's file goes, it is a season "
+    "again."
 )
 RENAME_TO, RENAME = "New name", "Rename"
 RENAME_CODES = "Phones need a new code after that: let them send all they have first."
@@ -470,7 +471,17 @@ REMOVE_ASKS = (
     "Remove **{name}** from the list? Nothing of it is deleted: its file is moved to `{folder}`. "
     "Phones with a code of it can send nothing any more."
 )
-REMOVED = "**{name}** is off the list. Its file is `{path}`: moved back, it is there again."
+REMOVED = (
+    "**{name}** is off the list. Its file is `{path}`; it can be brought back where a plot's file "
+    "goes."
+)
+REMOVED_ONES, REMOVED_WHICH = "Seasons taken off the list", "Season"
+BRING_BACK, SEASON_TAKE_IN = "Bring it back", "Keep it among the seasons"
+SEASON_BACK = "**{name}** is among the seasons, as its file has it."
+SEASON_FILE = (
+    "**{name}** is the file of a season: as a plot alone it would lose its rows, its days and what "
+    "was found. Kept among the seasons it goes on as it was."
+)
 SEASON_NAME, BEGIN = "Name of the season", "Begin the season"
 EARLIER, NO_EARLIER = "Begin with what an earlier season learnt", "Without one"
 EARLIER_HELP = (
@@ -923,16 +934,25 @@ TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", 
 TREAT_ROWS, TREAT_ROWS_HELP = "Rows (empty: the whole plot)", "Rows as people count, such as 3-5,8."
 TREAT_SELECTED = "Only the {plants} selected on the map"
 TREAT_TWICE = (
-    "A treatment is of rows or of what is selected on the map, but both are said. Empty the box of "
-    "rows, or treat not only what is selected."
+    "A treatment is of rows, of what is selected on the map or of a file's area, but two of them "
+    "are said. Leave one."
 )
+TREAT_FILE = "File of the area that was sprayed"
+TREAT_FILE_HELP = "As it was downloaded on Decide, or any file of areas."
 TREATED_PART = "Treatment noted, of {plants}."
 TREAT_UNSAID = (
     "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
     "it kills, as on the label or by experience."
 )
 DECIDE_TREATED = "The zones were treated"
-DECIDE_NO_ZONE = "By what is asked now there is no zone to treat, so nothing was noted."
+DECIDE_TREATED_NOTE = (
+    "Noted are the zones that you see here: {plants}, {area}. If others were sprayed, from a file "
+    "of before, drop that file."
+)
+DECIDE_ASKED_SINCE = (
+    "What is asked was changed since these zones were drawn, so nothing was noted. Look at the "
+    "zones as they are now, and note the treatment again."
+)
 TREAT_RECORD = "What a certifier asks: dose, waiting period, who and why"
 TREAT_DOSE, TREAT_UNIT = "Dose of the product", "Unit of the dose"
 TREAT_WATER = "Water, l/{area}"

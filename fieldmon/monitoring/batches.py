@@ -405,6 +405,17 @@ def _undone_one(row: int | str, plant: int, on: str, result: str) -> str:
     )
 
 
+def _undone_correction(row: int | str, plant: int, on: str, result: str) -> str:
+    return worded(
+        "Undone: the correction of row {row}, plant {plant} on {date}. As it was recorded before, "
+        "it counts again ({result}): undo it once more to take that back, too.",
+        row=row,
+        plant=plant,
+        date=date_or_text(on),
+        result=_RESULTS.get(result, result),
+    )
+
+
 def date_or_text(said: str | None) -> date | str:
     """Return a date of a season's file, which another program may have written."""
     try:
@@ -428,12 +439,21 @@ def undo_one(
     """Mark one inspection as undone; return the batches that changed, and what was done."""
     row = counting(db, inspection)
     db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
-    replaced.undo_corrections(db, *row[4:])
+    before = replaced.undo_corrections(db, *row[4:])
     again = replaced.count_again(db)
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
-    said = _undone_one((signs or {}).get(row[0], row[0]), *row[1:4])
-    return {row[4], *again}, _still(said, replaced.n_counting(db, row[5]))
+    sign = (signs or {}).get(row[0], row[0])
+    if counts := [one for mark in before if (one := _result_of(db, mark))]:
+        return {row[4], *again}, _undone_correction(sign, row[1], row[2], counts[0])
+    return {row[4], *again}, _still(_undone_one(sign, *row[1:4]), replaced.n_counting(db, row[5]))
+
+
+def _result_of(db: sqlite3.Connection, mark: str) -> str:
+    """Return the result of the inspection with a digest that counts; empty: none does."""
+    of = "SELECT result FROM inspections WHERE digest = ? AND undone = 0"
+    row = db.execute(of, (mark,)).fetchone()
+    return "" if row is None else str(row[0])
 
 
 def counting(db: sqlite3.Connection, inspection: int) -> tuple[int, int, str, str, int, str]:

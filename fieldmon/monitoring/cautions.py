@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from datetime import date, datetime
-from itertools import groupby
+from itertools import combinations, groupby
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -33,7 +33,7 @@ MOST_IN_A_ROW = 2
 # crops and pests of labels that a sentence names
 _MOST_LINES = 5
 # kinds of caution, the most urgent first
-_URGENT = ("entry", "entered", "harvest", "dose", "uses", "group", "waiting", "label")
+_URGENT = ("entry", "entered", "harvest", "dose", "twice", "uses", "group", "waiting", "label")
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ class Caution:
     Parameters
     ----------
     kind
-        ``"harvest"``, ``"entry"``, ``"entered"``, ``"group"``, ``"dose"``, ``"uses"``,
-        ``"waiting"`` or ``"label"``.
+        ``"harvest"``, ``"entry"``, ``"entered"``, ``"group"``, ``"dose"``, ``"twice"``,
+        ``"uses"``, ``"waiting"`` or ``"label"``.
     sentence
         What, where and from when on.
     batch
@@ -87,9 +87,11 @@ def cautions(
     before one that nobody said.
 
     Those whose mode-of-action group nobody said are no use of any group, and end no row of uses.
+    What may be recorded twice is said on its day.
     """
     said = _labelled(treatments, rules, on)
-    return _urgent_first(said, _in_a_row(said, rules.units), rules, on)
+    twice = _twice([one for one, _ in said if one.on == on], rules.units)
+    return _urgent_first(said, [*twice, *_in_a_row(said, rules.units)], rules, on)
 
 
 def because_of(
@@ -100,7 +102,8 @@ def because_of(
     One that is entered late may make a later use one too many.
     """
     said = _labelled(treatments, rules, date.max)
-    in_a_row = [*_in_a_row(said, rules.units)]
+    twice = _twice([one for one, _ in said], rules.units)
+    in_a_row = [*twice, *_in_a_row(said, rules.units)]
     own = [(one, label) for one, label in said if one.batch == batch and one.on <= on]
     of_own = [caution for caution in in_a_row if own and caution.batch == batch]
     others = [(one, label) for one, label in said if one.batch != batch]
@@ -133,6 +136,16 @@ def _urgent_first(
 def by_urgency(found: Iterable[Caution]) -> tuple[Caution, ...]:
     """Return cautions, the most urgent kind first; those of one kind stay in order."""
     return tuple(sorted(found, key=lambda one: _URGENT.index(one.kind)))
+
+
+def _twice(done: Iterable[KeptTreatment], units: Units) -> Iterator[Caution]:
+    """Yield which of several treatments may be one that is recorded twice."""
+    for one, other in combinations(done, 2):
+        named = [plain_name(each.application.product) for each in (one, other)]
+        if one.on != other.on or named[0] != named[1]:
+            continue
+        if said := same_plants_twice(one, other, units):
+            yield Caution("twice", said, max(one.batch, other.batch))
 
 
 def _in_a_row(said: Sequence[_Said], units: Units) -> Iterator[Caution]:
@@ -216,17 +229,18 @@ def counts_no_more(one: KeptTreatment, label: ProductLabel | None, why: str) -> 
     )
 
 
-def same_plants_twice(one: KeptTreatment, other: KeptTreatment) -> str:
+def same_plants_twice(one: KeptTreatment, other: KeptTreatment, units: Units | None = None) -> str:
     """Return that two treatments with one product on one day may be one; "": of other plants."""
     n = int(np.count_nonzero(one.place.plants & other.place.plants))
     if not n:
         return ""
-    product = one.application.product or "a product that nobody named"
     first, second = sorted((one.batch, other.batch))
-    return (
-        f"Two treatments of {counted(n, 'plant')} with {product} on {one.on}: batches {first} and "
-        f"{second}. Both count; undo one if it was the same."
-    )
+    return worded(
+        "Two treatments of {plants} with {product} on {day}: batches {first} and {second}. Both "
+        "count; undo one if it was the same.",
+        plants=counted(n, "plant"), first=figure(first), second=figure(second),
+        **_named(one, units or Units()),
+    )  # fmt: skip
 
 
 def _longer(one: _Wait | None, other: _Wait | None) -> _Wait | None:

@@ -99,20 +99,22 @@ def _corrections(db: sqlite3.Connection) -> list[dict[str, Any]]:
     return [dict(zip(names, row, strict=True)) for row in rows]
 
 
-def undo_corrections(db: sqlite3.Connection, batch: int, now: str | None = None) -> None:
+def undo_corrections(db: sqlite3.Connection, batch: int, now: str | None = None) -> list[str]:
     """Note that the corrections of a batch were taken back, or the one that came to `now`.
 
     What stood there before takes its old place in the order, and has what a phone told of it.
+    Return its digests.
     """
     rows = db.execute(
         "SELECT fid, before, now FROM outside_changes "
         "WHERE batch = ? AND before NOTNULL AND coalesce(?, now, '') = coalesce(now, '')",
         (batch, now),
     ).fetchall()
-    one = "SELECT min(fid) FROM inspections WHERE digest = ?"
+    one, before_it = "SELECT min(fid) FROM inspections WHERE digest = ?", []
     for fid, before, made in rows:
         db.execute("UPDATE outside_changes SET undone = 1 WHERE fid = ?", (fid,))
         was = as_it_was(before)["digest"]
+        before_it.append(was)
         (held,) = db.execute(
             f"{one} AND undone = ? AND batch <> ?", (was, STANDS_BACK, batch)
         ).fetchone()
@@ -120,6 +122,7 @@ def undo_corrections(db: sqlite3.Connection, batch: int, now: str | None = None)
         if held is not None and new is not None and new < held:
             for here, there in ((new, -1), (held, new), (-1, held)):
                 db.execute("UPDATE inspections SET fid = ? WHERE fid = ?", (there, here))
+    return [was for was in before_it if was is not None]
 
 
 def undo_same(db: sqlite3.Connection, inspection: int) -> list[int]:

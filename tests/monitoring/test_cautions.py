@@ -217,6 +217,29 @@ def test_a_label_for_a_crop_or_pest_that_is_written_otherwise_is_named_and_its_s
     assert kinds([treated(0, crop="Pepper ", pest="spider  Mites")], lines) == []
 
 
+@pytest.mark.parametrize(
+    ("second", "warned"),
+    [
+        ({"product": "acarol ", "reentry_hours": 6.0}, True),
+        ({"plants": np.arange(20) >= 12}, False),
+        ({"product": "oil"}, False),
+    ],
+)
+def test_one_spraying_that_may_be_recorded_twice_is_said_on_its_day(second, warned):
+    again = replace(treated(3, **second), number=9, batch=9)
+    done = [treated(3, EAST), again]
+    said = [one for one in found(done, on=3) if one.kind == "twice"]
+    assert [one.batch for one in said] == [9] * warned
+    if warned:
+        assert said[0].sentence == (
+            "Two treatments of 12 plants with Acarol on 2026-04-09: batches 4 and 9. Both count; "
+            "undo one if it was the same."
+        )
+    assert not [one for one in found(done, on=4) if one.kind == "twice"]
+    of_second = because_of(done, 9, RulesToKeep((), None, time(6)), BEGINS + timedelta(30))
+    assert [one.kind for one in of_second if one.kind == "twice"] == ["twice"] * warned
+
+
 def test_what_comes_after_the_day_is_not_looked_at():
     assert kinds([treated(9, dose=Dose(9, "l/ha"))], [LABEL], on=8) == []
 

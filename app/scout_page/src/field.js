@@ -306,7 +306,7 @@ export class Field {
   async answer(again) {
     await this.settled();
     const some = this.takenBack(), order = this.#order();
-    const told = some.map(({ answered, problem, ...one }, k) => ({ ...one, id: this.id(), order: order + k }));
+    const told = some.map(({ answered, problem, ...one }, k) => ({ ...one, id: this.id(), order: order + k, retold: true }));
     await this.store.answer(some.map((one) => one.id), again ? told : []);
     await this.reread();
     this.saidBack = [...(this.saidBack ?? []), ...some.map((one) => one.id)]; // nor is it said on another day
@@ -443,10 +443,11 @@ export class Field {
     return this.#step(follows, () => this.store.record(record, { ...follows, ...this.time.known() }), record);
   }
 
-  /** The last record that can be taken back, or undefined. */
+  /** The last record that can be taken back, or undefined; one that was told again comes before those tapped. */
   lastRecord() {
     const gone = new Set([...this.records.map((one) => one.undoes).filter(Boolean), ...this.#gone()]);
-    return this.records.filter((one) => one.day === this.day?.day && !one.undoes && !gone.has(one.id)).at(-1);
+    const stand = this.records.filter((one) => one.day === this.day?.day && !one.undoes && !gone.has(one.id));
+    return stand.filter((one) => !one.retold).at(-1) ?? stand.at(-1);
   }
 
   /** Take the last record back; nothing is deleted, and what is in hand comes again after it. */

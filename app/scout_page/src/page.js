@@ -394,7 +394,7 @@ export class Page {
 
   #other() {
     const { plot } = this.field, numeric = { type: "number", inputmode: "numeric", min: "0" };
-    const field = (name, kind = numeric) => h("input", { ...kind, id: `other_${name}`, required: true });
+    const field = (name, kind = numeric) => h("input", { ...kind, id: `to_${name}`, required: true });
     const row = field("row", hasNames(plot) ? { type: "text", autocapitalize: "off" } : numeric), plant = field("plant");
     this.#ask(say("other_plant"), h("div", { class: "pair" }, h("label", {}, say("row"), row), h("label", {}, say("plant"), plant)), () => {
       const rows = rowsCalled(plot, row.value), found = rows.length === 1 ? plantAt(plot, rows[0], Number(plant.value)) : -1;

@@ -78,6 +78,7 @@ test("records that somebody took back in the season are told by name, and told a
     assert.deepEqual([field.kept(), field.done.has(0), field.known().found.has(0), field.lastRecord().plant], [1, false, false, 1]);
     await field.answer(again);
     assert.deepEqual([field.takenBack(), field.kept()], [[], again ? 2 : 1]);
+    assert.equal(field.lastRecord().plant, 1, "what was tapped last is what can be taken back");
     await sync.send();
     const sent = [...season.taken.values()].map((one) => [one.plant, one.result, one.at]);
     assert.deepEqual(sent.slice(2), again ? [sent[0]] : []);

@@ -50,6 +50,8 @@ _OVER = {"FINISHED", "FAILED"}
 # errors with which a robot cannot go on with its order; 2.1 has only the last
 _ENDS = {"CRITICAL", "FATAL"}
 _DAY_S = AllowedRange(0.0, 86_400.0)
+# seconds by which its first result may be ahead of our clock before that is said
+_AHEAD_S = 1800.0
 
 
 class Vda5050Robot:
@@ -471,6 +473,13 @@ class Vda5050Robot:
             self._say(
                 "The robot's clock (day_s) is behind the last result of the day: it is counted on "
                 "from there."
+            )
+        ahead_s = at_s - self._now_s()
+        if not self._own_clock and ahead_s > _AHEAD_S:
+            self._say(
+                f"By the robot's clock (day_s) {ahead_s / 3600.0:.1f} h more of the day have gone "
+                "than by ours: they count as worked. If its day begins with this drive, so must "
+                "its day_s."
             )
         self._own_clock = True
         at_s += self._clock_behind_s

@@ -59,7 +59,8 @@ class StandIn:
     speed_m_s
         Of driving.
     faster
-        How many times faster than the clock; seconds told are those of its own day.
+        How many times faster than the clock. Seconds told are those of its own day, which begins
+        with each order.
     """
 
     def __init__(
@@ -189,6 +190,7 @@ class StandIn:
             return
         if order["orderId"] != me.order_id:
             me.order_id, me.update, me.sequence, me.actions = order["orderId"], -1, -1, {}
+            me.day_s = 0.0
         if order["orderUpdateId"] <= me.update:
             return
         me.update, me.refusals = order["orderUpdateId"], []

@@ -31,6 +31,7 @@ _MINOR = {3: "3", 4: "3"}
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 _GRID = "GRD00001"
 _MOST_LETTERS = 32  # of a designator, as the standard has it
+_END_LETTERS = 10  # that a shortened one keeps of its end
 
 
 def isoxml_taskdata(
@@ -50,7 +51,7 @@ def isoxml_taskdata(
     Parameters
     ----------
     title, product
-        Names of the plot and of what is sprayed; cut to 32 letters, as the standard has it.
+        Names of the plot and of what is sprayed; shortened to 32 letters, as the standard has it.
     boundary
         Lon/lat.
     zones
@@ -145,6 +146,12 @@ def _polygons(parent: ET.Element, area: MultiPolygon, kind: str) -> None:
 
 
 def _named(text: str) -> str:
-    """Return text as a designator: of 32 letters at most, and none that XML forbids."""
+    """Return text as a designator: of 32 letters at most, and none that XML forbids.
+
+    Names that are too long keep their end: plots of a file often differ by a number there.
+    """
     plain = "".join(letter for letter in text if letter.isprintable())
-    return plain[:_MOST_LETTERS]
+    if len(plain) <= _MOST_LETTERS:
+        return plain
+    end = plain[-_END_LETTERS:]
+    return f"{plain[: _MOST_LETTERS - 2 - len(end)].rstrip()}..{end.lstrip()}"

@@ -114,10 +114,18 @@ def test_rows_that_nobody_confirmed_are_asked_about_before_a_season_keeps_them(
     assert "**Is this right: rows 2.5 m apart, plants 3 m apart, " in texts_of(app)
     press(app, texts.BEGIN_NOT_YET)
     assert "Is this right" not in texts_of(app)
+    boxed(app.text_input, "season_name").set_value("../up")
     press(app, button)
+    assert "name must be" in app.error[0].value, "a name that cannot be is refused first"
+    assert "Is this right" not in texts_of(app)
+    boxed(app.text_input, "season_name").set_value("Glass")
+    press(app, button)
+    # what is typed while it is asked counts, too
+    boxed(app.text_input, "season_name").set_value("Glass 1")
     press(app, texts.BEGIN_RIGHT)
     assert not app.exception
     (file,) = seasons_folder.glob("*.gpkg")
+    assert file.stem == "Glass 1"
     assert Season(file).plot.grid.row_spacing_m == 2.5
     # they were asked about: they are assumed no more
     assert Season(file).plot.assumed == ()

@@ -1,14 +1,13 @@
 """What can be done on the page Decide: leaves, and the files."""
 
 import re
-from types import SimpleNamespace
 
-import pytest
+import numpy as np
 
 from app.actions import deciding as acting
 from app.words import texts
 from fieldmon.decisions.thresholds import published
-from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.io.writers.treatment_map import FORMATS
 from tests.app.driving import boxed, go, press, texts_of
 
@@ -61,8 +60,27 @@ def test_zones_that_were_treated_are_noted_with_what_was_advised(season_app, sea
     assert advised.what["date"] == str(one.on)
 
 
-def test_zones_that_are_gone_by_what_is_asked_since_are_not_noted_as_treated(monkeypatch):
-    none = SimpleNamespace(zones=())
-    monkeypatch.setattr(acting.deciding, "advice", lambda _: none)
-    with pytest.raises(SettingError, match=texts.DECIDE_NO_ZONE):
-        acting._zoned(None)
+def test_zones_noted_as_treated_are_those_on_the_page_whatever_another_session_found_since(
+    season_app, season
+):
+    go(season_app, "decide")
+    seen = season().advice(season().day_meant()).sprayed
+    assert 0 < seen.sum() < seen.size
+    caption = next(one.value for one in season_app.caption if one.value.startswith("Noted are"))
+    assert f"{seen.sum():,} plants" in caption
+    far = np.flatnonzero(~seen)[[0, 40, 80]]
+    season().record(Inspections.of(far, np.full(3, FOUND), np.datetime64("2026-11-16")))
+    assert (season().advice(season().day_meant()).sprayed != seen).any()
+    boxed(season_app.number_input, "efficacy").set_value(80)
+    press(season_app, texts.TREAT_BUTTON)
+    (one,) = season().treatments()
+    assert one.place.plants.tolist() == seen.tolist()
+
+
+def test_by_boxes_that_were_changed_since_the_page_was_drawn_nothing_is_noted(season_app, season):
+    go(season_app, "decide")
+    season_app.number_input(key="decide ring").set_value(3)
+    boxed(season_app.number_input, "efficacy").set_value(80)
+    press(season_app, texts.TREAT_BUTTON)
+    assert "was changed since these zones were drawn" in season_app.error[0].value
+    assert season().treatments() == ()

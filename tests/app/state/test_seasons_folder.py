@@ -4,6 +4,7 @@ import pytest
 
 from app.state import seasons_folder as folder
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.monitoring import Season
 from tests.monitoring.seasons import a_season
 
 
@@ -63,3 +64,30 @@ def test_a_season_off_the_list_lies_aside_whole_and_never_over_another(seasons_f
         assert folder.names() == []
         assert aside.read_bytes() == data
         assert len(list((seasons_folder / folder.REMOVED).iterdir())) == n
+
+
+@pytest.mark.usefixtures("seasons_folder")
+def test_a_season_off_the_list_comes_back_whole_under_a_name_that_is_free():
+    a_season(folder.new_path("gone"))
+    before = folder.path_of("gone").read_bytes()
+    assert folder.removed() == []
+    folder.set_aside("gone")
+    a_season(folder.new_path("gone"))
+    assert folder.removed() == ["gone"]
+    assert folder.bring_back("gone") == "gone (2)"
+    assert (folder.names(), folder.removed()) == (["gone", "gone (2)"], [])
+    assert folder.path_of("gone (2)").read_bytes() == before
+    with pytest.raises(SettingError):
+        folder.bring_back("../gone")
+
+
+@pytest.mark.usefixtures("seasons_folder")
+def test_the_file_of_a_season_is_taken_in_under_a_name_that_it_can_have(tmp_path):
+    data = a_season(tmp_path / "s.gpkg").path.read_bytes()
+    assert folder.is_of_season(data)
+    assert not folder.is_of_season(data[:100])
+    assert not folder.is_of_season(b"name,lon,lat")
+    names = [folder.take_in(data, name) for name in ("North", "North", "a/b: c", "..", "x" * 99)]
+    assert names == ["North", "North (2)", "a-b- c", "season", "x" * 75]
+    assert folder.names() == sorted(names)
+    assert Season(folder.path_of("North")).plot.n_plants

@@ -111,6 +111,14 @@ def test_a_clock_that_counts_no_day_is_said_once_and_ours_goes_on(plot, odd):
     assert [odd in one for one in said] == [True]
 
 
+def test_a_clock_that_is_hours_ahead_with_the_first_result_is_said_once(plot):
+    said = []
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "clock", said.append)
+    driver.begin(plot.aisles, np.zeros(2), 0.0)
+    assert [driver._at_s("9000"), driver._at_s("20000")] == [9000.0, 20_000.0]
+    assert ["2.5 h more of the day" in one for one in said] == [True]
+
+
 @pytest.mark.parametrize("is_wide", [True, False])
 def test_a_robot_may_pass_as_far_from_a_node_as_its_ways_keep_off_plants(
     broker, plot, robot, is_wide

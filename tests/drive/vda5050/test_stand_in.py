@@ -64,6 +64,12 @@ def test_another_order_is_refused_until_the_one_before_is_done_or_cancelled(brok
     robot.wire.heard.put(("order", order(0, 0.0, 10.0, name="p")))
     robot._hear()
     assert (robot.self.order_id, refused()) == ("p", [])
+    while robot.self.todo:
+        robot._drive_on()
+    assert robot.self.day_s == 10.0
+    robot.wire.heard.put(("order", order(0, 10.0, 10.0, name="q")))
+    robot._hear()
+    assert robot.self.day_s == 0.0, "another order is of a day of its own"
     ask(robot, "cancelOrder", "c1")  # twice
     assert len(robot.self.todo) == 2
     robot.wire.close()

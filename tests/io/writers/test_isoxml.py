@@ -171,7 +171,13 @@ def test_where_the_tractor_does_not_know_where_it_is_nothing_is_sprayed():
     assert [task.get(code) for code in "HIJ"] == ["0", "0", "0"]
 
 
-def test_names_are_cut_and_cleaned_and_the_same_map_is_the_same_file():
+def test_a_name_that_is_too_long_keeps_the_number_at_its_end():
+    made = isoxml_taskdata("lleida_apricot_orchards_epsg25831 (14)", PLOT, ZONES, 1.0, "water")
+    task = zipfile.ZipFile(io.BytesIO(made)).read("TASKDATA/TASKDATA.XML").decode()
+    assert '"lleida_apricot_orcha..25831 (14)"' in task
+
+
+def test_names_are_shortened_and_cleaned_and_the_same_map_is_the_same_file():
     made = isoxml_taskdata("x" * 60 + "\x07", PLOT, ZONES, 1.0, "\x00a")
     assert made == isoxml_taskdata("x" * 60, PLOT, ZONES, 1.0, "a")
     assert b"x" * 33 not in zipfile.ZipFile(io.BytesIO(made)).read("TASKDATA/TASKDATA.XML")

@@ -86,7 +86,9 @@ class SaidRows(NamedTuple):
         misnamed = 1.0 - min(_shared(row, named), _shared(named, row))
         if misnamed > _NONSENSE:
             return self._replace(label=None, misnamed=misnamed)
-        return self._replace(misnamed=misnamed, strays=strays(xy_m, traced, self.label))
+        # amid which row a plant stands is only seen where plants keep to theirs
+        gone = strays(xy_m, traced, self.label) if blur(traced) <= _NO_ROWS else ()
+        return self._replace(misnamed=misnamed, strays=gone)
 
 
 def said_rows(plants: Float, names: PlantNames, field: Field | None, *, bearing: bool) -> SaidRows:

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 _MOST = 0.6
 # so many row spacings from the rest of its row a plant strays; between two of another row, so many
 _ACROSS, _BETWEEN = 1.5, 0.8
+# and so many beside the line of so many plants of that row; fewer than so many make none
+_BESIDE, _LINE, _LEAST_LINE = 0.7, 8, 4
 # plants next to each other in a row are so many spacings apart at most
 _NEXT = 1.5
 # fewer rows tell no order; of more, so many may be exchanged, or such a share
@@ -37,6 +39,8 @@ _TELLS = 3
 # so many rows, and such a share of them, have plants in the order of their numbers, where that
 # means anything; so few plants tell none, and those nearer than such a share of their spacing
 _LEAST_IN_ORDER, _IN_ORDER, _LEAST_STEPS, _CLOSE = 3, 0.75, 3, 0.5
+# plants are out of order where that is so many times how far steps usually are from their numbers
+_SIGMAS = 7.0
 _NAMED = 5
 
 
@@ -64,9 +68,9 @@ def strays(xy_m: Float, traced: TracedRows, label: Int) -> tuple[Stray, ...]:
     doubted = np.flatnonzero(~right & sure[row])
     if not len(doubted) or not np.isfinite(traced.row_spacing_m):
         return ()
-    away_m = _from_the_rest(xy_m, label, right, doubted)
+    away_m, beside_m = _from_the_rest(xy_m, label, right, doubted)
     far = np.where(_is_between(traced, row, right)[doubted], _BETWEEN, _ACROSS)
-    gone = away_m > far * traced.row_spacing_m
+    gone = (away_m > far * traced.row_spacing_m) & (beside_m > _BESIDE * traced.row_spacing_m)
     return tuple(
         Stray(int(k), int(one[row[k]]), float(m))
         for k, m in zip(doubted[gone], away_m[gone], strict=True)
@@ -84,17 +88,28 @@ def _named_by_most(row: Int, label: Int) -> tuple[Int, Mask]:
     return first[last].astype(np.int64), sure
 
 
-def _from_the_rest(xy_m: Float, label: Int, right: Mask, plants: Int) -> Float:
-    """Return how far plants are from the nearest of their name that stands in its row."""
+def _from_the_rest(xy_m: Float, label: Int, right: Mask, plants: Int) -> tuple[Float, Float]:
+    """Return how far plants are from the nearest of their name that stands in its row.
+
+    And how far beside the line of those about that one: a row goes on beyond a gap.
+    """
     from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
 
-    away_m = np.full(len(plants), np.inf)
+    away_m, beside_m = np.full(len(plants), np.inf), np.full(len(plants), np.inf)
     for name in np.unique(label[plants]).tolist():
         rest = np.flatnonzero(right & (label == name))
-        asked = label[plants] == name
-        if len(rest):
-            away_m[asked] = cKDTree(xy_m[rest]).query(xy_m[plants[asked]])[0]
-    return away_m
+        asked = np.flatnonzero(label[plants] == name)
+        if not len(rest):
+            continue
+        own_m = xy_m[plants[asked]]
+        far_m, near = cKDTree(xy_m[rest]).query(own_m, k=min(_LINE, len(rest)))
+        away_m[asked] = far_m.reshape(len(asked), -1)[:, 0]
+        if len(rest) >= _LEAST_LINE:
+            about_m = xy_m[rest[near]]
+            middle_m = about_m.mean(axis=1)
+            across = np.linalg.svd(about_m - middle_m[:, None])[2][:, 1]
+            beside_m[asked] = np.abs(((own_m - middle_m) * across).sum(axis=1))
+    return away_m, beside_m
 
 
 def _is_between(traced: TracedRows, row: Int, right: Mask) -> Mask:
@@ -236,22 +251,27 @@ def _plants_out_of_order(grid: PlantGrid) -> str:
     line, number = grid.row_line[grid.row[vines]], grid.plant_called[vines]
     step = np.diff(number)
     step_m = np.hypot(*np.diff(grid.xy_m[vines], axis=0).T)
-    told = (np.diff(line) == 0) & (step_m > _CLOSE * grid.plant_spacing_m)
+    told = (np.diff(line) == 0) & (step != 0) & (step_m > _CLOSE * grid.plant_spacing_m)
     n_lines = int(line.max()) + 1
     up, down = (
         np.bincount(line[1:][told & one], minlength=n_lines) for one in (step > 0, step < 0)
     )
     asked = up + down >= _LEAST_STEPS
     asked[_counted_from_one(grid, vines, line)] = False
-    wrong = asked & (np.minimum(up, down) > 0)
-    n_in_order = np.count_nonzero(asked & ~wrong)
+    rises = (up >= down)[line[1:]]
+    back = told & np.where(rises, step < 0, step > 0)
+    per_number_m = float(np.median(step_m[told] / np.abs(step[told]))) if told.any() else 0.0
+    numbers_m = np.abs(step) * per_number_m
+    usual_m = 1.4826 * float(np.median(np.abs(step_m - numbers_m)[told])) if told.any() else 0.0
+    back &= step_m + numbers_m > _SIGMAS * usual_m
+    wrong = asked & (np.bincount(line[1:][back], minlength=n_lines) > 0)
+    n_in_order = np.count_nonzero(asked & (np.minimum(up, down) == 0))
     if not wrong.any() or n_in_order < max(_LEAST_IN_ORDER, _IN_ORDER * np.count_nonzero(asked)):
         return ""
     some = []
     signs = list(grid.row_signs.values())
     for row in np.flatnonzero(wrong)[:_NAMED].tolist():
-        back = step < 0 if up[row] >= down[row] else step > 0
-        at = int(np.flatnonzero(told & back & (line[1:] == row))[0])
+        at = int(np.flatnonzero(back & (line[1:] == row))[0])
         near = range(max(at - 1, 0), min(at + 3, len(vines)))
         beside = ", ".join(f"{number[k]}" for k in near if line[k] == row)
         some.append(worded("row {row} ({plants})", row=signs[row], plants=beside))

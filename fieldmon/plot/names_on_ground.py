@@ -10,6 +10,7 @@ import numpy as np
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import joined, worded
 from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.plant_names import numbers_in
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -288,9 +289,5 @@ def _counted_from_one(grid: PlantGrid, vines: Int, line: NDArray[np.integer]) ->
     """Return the lines whose plants do not have the numbers in their names."""
     if grid.plant_named is None:
         return np.empty(0, np.int64)
-    names, numbers = grid.plant_named[vines].tolist(), row_label(grid, vines).number.tolist()
-    ends = [
-        re.search(rf"(?<!\d)0*{number}(\.0+)?\s*$", name) is not None
-        for name, number in zip(names, numbers, strict=True)
-    ]
-    return np.unique(line[~np.array(ends)]).astype(np.int64)
+    wrong = numbers_in(grid.plant_named[vines]) != row_label(grid, vines).number
+    return np.unique(line[wrong]).astype(np.int64)

@@ -198,8 +198,9 @@ def off_limits(grid: PlantGrid, no_go_m: shapely.Geometry | None, off_m: float) 
 
 
 def filled(area: shapely.Geometry) -> shapely.Geometry:
-    """Return an area without its holes."""
-    return shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(area)])
+    """Return an area without its holes, and without lines along which others only touch it."""
+    parts = (part for part in shapely.get_parts(area) if part.geom_type == "Polygon")
+    return shapely.union_all([Polygon(part.exterior) for part in parts])
 
 
 def _wider(area: shapely.Geometry, by_m: float) -> shapely.Geometry:

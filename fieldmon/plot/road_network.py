@@ -11,9 +11,11 @@ from shapely import MultiPolygon
 
 from fieldmon.compute.arrays import runs
 from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import runs as numbers_listed
 from fieldmon.plot.adjacency import delaunay_sides
 from fieldmon.plot.bent_ways import Bends, bends_of, row_end_places
 from fieldmon.plot.end_turns import lane_ends
+from fieldmon.plot.grid import row_label, rows_listed
 from fieldmon.plot.obstacles import SAME_M, Obstacles
 from fieldmon.plot.way_joining import (
     NEAREST,
@@ -27,6 +29,8 @@ from fieldmon.plot.way_joining import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.clearance import Clearance
@@ -117,7 +121,7 @@ def find_roads(
     if not narrow.one_sided:
         # where one may turn to one side only, what passes straight by must stay a way of its own
         net = without_repeats(net)
-    net = joined_outside(net, needed, obstacles)
+    net = joined_outside(net, needed, obstacles, _called(grid, narrow))
     return _sorted(net, beside, gate)
 
 
@@ -136,7 +140,8 @@ def _find_from_tree_to_tree(
         gate = n
         net = with_gate(net, np.array([gate_xy_m]), obstacles, grid)
     needed = np.append(np.repeat(np.arange(n), 2), gate)
-    net = joined_outside(joined_inside(net, needed, obstacles), needed, obstacles)
+    net = joined_inside(net, needed, obstacles)
+    net = joined_outside(net, needed, obstacles, _called(grid))
     return _sorted(net, np.repeat(np.arange(n), 2).reshape(-1, 2), gate)
 
 
@@ -218,8 +223,17 @@ def _find_bent(
     if gate_xy_m is not None and lane is None:
         net = with_gate(net, np.array([gate_xy_m]), obstacles, grid)
     needed = np.append(beside[~narrow.rows].ravel(), gate)
-    net = joined_outside(joined_inside(net, needed, obstacles), needed, obstacles)
+    net = joined_inside(net, needed, obstacles)
+    net = joined_outside(net, needed, obstacles, _called(grid, narrow))
     return _sorted(net, beside, gate, bends)
+
+
+def _called(grid: PlantGrid, narrow: _Narrow | None = None) -> Callable[[Index], str]:
+    """Return what names rows by their places among those that must be reached."""
+    if not grid.in_rows:
+        return lambda trees: numbers_listed(row_label(grid, trees).number.tolist())
+    number = grid.row_number if narrow is None else grid.row_number[~narrow.rows]
+    return lambda rows: rows_listed(grid, number[rows])
 
 
 def _first_end(xy_m: Float, beside: Index, narrow: _Narrow, obstacles: Obstacles) -> int:

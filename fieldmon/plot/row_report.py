@@ -82,6 +82,8 @@ class RowReport:
     rows_said_m, plants_said_m
         How far apart rows, and plants in them, were said to be, and are; None: nobody said
         another distance.
+    strayed
+        Which plants stand amid another row than they name; empty: none.
     """
 
     how: str
@@ -99,6 +101,7 @@ class RowReport:
     nearly_square_m: tuple[float, float] | None = None
     rows_said_m: tuple[float, float] | None = None
     plants_said_m: tuple[float, float] | None = None
+    strayed: str = ""
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -131,16 +134,18 @@ class RowReport:
 
     def _names(self) -> list[str]:
         """Return what to say of the rows that plants name."""
+        strayed = [self.strayed] if self.strayed else []
         if self.misnamed_share is None or self.misnamed_share < _WORTH_A_WORD:
-            return []
+            return strayed
         decided = worded("the names decided") if self.named else worded("rows were found instead")
         return [
+            *strayed,
             worded(
                 "{misnamed_share:.0%} of the plants seem to stand in another row than the file "
                 "names; {decided}. Look whether its rows are named rightly.",
                 misnamed_share=self.misnamed_share,
                 decided=decided,
-            )
+            ),
         ]
 
     def _double_plants(self) -> list[str]:

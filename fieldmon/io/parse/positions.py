@@ -25,6 +25,7 @@ from fieldmon.io.import_report import (
     repaired,
     seen,
 )
+from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.geometry import geometry_kinds
 from fieldmon.io.parse.georeference import few_unplaceable, place, written
@@ -75,6 +76,8 @@ class LocatedFeatures:
         What was left out because nobody can read where it is.
     step_m
         To which positions are rounded; 0 where they are not.
+    by_name
+        Whether they name where they are, and give no position.
     """
 
     layer: Layer
@@ -84,12 +87,15 @@ class LocatedFeatures:
     plot: NDArray[np.str_] | None = None
     unread: Unread | None = None
     step_m: float = 0.0
+    by_name: bool = False
 
 
 def located(
     layer: Layer, options: ReadOptions, places: NamedPlaces | None = None
 ) -> LocatedFeatures:
     """Return the features of a layer that have a position, or name a place that has one."""
+    if isinstance(options, RecordOptions) and options.place == "plant":
+        return _kept(layer, placed_by_name(layer, options, places or NamedPlaces()))
     if layer.geometry is not None:
         return _points(layer, options)
     way = _way(layer, options)
@@ -414,6 +420,7 @@ def _kept(layer: Layer, named: PlacedByName) -> LocatedFeatures:
         named.accuracy_m[there],
         named.messages,
         None if named.plot is None else named.plot[there],
+        by_name=True,
     )
 
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.units import LENGTHS
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Severity, WrongRows, doubtful, seen
 from fieldmon.io.parse.columns import plain
-from fieldmon.io.parse.values import is_missing, number, numbers
+from fieldmon.io.parse.lengths import metres
+from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.plot.planting import PLANTED
 
 if TYPE_CHECKING:
@@ -30,14 +29,6 @@ class KnownRows(NamedTuple):
 
 
 _NAMED = 5
-_WITH_UNIT = re.compile(r"([-+]?[\d.,]+)\s*([^\s\d.,].*)")
-_UNITS_M = {
-    **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
-    **dict.fromkeys(("cm", "centimetres", "centimeters"), 0.01),
-    "mm": 0.001,
-    **dict.fromkeys(("'", "’", "′", "ft", "foot", "feet"), LENGTHS["ft"]),
-    **dict.fromkeys(('"', "”", "″", "in", "inch", "inches"), LENGTHS["ft"] / 12),
-}
 _COLUMNS = {
     "row_bearing_deg": ("row_bearing_deg", "row_bearing", "bearing", "row_azimuth", "azimuth"),
     "row_spacing_m": (
@@ -68,7 +59,7 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
             continue
         used.append(f"{column!r}")
         cells = layer.column(column)
-        stated = numbers(cells) if setting == "row_bearing_deg" else _metres(cells)
+        stated = numbers(cells) if setting == "row_bearing_deg" else metres(cells)
         # 0 and less stand for what nobody knows
         usable = np.isfinite(stated) & ((stated > 0) | (setting == "row_bearing_deg"))
         values.append([float(v) if good else None for v, good in zip(stated, usable, strict=True)])
@@ -84,16 +75,6 @@ def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], li
         )
     )
     return dict(zip(names, rows, strict=True)), [said, *wrong]
-
-
-def _metres(cells: NDArray[np.object_]) -> NDArray[np.float64]:
-    """Return distances in metres ``(n,)``, each in the unit it is written in; NaN in any other."""
-    stated = numbers(cells)
-    for k, cell in enumerate(map(text, cells)):
-        if found := _WITH_UNIT.match(cell.casefold()):
-            value = number(found[1], "," if "," in found[1] else ".")
-            stated[k] = value * _UNITS_M.get(found[2].rstrip("."), np.nan)
-    return stated
 
 
 def left_aside(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,8 @@ from fieldmon.plot.planting import Planting
 from fieldmon.plot.strands import row_deviations
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
@@ -299,10 +301,25 @@ def _said_otherwise(
     grid: PlantGrid, planting: Planting, spacing: str
 ) -> tuple[float, float] | None:
     """Return a spacing as it was said and as it is, by its name; None: nobody said another."""
-    said, measured = getattr(planting, spacing), getattr(grid, spacing)
+    said = getattr(planting, spacing)
     # the usual one may come of nobody's saying anything
-    usual = said == getattr(Planting(), spacing)
-    return None if usual or abs(said - measured) <= _AS_SAID * measured else (said, measured)
+    return None if said == getattr(Planting(), spacing) else _otherwise(grid, spacing, said)
+
+
+def _otherwise(grid: PlantGrid, spacing: str, said: float) -> tuple[float, float] | None:
+    """Return a spacing as it was said and as it is; None where these agree."""
+    measured = getattr(grid, spacing)
+    return None if abs(said - measured) <= _AS_SAID * measured else (said, measured)
+
+
+def told_by_hand(report: RowReport, grid: PlantGrid, given: Mapping[str, float]) -> RowReport:
+    """Return a report that knows which spacings somebody said, and be it the usual one."""
+    rows, plants = "row_spacing_m", "plant_spacing_m"
+    if rows in given:
+        report = replace(report, rows_said_m=_otherwise(grid, rows, given[rows]))
+    if plants in given:
+        report = replace(report, plants_said_m=_otherwise(grid, plants, given[plants]))
+    return report
 
 
 def _paired_share(xy_m: NDArray[np.float64]) -> float:

@@ -119,8 +119,7 @@ def test_a_plant_that_is_not_there_is_said_in_a_sentence(app, tmp_path):
 def test_what_was_said_of_rows_that_were_drawn_is_told_as_the_commands_tell_it(monkeypatch):
     rows = MultiLineString([LineString([(35.15, y), (35.152, y)]) for y in (30.36, 30.3601)])
     plot = Plot.along("drawn", rows)
-    said = {name: None for name in ("row_bearing_deg", "plant_spacing_m")}
-    monkeypatch.setattr(plot_files, "row_settings", lambda key: said | {"row_spacing_m": 7.0})
+    monkeypatch.setattr(plot_files, "row_settings", lambda _: {"row_spacing_m": 7.0})
     files = plot_files.Files(File("a", Path("plot.zip")), None, None, File("b", Path("rows.zip")))
     told = plot_files._said_of_rows(files, plot, "a")
     unused = [one for one in told if "not as was said: row spacing" in one.message.sentence]

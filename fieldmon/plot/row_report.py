@@ -44,6 +44,9 @@ _NARROW, _RARE = 0.5, 0.25
 _SQUARE = 0.58
 # plants of rows that have nothing to do with each other stand a quarter of a spacing off level
 _LEVEL = 0.15
+# so much nearer to a plant of another row than to those of its own, a plant may be of a row that
+# runs another way; where so many are, and not all, a part of the plot may be so
+_NEARER, _PART = 0.75, 0.15
 # so many plants are asked for the nearest one of another row, among so many about them
 _ASKED, _NEAR = 5000, 6
 
@@ -84,6 +87,8 @@ class RowReport:
     rows_said_m, plants_said_m
         How far apart rows, and plants in them, were said to be, and are; None: nobody said
         another distance.
+    nearer_share
+        Share of the plants that stand much nearer to one of another row than to those of their own.
     """
 
     how: str
@@ -101,6 +106,7 @@ class RowReport:
     nearly_square_m: tuple[float, float] | None = None
     rows_said_m: tuple[float, float] | None = None
     plants_said_m: tuple[float, float] | None = None
+    nearer_share: float = 0.0
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -167,6 +173,15 @@ class RowReport:
                     "The blocks that the file names change within rows without a gap, as those of "
                     "a trial do; they were left aside. Part the plot by areas or lines if they are "
                     "not."
+                )
+            )
+        if _PART <= self.nearer_share <= 1.0 - _PART and self.in_rows and not self.named:
+            said.append(
+                worded(
+                    "{share:.0%} of the plants stand nearer to one of another row than to those of "
+                    "their own, and the others do not: in a part of the plot rows may run another "
+                    "way. Look at them, and give blocks or name each plant's row if they do.",
+                    share=self.nearer_share,
                 )
             )
         if self.nearly_square_m is not None and self.in_rows:
@@ -294,6 +309,7 @@ def row_report(
         _nearly_square(grid, found, said),
         _said_otherwise(grid, told, "row_spacing_m"),
         _said_otherwise(grid, told, "plant_spacing_m"),
+        _nearer_share(grid),
     )
 
 
@@ -402,6 +418,20 @@ def _gaps_m(grid: PlantGrid) -> Float:
     half_m = np.hypot(*(grid.stop_m - grid.xy_m).T)
     middle = [np.median(half_m[a:b]) for a, b in pairwise(grid.row_start.tolist())]
     return 2 * np.array(middle)
+
+
+def _nearer_share(grid: PlantGrid) -> float:
+    """Return the share of plants that stand much nearer to another row's than to their own's."""
+    some = np.arange(0, len(grid), max(len(grid) // _ASKED, 1))
+    if (grid.twin >= 0).any() or len(grid) <= _NEAR:
+        return 0.0
+    far_m, near = grid.tree.query(grid.xy_m[some], k=_NEAR)
+    line = grid.row_line[grid.row]
+    other = line[near] != line[some][:, None]
+    own_m, other_m = (
+        np.where(among, far_m, np.inf)[:, 1:].min(axis=1) for among in (~other, other)
+    )
+    return float(np.mean(other_m < _NEARER * own_m))
 
 
 def _nearest_row_m(grid: PlantGrid) -> float:

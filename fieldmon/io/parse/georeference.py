@@ -339,8 +339,8 @@ def _check_near(
     if _nearest_km(exchanged(), options.near) < away / 10:
         raise ChoiceNeeded(
             worded(
-                "It lies {away:.0f} km from the plot or place nearby. Exchange the first and the "
-                "second coordinate if they are in the wrong order.",
+                "It lies {away:.0f} km from the plot or place nearby. Exchange its first and "
+                "second coordinates if they are in the wrong order.",
                 away=away,
             ),
             "swap_axes",
@@ -387,11 +387,18 @@ def _distance(
         return []
     swapped = _nearest_km(exchanged(), options.near)
     if swapped < away / 10:
+        told = {"away": away, "swapped": swapped}
         said = worded(
-            "It lies {away:.0f} km from the plot or place nearby, but {swapped:.0f} km from it "
-            "with the first and the second coordinate exchanged.",
-            away=away,
-            swapped=swapped,
+            "It lies {away:.0f} km from the plot or place nearby, but "
+            "{swapped:.0f} km from it with longitude and latitude "
+            "exchanged.",
+            **told,
         )
+        if crs.is_projected:
+            said = worded(
+                "It lies {away:.0f} km from the plot or place nearby, but {swapped:.0f} km from it "
+                "with easting and northing exchanged.",
+                **told,
+            )
         return [doubtful(said, remedy=_exchange(crs, options))]
     return [doubtful(worded("It lies {away:.0f} km from the plot or place nearby.", away=away))]

@@ -81,7 +81,7 @@ def test_northings_that_come_first_are_seen_by_a_place_nearby_where_their_system
         for one in place(northing_first, "EPSG:3763", near).messages
         if one.severity is Severity.DOUBTFUL
     ]
-    assert "with the first and the second coordinate exchanged" in doubt.sentence
+    assert "with easting and northing exchanged" in doubt.sentence
     assert doubt.remedy.choices == ("yes",)
     northing_first = projected("EPSG:32636")[:, ::-1]
     with pytest.raises(ChoiceNeeded, match="wrong order") as asked:

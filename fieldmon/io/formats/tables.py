@@ -14,6 +14,7 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.formats.split_degrees import names_degrees, with_degrees
 from fieldmon.io.formats.wkt import with_shapes
 from fieldmon.io.formats.workbooks import sheet_rows
 from fieldmon.io.import_report import ImportMessage, doubtful, dropped, seen
@@ -54,7 +55,7 @@ def read_text_table(path: Path, name: str, options: ReadOptions) -> Layer:
         raise FileProblem(
             worded("{name} must be a text table, but it cannot be read: {bad}.", name=name, bad=bad)
         ) from bad
-    layer = _table(rows, name, options.header)
+    layer = _with_degrees(_table(rows, name, options.header), options)
     return with_shapes(replace(layer, messages=(*messages, *layer.messages)), _system_of_prj(path))
 
 
@@ -67,7 +68,13 @@ def _system_of_prj(path: Path) -> str | None:
 def read_sheet(path: Path, name: str, sheet: str, options: ReadOptions) -> Layer:
     """Return one sheet of a workbook as a layer; its shapes where a column holds such."""
     layer = _table(sheet_rows(path, name, sheet), f"{name}, sheet {sheet}", options.header)
-    return with_shapes(layer, None)
+    return with_shapes(_with_degrees(layer, options), None)
+
+
+def _with_degrees(layer: Layer, options: ReadOptions) -> Layer:
+    """Return a table with degrees and minutes put together, unless their columns are named."""
+    by_hand = {role for role, _ in options.columns}
+    return layer if by_hand & {"lat", "lon", "position", "x", "y"} else with_degrees(layer)
 
 
 def _told_delimiter(content: str) -> tuple[str, str | None]:
@@ -267,7 +274,10 @@ def _head_row(rows: list[list[Any]]) -> int | None:
     filled = [sum(bool(text(v)) for v in row) for row in looked_at]
     if not any(filled):
         return None
-    known = [len(recognised(text(v) for v in row)) for row in looked_at]
+    known = [
+        len({*recognised(map(text, row)), *filter(names_degrees, map(text, row))})
+        for row in looked_at
+    ]
     if max(known) >= 2:
         return start + known.index(max(known))
     widest = max(filled)

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 _SHOWN = 3
 #: only what has a unit, or a mark before it, is more than a number
 _WITH_UNIT = re.compile(r"(?=[±~≈]|.*\D$)[±~≈]?\s*([-+]?[\d.,]*\d)\s*([^\s\d.,].*)?")
-_UNITS_M = {
+#: metres of each unit, by what it is called
+UNITS_M = {
     **dict.fromkeys(("m", "mt", "mts", "metre", "metres", "meter", "meters", "metern"), 1.0),
     **dict.fromkeys(("metro", "metros", "metri", "mètre", "mètres", "м", "米"), 1.0),
     **dict.fromkeys(("מ", "מ'", "מ׳", "מטר", "מטרים", "م", "متر", "أمتار", "امتار"), 1.0),
@@ -33,9 +34,12 @@ _UNITS_M = {
 }
 
 
-def metres(cells: NDArray[np.object_], decimal: str | None = None) -> Float:
-    """Return distances in metres ``(n,)``, each in the unit it is written in; NaN in any other."""
-    return _measured(cells, decimal, 1.0)
+def metres(cells: NDArray[np.object_], unit_m: float = 1.0) -> Float:
+    """Return distances in metres ``(n,)``, each in the unit it is written in; NaN in any other.
+
+    Those without one are in one of `unit_m` metres, as their column may say.
+    """
+    return _measured(cells, None, unit_m)
 
 
 def accuracies(
@@ -46,7 +50,7 @@ def accuracies(
     Of cells without a unit the column may say it in brackets: ``accuracy (ft)``.
     """
     unit = re.search(r"[(\[]\s*([^)\]]*?)\.?\s*[)\]]", column)
-    stated = _measured(cells, decimal, 1.0 if unit is None else _UNITS_M.get(_plain(unit[1]), 1.0))
+    stated = _measured(cells, decimal, 1.0 if unit is None else UNITS_M.get(_plain(unit[1]), 1.0))
     wrong = [k for k in np.flatnonzero(~np.isfinite(stated)).tolist() if not is_missing(cells[k])]
     known = np.where(stated > 0, stated, np.nan)
     if not wrong:
@@ -69,7 +73,7 @@ def _measured(cells: NDArray[np.object_], decimal: str | None, usual_m: float) -
     for k, cell in enumerate(map(text, cells)):
         if found := _WITH_UNIT.fullmatch(_plain(cell)):
             value = number(found[1], decimal or ("," if "," in found[1] else "."))
-            unit_m = _UNITS_M.get(found[2].rstrip("."), np.nan) if found[2] else usual_m
+            unit_m = UNITS_M.get(found[2].rstrip("."), np.nan) if found[2] else usual_m
             stated[k] = value * unit_m
     return stated
 

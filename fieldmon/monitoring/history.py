@@ -487,7 +487,11 @@ class History:
         """Tell whether infestations may have ended until a day that nobody found."""
         lives_in = self.pest_in_weather
         dies = lives_in is not None and lives_in.pest.mortality_per_day > 0.0
-        return (dies and day > 0) or any(one.day <= day for one in self.treatments) or bool(self.gone(day).any())
+        return (
+            (dies and day > 0)
+            or any(one.day <= day for one in self.treatments)
+            or bool(self.gone(day).any())
+        )
 
     def first_find(self, on: date) -> date | None:
         """Return the day of the first find up to a date; None: there is none yet."""

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.compute.wording import chance_figure
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import photos
@@ -20,7 +21,7 @@ from fieldmon.plot.named_rows import plant_meant
 
 from ..state import chosen_day, widget_memory
 from ..words import texts
-from ..words.language import number
+from ..words.language import in_words, number
 from . import field_map
 from .map_view import MapAnswers
 from .maps import plant_layers
@@ -103,10 +104,10 @@ def show(choices: Choices) -> None:
     now = first = chosen_day.chance(choices)
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
-    st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
+    st.markdown(texts.HISTORY_NOW.format(now=_chance(now[plant]), first=_chance(first[plant])))
     low, high = chosen_day.level_range(choices).of(now[[plant]])
-    if f"{low[0]:.1%}" != f"{high[0]:.1%}":
-        st.markdown(texts.HISTORY_BETWEEN.format(low=low[0], high=high[0]))
+    if (least := _chance(low[0])) != (most := _chance(high[0])):
+        st.markdown(texts.HISTORY_BETWEEN.format(low=least, high=most))
         st.caption(texts.HISTORY_CHANCE)
     st.markdown(_on_route(choices, plant))
     if _taken_as_treated(choices, plant):
@@ -232,3 +233,7 @@ def _line(choices: Choices, on: date, second: float, what: str) -> str:
     at = f" {int(second) // 3600:02d}:{int(second) // 60 % 60:02d}" if known else ""
     day = choices.units.said_day(on, choices.on)
     return texts.HISTORY_LINE.format(day=day, time=at, result=what)
+
+
+def _chance(chance: float) -> str:
+    return in_words(chance_figure(chance, 1))

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.compute.wording import chance_figure
+
 from ..actions import assuming, beginning, keeping, treating
 from ..show import cautions, charts, development, forecast, learnt, map_layers, plant_history
 from ..show import day as show_day
 from ..state import assumptions, chosen_day
 from ..words import texts
-from ..words.language import about, number
+from ..words.language import about, in_words, number
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import DayFigures, Progress
@@ -57,10 +59,16 @@ def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
         st.metric(texts.FOUND_EVER, number(progress.found, ","), width="content")
         share = texts.IN_PERCENT.format(value=f"{detected} ({least}–{most})")
+        if not progress.inspected:
+            share = texts.NOT_KNOWN_YET
         st.metric(f"{texts.DETECTED}{star}", share, help=texts.DETECTED_HELP, width="content")
         seen = f"{number(progress.inspected, ',')} / {number(plants, ',')}"
         st.metric(texts.INSPECTED_EVER, seen, width="content")
-        st.metric(f"{texts.CLEAN_CHANCE}{star}", number(now.chance_clean, ".1%"), width="content")
+        st.metric(
+            f"{texts.CLEAN_CHANCE}{star}",
+            in_words(chance_figure(now.chance_clean, 1)),
+            width="content",
+        )
 
 
 def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:

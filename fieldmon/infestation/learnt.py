@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import estimate, figure, worded
+from fieldmon.compute.wording import chance_figure, estimate, figure, worded
 from fieldmon.infestation.origins import (
     ANYWHERE,
     ARRIVE,
@@ -89,21 +89,22 @@ class Learnt:
                 low=low,
                 high=high,
             )
-        return self._guess_alone(value)
+        return self._guess_alone()
 
-    def _guess_alone(self, value: str) -> Worded:
+    def _guess_alone(self) -> Worded:
         """Return it in words where there is no interval to tell."""
+        chance = chance_figure(self.value)
         if self.name == "hiding":
             return worded(
-                "New infestations hide for some nights with a chance of {value}.", value=value
+                "New infestations hide for some nights with a chance of {value}.", value=chance
             )
         if self.name == "more than told":
             return worded(
                 "Far more was found than was told: the map goes on as if {value} of the plants had "
                 "been told.",
-                value=value,
+                value=figure(self.value, ".0%"),
             )
-        return worded("Insects jump beyond the next plant with a chance of {value}.", value=value)
+        return worded("Insects jump beyond the next plant with a chance of {value}.", value=chance)
 
 
 _INFESTED_AT_START = "infested at the start"

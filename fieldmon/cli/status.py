@@ -181,6 +181,8 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"
         for h in range(min(len(spots), 3))
     )
+    if len(records := season.records_known()):
+        yield f"  {'':22} {records.sentence()}"
 
 
 def _share_found(now: Status) -> str:

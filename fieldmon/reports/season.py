@@ -303,6 +303,8 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     meanings = tuple(hot_spot_meanings(grid, facts.status.hot_spots, apart))
     yield Listing(words.HOT_LIST, meanings, numbered=bool(len(facts.status.hot_spots)))
     yield from map(Paragraph, _left_out(facts.status.hot_spots, len(meanings), words.REST))
+    if len(records := facts.season.records_known()):
+        yield Paragraph(records.sentence())
     plants = np.flatnonzero(facts.state == PRESENT)
     if not len(plants):
         yield Paragraph(words.FINDS_NONE)

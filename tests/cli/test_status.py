@@ -129,6 +129,14 @@ def test_a_day_ahead_that_was_only_planned_is_not_to_be_undone(run, season):
     assert "give --date" not in run("status", season, "--date", on)[2]
 
 
+def test_records_of_before_are_said_with_their_days(tmp_path):
+    kept = a_season(tmp_path / "s.gpkg")
+    *_, spots, records = lines(kept, kept.status(kept.last_date()))
+    assert spots.startswith("  hot spots ")
+    assert records.strip() == kept.records_known().sentence()
+    assert " 3 records of 2026-03-30 to 2026-04-02, 1 of them without a date." in records
+
+
 def test_what_inspections_find_is_told_of_who_inspects_too(run, season):
     kept = Season(season)
     day = np.datetime64(BEGINS)

@@ -215,7 +215,7 @@ def _inspected(choices: Choices, done: Inspections, gone: NDArray[np.bool_]) -> 
         if not np.isnan(done.count[k]):
             result = texts.RESULT_COUNTED.format(result=result, n=number(done.count[k], ",g"))
         beside = [texts.written(said) for said in (done.notes[k], done.who[k]) if said]
-        lines.append(" · ".join([_line(choices, day, second, result), *beside]))
+        lines.append(" · ".join([line_of(choices, day, second, result), *beside]))
     return lines
 
 
@@ -224,10 +224,10 @@ def _treated(choices: Choices, one: KeptTreatment) -> str:
     said = texts.HISTORY_SPRAYED
     if product := one.application.product:
         said = texts.HISTORY_SPRAYED_WITH.format(product=texts.isolated(product))
-    return _line(choices, one.on, one.application.over_s, said)
+    return line_of(choices, one.on, one.application.over_s, said)
 
 
-def _line(choices: Choices, on: date, second: float, what: str) -> str:
+def line_of(choices: Choices, on: date, second: float, what: str) -> str:
     """Return what was done on a day, with its time where that is known and of this day."""
     known = second < DAY_S
     at = f" {int(second) // 3600:02d}:{int(second) // 60 % 60:02d}" if known else ""

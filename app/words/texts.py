@@ -847,6 +847,12 @@ CORRECTED_BY_HELP = (
 CORRECTED_UNSAID = (
     "Corrections must have an author, but nobody is named. Say who corrected the findings."
 )
+CORRECT_WHEN, CORRECT_BUTTON = "Correct the day or time of an inspection", "Correct"
+CORRECT_WHEN_NOTE = "What is left empty stays as it is. Undo brings back what stood there before."
+CORRECT_WHICH, CORRECT_DAY, CORRECT_TIME = "Inspection", "Right day", "Right time"
+CORRECT_UNSAID = (
+    "A day or a time must be said that is right, but both boxes are empty. Fill in one or both."
+)
 CORRECTED = Plural("{n} correction taken", "{n} corrections taken")
 RECORD_FILE_IN = (
     "The route file with its found column filled in, any table or GPS file with plants, rows "

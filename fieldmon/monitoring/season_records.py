@@ -22,6 +22,7 @@ from fieldmon.monitoring import (
     inspection_table,
     label_table,
     merging,
+    numbered_inspections,
     outside_changes,
     phone_tables,
     said_beside,
@@ -417,6 +418,11 @@ class SeasonRecords(OpenSeason):
                     now=f"{now:%Y-%m-%d %H:%M}",
                 )
             )
+
+    def inspections_of(self, plant: int) -> tuple[numbered_inspections.NumberedInspection, ...]:
+        """Return the inspections of a plant that count, in their order, with their numbers."""
+        with self.store.reading() as db:
+            return numbered_inspections.of_plant(db, plant)
 
     def number_of(self, inspections: Inspections) -> int:
         """Return the number (fid) in the file of the last of some inspections with times."""

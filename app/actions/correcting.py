@@ -27,7 +27,9 @@ def show(choices: Choices, plant: int | None) -> None:
 
     None: no plant is meant yet.
     """
-    made = () if plant is None else choices.open_season.inspections_of(plant)
+    if plant is None:
+        return
+    made = choices.open_season.inspections_of(plant)
     if not made:
         return
     boxes = FreshBoxes(_WHEN, choices)

@@ -57,6 +57,11 @@ class Estimate:
         """Return the estimate of both numbers together, as wide as if both were off alike."""
         return Estimate(self.value + other.value, self.low + other.low, self.high + other.high)
 
+    def at_most(self, other: Estimate) -> Estimate:
+        """Return the estimate of a number of which it is known that it is no more than another."""
+        ends = min(self.low, other.low), min(self.high, other.high)
+        return Estimate(min(self.value, other.value), *ends)
+
 
 @dataclass(frozen=True, eq=False)
 class OriginCounts:

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.ranges import USUAL_SURE
 from fieldmon.compute.units import Units
-from fieldmon.compute.wording import counted, figure, joined, share_figure, worded
+from fieldmon.compute.wording import chance_figure, counted, figure, joined, share_figure, worded
 from fieldmon.decisions.map_verdict import AskedVerdict, verdict_of, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
@@ -447,7 +447,8 @@ class Advice:
         )  # fmt: skip
 
     def _enough_said(self) -> str:
-        return worded("The chance that it is enough is {enough:.0%}.", enough=self.said.enough)
+        enough = chance_figure(self.said.enough, drawn=True)
+        return worded("The chance that it is enough is {enough}.", enough=enough)
 
     def treatment_map(self, field: Field, product: str = "") -> TreatmentMap:
         """Return what the sprayer needs.

@@ -22,6 +22,7 @@ from fieldmon.monitoring import (
     inspection_table,
     label_table,
     merging,
+    numbered_inspections,
     outside_changes,
     phone_tables,
     said_beside,
@@ -375,8 +376,10 @@ class SeasonRecords(OpenSeason):
             self._corrected(db, taken, who)
         return len(taken)
 
-    def correct_time(self, inspection: int, at: time, who: str) -> str:
-        """Give one inspection another time of its day; return what was done.
+    def correct_time(
+        self, inspection: int, at: time | None, who: str, on: date | None = None
+    ) -> str:
+        """Give one inspection another day, or another time of its day; return what was done.
 
         That is a batch of its own; undoing it brings back the time before.
 
@@ -385,21 +388,44 @@ class SeasonRecords(OpenSeason):
         inspection
             Its number (fid) in the season's file.
         at
-            The local time that is right.
+            The local time that is right; None: as it is.
         who
             Who corrects.
+        on
+            The day that is right, of the season and not to come; None: as it is.
 
         Raises
         ------
         SettingError
-            If there is no such inspection that counts.
+            If there is no such inspection that counts, or no such day yet.
         """
         with self._writing() as db:
             plot, settings = (self.plot.grid, self.label), settings_of(db)
-            who = written_in(db, who)
-            said = held_instead.retime(db, inspection, seconds(at), plot, settings, who)
+            if on is not None:
+                settings.day(on)
+                self._must_have_come(on, at)
+            who, when = written_in(db, who), (on, None if at is None else seconds(at))
+            said = held_instead.retime(db, inspection, when, plot, settings, who)
             self._corrected(db, said, who)
         return said[0]
+
+    def _must_have_come(self, on: date, at: time | None) -> None:
+        """Raise `SettingError` if a moment, or a whole day, lies ahead of the plot's clock."""
+        now = local_clock(self.plot.field).now()
+        if (on, at or now.time()) > (now.date(), now.time()):
+            raise SettingError(
+                worded(
+                    "An inspection must be of a moment that has come, but {day} has not: on the "
+                    "plot it is {now}.",
+                    day=str(on) if at is None else f"{on} {at:%H:%M}",
+                    now=f"{now:%Y-%m-%d %H:%M}",
+                )
+            )
+
+    def inspections_of(self, plant: int) -> tuple[numbered_inspections.NumberedInspection, ...]:
+        """Return the inspections of a plant that count, in their order, with their numbers."""
+        with self.store.reading() as db:
+            return numbered_inspections.of_plant(db, plant)
 
     def number_of(self, inspections: Inspections) -> int:
         """Return the number (fid) in the file of the last of some inspections with times."""

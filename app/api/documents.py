@@ -52,7 +52,7 @@ _FEW = 8
 def plot_document(season: Season) -> tuple[str, bytes]:
     """Return a short name of what the plot is, and its document; it never changes."""
     grid, field = season.plot.grid, season.plot.field
-    lonlat = np.round(grid.lonlat(), _DIGITS)
+    lonlat, rows = np.round(grid.lonlat(), _DIGITS), grid.unbroken
     document = {
         "name": field.name,
         "boundary": _geometry(field.boundary),
@@ -62,11 +62,11 @@ def plot_document(season: Season) -> tuple[str, bytes]:
         "row_spacing_m": grid.row_spacing_m,
         "plant_spacing_m": grid.plant_spacing_m,
         "rows": {
-            "start": grid.row_start.tolist(),
-            "row": grid.row_number.tolist(),
-            "sign": [grid.row_signs[row] for row in grid.row_number.tolist()],
-            "aisle": grid.corridor.tolist(),
-            "side": (-grid.side).tolist(),
+            "start": grid.unbroken_start.tolist(),
+            "row": grid.row_number[rows].tolist(),
+            "sign": [grid.row_signs[row] for row in grid.row_number[rows].tolist()],
+            "aisle": grid.corridor[rows].tolist(),
+            "side": (-grid.side[rows]).tolist(),
         },
         "plants": {
             "lon": lonlat[:, 0].tolist(),

@@ -52,6 +52,9 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
         across_plant=across[1],
         twin=np.where(twin >= 0, new[twin], -1).astype(np.int32),
         block=None if grid.block is None else _counted(grid.block[rows]),
+        stretch=None if grid.stretch is None else _counted(grid.stretch[rows]),
+        whole=None if grid.whole is None else _counted(grid.whole[rows]),
+        cut=_picked(grid.cut, rows),
         aisle=_picked(grid.aisle, rows),
         place_m=_picked(grid.place_m, kept),
         block_named=_picked(

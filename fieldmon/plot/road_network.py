@@ -150,24 +150,28 @@ class _Narrow(NamedTuple):
 
     Rows that cannot be inspected ``(r,)``, lane ends with no room to turn, and row ends that are
     passed clear of their plants, ``(r, 2)``; where there is room to turn right and left,
-    ``(r, 2, 2)``, as the lane runs.
+    ``(r, 2, 2)``, as the lane runs; and ends at which a lane is cut ``(r, 2)``: one comes back
+    from there.
     """
 
     rows: Mask
     tight: Mask
     passed: Mask
     room: Mask
+    cut: Mask
 
     @classmethod
     def of(cls, grid: PlantGrid, clearance: Clearance | None) -> _Narrow:
-        none = np.zeros((grid.n_rows, 2), np.bool_)
+        none, cut = np.zeros((grid.n_rows, 2), np.bool_), grid.cut_ends
         if clearance is None:
-            passed = grid.beyond_plants_m > 0.0
-            return cls(none[:, 0], none, passed, np.ones((grid.n_rows, 2, 2), np.bool_))
+            passed = (grid.beyond_plants_m > 0.0) & ~cut
+            room = np.repeat(~cut[..., None], 2, axis=2)
+            return cls(none[:, 0], none, passed, room, cut)
         room = clearance.turn_room(grid)
         to_row = room[np.arange(grid.n_rows), :, (grid.side > 0).astype(np.intp)]
         passed = (grid.beyond_plants_m >= clearance.way_m) & to_row
-        return cls(clearance.too_narrow(grid), clearance.tight_ends(grid), passed, room)
+        tight = clearance.tight_ends(grid) & ~cut
+        return cls(clearance.too_narrow(grid), tight, passed, room, cut)
 
     @property
     def one_sided(self) -> bool:
@@ -182,9 +186,10 @@ class _Narrow(NamedTuple):
         _, ahead = lane_ends(grid)
         lane = np.full((len(xy_m), 2), 0.0)
         blocked = np.zeros((len(xy_m), 2), np.bool_)
-        lane[beside.ravel()], blocked[beside.ravel()] = (
-            ahead.reshape(-1, 2), ~self.room.reshape(-1, 2)
-        )  # fmt: skip
+        lane[beside.ravel()] = ahead.reshape(-1, 2)
+        # where another row's lane ends there too, it is what counts
+        blocked[beside[self.cut]] = True
+        blocked[beside[~self.cut]] = ~self.room[~self.cut]
         for here, there in (pairs.T, pairs.T[::-1]):
             way, along = xy_m[there] - xy_m[here], lane[here]
             to_left = along[:, 0] * way[:, 1] - along[:, 1] * way[:, 0]
@@ -241,8 +246,8 @@ def _first_end(xy_m: Float, beside: Index, narrow: _Narrow, obstacles: Obstacles
 
     Its low end, or the first end in the rows' order that is on the plot.
     """
-    ends = beside[~narrow.rows]
-    ends = ends.ravel() if len(ends) else beside.ravel()
+    ends = beside[~narrow.rows[:, None] & ~narrow.cut]
+    ends = ends if len(ends) else beside.ravel()
     on_plot = obstacles.within(xy_m[ends], xy_m[ends])
     return int(ends[np.argmax(on_plot)])
 

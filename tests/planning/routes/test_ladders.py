@@ -24,6 +24,7 @@ from fieldmon.plot.layout import lay, rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.travel import GATE, Aisles
+from tests.cut_lanes import cut_plot
 from tests.planning.routes.test_best_route import crooked_aisles
 from tests.planning.routes.tiny import ladder_below
 
@@ -78,6 +79,16 @@ def test_nobody_crosses_by_an_aisle_that_hangs_on_the_left(corners):
     ladder = Ladders(aisles).whole(hanging=True)
     assert (ladder.hangs == 1).any()
     assert (on_the_ladder(ladder) <= truly(aisles) + 1e-5).all()
+
+
+@pytest.mark.parametrize("hanging", [False, True])
+@pytest.mark.parametrize("seed", range(6))
+def test_no_way_is_longer_where_lanes_are_cut(seed, hanging):
+    aisles, _, _ = cut_plot(seed, n_rows=4, n_plants=10, faces=1 + seed % 2)
+    assert aisles.grid.cut_ends.any()
+    there = np.append(~aisles.too_narrow, [True])
+    longer = on_the_ladder(Ladders(aisles).whole(hanging=hanging)) > truly(aisles) + 1e-5
+    assert not longer[np.ix_(there, there)].any()
 
 
 @pytest.mark.parametrize("hangs", [[0, 0, 0, 0, 0], [1, 0, 2, 0, 1], [2, 2, 0, 1, 0]])

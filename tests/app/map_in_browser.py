@@ -176,7 +176,7 @@ def in_scheme(page, scheme):
 def tab_to(page, target, most=120):
     """Press Tab until what is wanted has the keyboard."""
     for _ in range(most):
-        if target.count() and target.first.evaluate("(one) => one.matches(':focus')"):
+        if target.evaluate_all("([first]) => Boolean(first?.matches(':focus'))"):
             return
         page.keyboard.press("Tab")
     pytest.fail(f"{target} is not reached by {most} times Tab")

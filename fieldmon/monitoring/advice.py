@@ -296,7 +296,7 @@ class Advice:
     @property
     def lost(self) -> str:
         """Return in words what infested plants outside the zones lose: that is no part of it."""
-        return _money(self.zones.outside * self.asked.costs.per_infested_plant)
+        return _money(self.zones.outside * self.asked.costs.lost_per_infested_plant)
 
     @cached_property
     def outlines(self) -> list[MultiPolygon]:

@@ -269,9 +269,11 @@ def test_sums_of_a_hundred_and_more_are_said_without_hundredths(season, saving, 
     assert advice.saved == said
 
 
-def test_what_the_plants_outside_the_zones_lose_is_said_beside_what_is_saved(season):
-    advice = season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP, rate_l_ha=50_000.0))
-    lost = advice.zones.outside * CHEAP.per_infested_plant
+@pytest.mark.parametrize("works", [0.9, 0.3])
+def test_plants_outside_the_zones_lose_all_of_it_however_well_treating_works(season, works):
+    costs = replace(CHEAP, works=works)
+    advice = season.advice(BEGINS, AdviceSettings(0.01, costs=costs, rate_l_ha=50_000.0))
+    lost = advice.zones.outside * costs.infested_plant_day * costs.days
     assert lost > 0.0
     assert float(advice.lost.replace(",", "")) == pytest.approx(lost, abs=0.5)
     assert f"elsewhere lose {advice.lost}." in " ".join(advice.said_of_zones())

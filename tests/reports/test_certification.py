@@ -255,3 +255,21 @@ def days_of(report):
         for table in tables
         for row in table.rows
     ]
+
+
+@pytest.mark.parametrize("language", ["en", "he", "es"])
+def test_on_a_phone_no_table_and_no_digest_is_wider_than_the_page(
+    browser, season, language, tmp_path
+):
+    said, units = spoken(language, "")
+    path = tmp_path / "record.html"
+    path.write_text(html_text(certification_report([season], units).said_in(said)), "utf-8")
+    page = browser.new_page(viewport={"width": 360, "height": 800})
+    page.goto(path.as_uri())
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    names = page.locator(".many td").first.evaluate(
+        "one => getComputedStyle(one, '::before').content"
+    )
+    page.close()
+    assert wide == 360
+    assert said.say(words.CERT_PLOT_COLUMNS[0]) in names

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fieldmon.cli.report_languages import spoken
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted
 from fieldmon.decisions.map_verdict import verdict_of
@@ -206,7 +207,7 @@ def test_each_verdict_has_its_sentence(season, m2, above, verdict, said):
         (LEAVE, [LEAVE, LEAVE], True, "The zones are below the threshold too."),
         (LEAVE, [LEAVE, LOOK_ON], True, "whatever the threshold says."),
         (LEAVE, [LEAVE, TREAT], True, ""), (TREAT, [LEAVE], True, ""), (LEAVE, [], True, ""),
-        (LOOK_ON, [TREAT], True, "whatever the threshold says."),
+        (LOOK_ON, [TREAT], True, "go by them, else inspect first."),
         (TREAT, [TREAT], False, "whatever the threshold says."), (LEAVE, [], False, ""),
     ],
 )  # fmt: skip
@@ -219,6 +220,23 @@ def test_zones_that_the_threshold_does_not_ask_for_are_said_to_pay_only(
     assert len(though) == bool(said)
     assert said in " ".join(though)
     assert advice.is_below == ("below" in said)
+
+
+def test_one_zone_that_is_the_whole_plot_is_compared_with_nothing(season):
+    cheap = TreatmentCosts(per_ha=0.0, per_zone=0.1)
+    advice = season.advice(BEGINS, AdviceSettings(0.01, costs=cheap))
+    assert (advice.is_whole, len(advice.zones)) == (True, 1)
+    said = " ".join(advice.said_of_zones())
+    assert "It takes 158 l. " in said
+    assert "elsewhere lose" not in said
+
+
+@pytest.mark.parametrize(
+    ("days", "said"), [(14.0, "14 يومًا"), (3.0, "3 أيام"), (2.0, "يومان"), (1.5, "1.5")]
+)
+def test_days_in_arabic_have_the_form_of_their_number(days, said):
+    assumed = AdviceSettings(costs=TreatmentCosts(days=days)).assumed()
+    assert said in spoken("ar", "")[0].say(assumed)
 
 
 def test_what_was_set_is_not_called_assumed():

@@ -12,12 +12,12 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.season_day import SeasonDay
 from fieldmon.drive.vda5050.fleet import Vda5050Robot
+from fieldmon.drive.vda5050.mqtt import RobotName, Wire
 from fieldmon.drive.vda5050.stand_in import StandIn
-from fieldmon.drive.vda5050.wire import RobotName, Wire
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import SKIPPED
 from fieldmon.monitoring import Season

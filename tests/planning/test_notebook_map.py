@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.planning.explore import deck_of
+from fieldmon.planning.notebook_map import deck_of
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.layout import rectangle
 from fieldmon.samplers import sampler

@@ -24,6 +24,7 @@ from ..state import (
     chosen_pest,
     chosen_units,
     kept_files,
+    notices,
     plot_files,
     plot_source,
     sample_estate,
@@ -101,7 +102,8 @@ def _chosen(head: DeltaGenerator, work: Work, wait: Wait, options: list[str]) ->
                 return Chosen(_from_files(source, wait, work))
             wait(None)
             if source not in seasons_folder.names():  # it may be back at the next run
-                raise FileProblem(texts.SEASON_GONE.format(name=texts.isolated(source)))
+                raise FileProblem(notices.gone(source))
+            notices.found()
             return Chosen(_from_season(source, work))
         except FieldmonError as error:
             return Chosen(problem=error)

@@ -20,6 +20,7 @@ from fieldmon.io.parse.result_words import GONE
 from fieldmon.monitoring.brought_findings import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.named_rows import plant_meant
 
 from ..show import cautions, day, plant_history, recorded_batches
@@ -337,9 +338,11 @@ def _of_days(choices: Choices, results: Inspections) -> Iterator[str]:
     if not len(days):
         return
     first, last = days.min().item(), days.max().item()
-    if {first, last} != {choices.on}:
-        said = choices.units.said_days(first, last, choices.on)
-        day = choices.units.said_day(choices.on)
+    # past midnight the page is about the next day already
+    shown = local_clock(choices.plot.field).today() if choices.is_today else choices.on
+    if {first, last} != {shown}:
+        said = choices.units.said_days(first, last, shown)
+        day = choices.units.said_day(shown)
         yield texts.RECORDED_OF.format(days=said, day=day)
     if ahead := cautions.not_come(choices, last):
         notices.warn()
@@ -355,11 +358,13 @@ def ask_about_contradictions(choices: Choices) -> None:
     if waiting is None:
         return
     season = choices.open_season
-    said = season.contradictions(waiting.results).sentences(season.plot.grid)
+    against = season.contradictions(waiting.results)
+    said = against.sentences(season.plot.grid)
     if not said:  # what they contradicted was taken back since
         _ask_anew(choices, waiting)
         return
-    others = len(waiting.results) - len(said)
+    others = waiting.results.take(_but(against.which, len(waiting.results)))
+    new = season.new_of(others)
     source = recorded_batches.source(waiting.source)
     st.warning(texts.CONTRADICTING.format(n=len(said), source=source))
     st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
@@ -367,12 +372,16 @@ def ask_about_contradictions(choices: Choices) -> None:
         st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
     with st.container(horizontal=True):
         for key, label, action in (
-            ("leave_out", texts.LEAVE_OUT.format(n=others), _leave_out),
+            (
+                "leave_out",
+                texts.LEAVE_OUT.format(n=new) if new else texts.LEAVE_OUT_ONLY,
+                _leave_out,
+            ),
             ("holds", texts.HOLDS.format(n=len(said)), _record_instead),
             ("confirm", texts.CONFIRM.format(n=len(said)), _confirm),
             ("record_none", texts.RECORD_NONE, _drop),
         ):
-            if key != "leave_out" or others:
+            if key != "leave_out" or len(others):
                 st.button(label, key=key, on_click=action, args=(choices,))
 
 
@@ -439,7 +448,12 @@ def _leave_out(choices: Choices) -> str:
     if waiting is None:
         return ""
     against = choices.open_season.contradictions(waiting.results).which
-    return _settled(choices, np.setdiff1d(np.arange(len(waiting.results)), against))
+    return _settled(choices, _but(against, len(waiting.results)))
+
+
+def _but(against: np.ndarray, n: int) -> np.ndarray:
+    """Return the numbers of so many results but for those that contradict."""
+    return np.setdiff1d(np.arange(n), against)
 
 
 def _settled(choices: Choices, which: np.ndarray | slice) -> str:

@@ -73,12 +73,13 @@ def figures(choices: Choices, advice: Advice, product: str) -> None:
         st.metric(product or texts.DECIDE_LIQUID, liquid, width="content")
         st.metric(inside, about(zones.inside), width="content")
         st.metric(outside, about(zones.outside), width="content")
-        st.metric(
-            texts.DECIDE_SAVING,
-            in_words(advice.saved),
-            width="content",
-            help=texts.DECIDE_SAVING_HELP.format(lost=in_words(advice.lost)),
-        )
+        if not advice.is_whole:
+            st.metric(
+                texts.DECIDE_SAVING,
+                in_words(advice.saved),
+                width="content",
+                help=texts.DECIDE_SAVING_HELP.format(lost=in_words(advice.lost)),
+            )
         st.metric(enough, in_words(chance_figure(advice.said.enough, drawn=True)), width="content",
                   help=texts.DECIDE_ENOUGH_HELP)  # fmt: skip
 

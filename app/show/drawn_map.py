@@ -56,6 +56,8 @@ def said(corners: Points, units: UnitsInLanguage) -> str:
     if not corners:
         return texts.OUTLINE_HINT
     n, area_m2 = len(corners), drawn_plot.drawn_area_m2(corners)
+    if n > 2 and (met := drawn_plot.crossing(corners)) is not None:
+        return texts.OUTLINE_CROSSES.format(n=n, one=met[0] + 1, other=met[1] + 1)
     if not area_m2:
         return texts.MAP_WORDS["corners"].format(n=n)
     return texts.OUTLINE_SAID.format(n=n, area=units.square(area_m2))

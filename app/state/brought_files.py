@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 PLOT, RECORDS, PLANTS = "plot", "record", "plant"
 ROWS, BLOCKS = "rows", "blocks"
+#: what a plot that was drawn here is called as a file
+DRAWN = "drawn.geojson"
 _BROUGHT, _ASKING, _MOVED = "brought", "asking", "files moved"
 
 
@@ -42,6 +44,13 @@ class File:
         """Return its name; that of the first one, where several make one file."""
         first = self.source[0] if isinstance(self.source, tuple) else self.source
         return first.name
+
+    @property
+    def is_drawn(self) -> bool:
+        """Return whether it is the file of a plot that was drawn here, whose name is a column."""
+        own = self.source
+        named = b'"properties": {"name": '
+        return isinstance(own, Upload) and own.name == DRAWN and named in own.data
 
     @property
     def files(self) -> int:

@@ -22,7 +22,7 @@ from fieldmon.io.parse.values import positions_in_cells
 
 from ..words import language, texts
 from . import brought_files, plot_edits, plot_files, plot_source, row_settings, widget_memory
-from .brought_files import BLOCKS, PLANTS, PLOT, ROWS
+from .brought_files import BLOCKS, DRAWN, PLANTS, PLOT, ROWS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -44,7 +44,7 @@ _TWINS_M = 0.05
 LEAST = 3
 # a plot as wide as this is a slip of a finger, or two plots
 _WIDEST_M = LARGEST_M2**0.5
-_OPEN, _TURN, _FILE = "draws a plot", "plot drawn anew", "drawn.geojson"
+_OPEN, _TURN = "draws a plot", "plot drawn anew"
 _PLANTS_FILE, _ROWS_FILE, _BLOCKS_FILE = "plants.geojson", "rows.geojson", "blocks.geojson"
 _NUMBER = r"(-?\d{1,3}(?:\.\d+)?)"
 _PAIR = rf"(?:loc:)?{_NUMBER}[,~\s+]+{_NUMBER}"
@@ -151,7 +151,7 @@ def use(units: UnitsInLanguage) -> None:
     data = data_of_plot()
     before = None if data is None else brought_files.brought()[PLOT]
     name = texts.OUTLINE_NAME if data is None else _read(data)[1]
-    brought_files.keep_uploads(PLOT, (Upload(_FILE, geojson(corners, name)),))
+    brought_files.keep_uploads(PLOT, (Upload(DRAWN, geojson(corners, name)),))
     if before is not None:
         _carry(before.key, brought_files.brought()[PLOT].key)
     brought_files.take_out(CORNERS)
@@ -164,7 +164,7 @@ def bring(plot: Plot) -> None:
     Its headlands are not known any more.
     """
     field = plot.field
-    brought_files.keep_uploads(PLOT, (Upload(_FILE, _outline(field)),))
+    brought_files.keep_uploads(PLOT, (Upload(DRAWN, _outline(field)),))
     _bring_plants_or_rows(field)
     _bring_blocks(field)
     key = plot_files.outline(plot_files.brought(), lambda *_: 0).key
@@ -323,8 +323,8 @@ def checked(corners: Points, units: UnitsInLanguage) -> Points:
     if (wide_m := _wide_m(made)) > _WIDEST_M:
         most, wide = units.metres(_WIDEST_M), units.metres(wide_m)
         raise SettingError(texts.OUTLINE_WIDE.format(most=most, wide=wide))
-    if (crossing := _crossing(made)) is not None:
-        one, other = crossing
+    if (met := crossing(made)) is not None:
+        one, other = met
         raise SettingError(texts.OUTLINE_CROSSED.format(one=one + 1, other=other + 1))
     if area_m2(Polygon(made)) < SMALLEST_M2:
         raise SettingError(texts.OUTLINE_SMALL.format(n=len(made)))
@@ -339,7 +339,7 @@ def edges_m(corners: Points) -> NDArray[np.float64]:
 
 def drawn_area_m2(corners: Points) -> float:
     """Return the area that corners enclose; 0 while they enclose none, or cross."""
-    if len(corners) < 3 or _crossing(corners) is not None:
+    if len(corners) < 3 or crossing(corners) is not None:
         return 0.0
     return area_m2(Polygon(corners))
 
@@ -349,7 +349,7 @@ def _wide_m(corners: Points) -> float:
     return float(steps_m(np.stack([low, high]))[0])
 
 
-def _crossing(corners: Points) -> tuple[int, int] | None:
+def crossing(corners: Points) -> tuple[int, int] | None:
     """Return two edges that meet where they should not, each by the corner it begins at."""
     n = len(corners)
     edges = [LineString([at, corners[(k + 1) % n]]) for k, at in enumerate(corners)]

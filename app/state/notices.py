@@ -15,7 +15,7 @@ from . import season_held
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-_KEY, _WARNS = "notice", "notice warns"
+_KEY, _WARNS, _UNKEPT = "notice", "notice warns", "season gone unkept"
 
 
 def keep(kind: str, sentence: str) -> None:
@@ -39,12 +39,28 @@ def warn() -> None:
     st.session_state[_WARNS] = True
 
 
+def gone(season: str) -> str:
+    """Return that a season is not there, and that what was just done in it was not kept, if so.
+
+    It says so until a season is found again.
+    """
+    is_unkept = st.session_state.get(_UNKEPT) == season
+    said = texts.SEASON_GONE_UNKEPT if is_unkept else texts.SEASON_GONE
+    return said.format(name=texts.isolated(season))
+
+
+def found() -> None:
+    """Say no more that something was not kept: a season that is there is shown."""
+    st.session_state.pop(_UNKEPT, None)
+
+
 def reporting(action: Callable[..., str]) -> Callable[..., None]:
     """Return a callback that keeps the sentence its action returns, or the problem it meets.
 
     An empty sentence is nothing to say. An action on a season waits here for whoever writes it, for
     the page to say so: the action itself would wait as long without a word. Nobody is kept out
-    meanwhile, and readers are not waited for.
+    meanwhile, and readers are not waited for. Where the season is gone, the page says so in its
+    place, see `gone`.
     """
 
     def callback(*arguments: object) -> None:
@@ -54,7 +70,10 @@ def reporting(action: Callable[..., str]) -> Callable[..., None]:
                 season_held.wait(season.path, to_write=True)
             sentence = action(*arguments)
         except FieldmonError as error:
-            keep("error", of_error(error))
+            if season is not None and not season.path.is_file():
+                st.session_state[_UNKEPT] = season.path.stem
+            else:
+                keep("error", of_error(error))
         else:
             if sentence:
                 keep("warning" if st.session_state.get(_WARNS) else "success", sentence)

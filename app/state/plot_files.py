@@ -142,7 +142,9 @@ def outline(files: Files, which: Which) -> Outline:
     if files.plot is None:
         return Outline(key, None, (), measured, heard)
     options = settled(files.plot, PlotOptions())
-    read = cached_files.plots(files.plot.key, options, files.plot.source)
+    # who drew the plot knows of no column
+    named = replace(options, name_column="name") if files.plot.is_drawn else options
+    read = cached_files.plots(files.plot.key, named, files.plot.source)
     number = which(files.plot, read.value)
     field = read.value[number]
     key = f"{key}{files.plot.key}{options}{number}"

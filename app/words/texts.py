@@ -324,6 +324,11 @@ SEASON_GONE = (
     "There is no season {name} here: its file was moved, renamed or deleted. Put it back into the "
     "folder of seasons, or choose another plot or season."
 )
+SEASON_GONE_UNKEPT = (
+    "What you just did was not kept: the season {name} was renamed or taken off the list "
+    "meanwhile. Choose it above by its new name, or bring it back where a plot's file goes, and "
+    "do it again."
+)
 HELD = "Another program holds the season {name} (QGIS, a backup?). Waiting until it is free:"
 HELD_FOR = Plural("{n} second.", "{n} seconds.")
 HELD_STILL = (
@@ -635,6 +640,7 @@ OUTLINE_STANDING = (
 OUTLINE_NO_MAP = "Without a map from the internet there is a grid to measure by."
 OUTLINE_EDGES = "Edges in order: {edges}."
 OUTLINE_SAID = Plural("{n} corner, {area}", "{n} corners, {area}")
+OUTLINE_CROSSES = "{n} corners; the edges after corners {one} and {other} cross"
 OUTLINE_USE, OUTLINE_LEAVE = "This is my plot", "Back to the files"
 OUTLINE_CORRECT, OUTLINE_DOWNLOAD = "Correct the corners", "Download the boundary (GeoJSON)"
 OUTLINE_NAME = "My plot"
@@ -723,7 +729,8 @@ DECIDE_NEEDS_SEASON = (
 DECIDE_AREA, DECIDE_LIQUID = "To be sprayed, of the area under plants", "Liquid"
 DECIDE_LITRES = "{value} l"
 DECIDE_INSIDE, DECIDE_OUTSIDE = "Infested in the zones", "Infested elsewhere"
-DECIDE_SAVING, DECIDE_ENOUGH = "Spraying costs less by", "Chance that it is enough"
+DECIDE_SAVING = "Costs less than the whole plot by"
+DECIDE_ENOUGH = "Chance that it is enough"
 DECIDE_SAVING_HELP = (
     "Less than spraying the whole plot, in the currency in which the costs are given. The infested "
     "plants elsewhere lose {lost}, which is no part of it."
@@ -914,6 +921,7 @@ CONTRADICTING_NO_MORE = Plural(
 RECORD_THESE = Plural("Record this", "Record these {n}")
 AND_MORE = "... and {n} more."
 LEAVE_OUT = Plural("Leave these out, record the other one", "Leave these out, record {n} others")
+LEAVE_OUT_ONLY = "Leave these out"
 HOLDS = Plural("The new one holds", "The new ones hold")
 CONFIRM = Plural("Record this too, both hold", "Record these {n} too, both hold")
 RECORD_NONE = "Record nothing"

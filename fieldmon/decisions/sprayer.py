@@ -166,4 +166,9 @@ class TreatmentCosts:
     @property
     def per_infested_plant(self) -> float:
         """Return what treating an infested plant saves."""
-        return self.infested_plant_day * self.days * self.works
+        return self.lost_per_infested_plant * self.works
+
+    @property
+    def lost_per_infested_plant(self) -> float:
+        """Return what an infested plant loses that is not treated."""
+        return self.infested_plant_day * self.days

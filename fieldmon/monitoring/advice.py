@@ -107,7 +107,7 @@ class AdviceSettings:
             "infested_plant_day": worded(
                 "an infested plant loses {loss:,.10g} a day", loss=costs.infested_plant_day
             ),
-            "days": worded("it stays infested for {days:g} {days:day|days}", days=costs.days),
+            "days": worded("it stays infested for {days}", days=_days(costs.days)),
             "works": worded("treating cleans {works:.0%}", works=costs.works),
         }  # fmt: skip
         learnt = said.pop("works") if self.learnt_of else ""
@@ -220,6 +220,13 @@ class NotReached:
         ]  # fmt: skip
 
 
+def _days(days: float) -> Worded:
+    """Return so many days in words; some languages have a form for some numbers."""
+    if days == int(days):
+        return counted(int(days), "day")
+    return worded("{days:g} days", days=days)
+
+
 def _money(value: float) -> str:
     return figure(value, ",.0f" if abs(value) >= _ROUND_FROM else ",.2f")
 
@@ -279,6 +286,11 @@ class Advice:
         return self.zones.treated if len(self.zones) else np.ones(len(self.grid), np.bool_)
 
     @property
+    def is_whole(self) -> bool:
+        """Return whether the zones are the whole plot."""
+        return self.zones.m2 >= _WHOLE * self.zones.plot_m2
+
+    @property
     def litres(self) -> float:
         """Return what is sprayed in the zones altogether."""
         return self.zones.m2 / 10_000 * self.asked.rate_l_ha
@@ -296,7 +308,7 @@ class Advice:
     @property
     def lost(self) -> str:
         """Return in words what infested plants outside the zones lose: that is no part of it."""
-        return _money(self.zones.outside * self.asked.costs.per_infested_plant)
+        return _money(self.zones.outside * self.asked.costs.lost_per_infested_plant)
 
     @cached_property
     def outlines(self) -> list[MultiPolygon]:
@@ -314,7 +326,7 @@ class Advice:
             "share": share_figure(self.zones.m2 / self.zones.plot_m2),
             "of": written.square(self.zones.plot_m2),
         }  # fmt: skip
-        if self.verdict == TREAT and self.zones.m2 >= _WHOLE * self.zones.plot_m2:
+        if self.verdict == TREAT and self.is_whole:
             return worded("Treat the whole plot, {area} under plants.", area=area["area"])
         if self.verdict == TREAT and len(self.zones):
             return worded("Treat {area} in {zones}, {share} of the {of} under plants.", **area)
@@ -417,6 +429,13 @@ class Advice:
                     "still save more than it costs."
                 )
             ]
+        if above and self.verdict == LOOK_ON:
+            return [
+                worded(
+                    "By these costs, spraying the zones today would save more than it costs. If "
+                    "the costs are yours, go by them, else inspect first."
+                )
+            ]
         return [
             worded(
                 "By these costs, spraying the zones would save more than it costs, whatever the "
@@ -440,6 +459,8 @@ class Advice:
         )  # fmt: skip
 
     def _worth_said(self) -> str:
+        if self.is_whole:
+            return worded("It takes {litres} l.", litres=litres_figure(self.litres))
         return worded(
             "It takes {litres} l and costs {saved} less than treating the whole plot; the infested "
             "plants elsewhere lose {lost}.",

@@ -337,16 +337,25 @@ def redo(
         (replaced.STANDS_BACK, number, replaced.TAKEN_BACK, *but),
     )
     db.execute("UPDATE batches SET undone = 0 WHERE fid = ?", (number,))
-    again = (treatments if batch.kind == "treatment" else replaced).count_again(db)
+    rows = treatments if batch.kind == "treatment" else replaced
+    again = rows.count_again(db)
     touch(db, table)
+    elsewhere = rows.n_elsewhere(db, number, replaced.STANDS_BACK)
     said = contents(db, [number]).get(number)
-    return {number, *again}, _counts_again(batch, said, batch.rows - len(but), signs or {})
+    n = batch.rows - len(but) - elsewhere
+    return {number, *again}, _counts_again(batch, said, (n, elsewhere), signs or {})
 
 
 def _counts_again(
-    batch: Batch, said: BatchContents | None, n: int, signs: Mapping[int, str]
+    batch: Batch, said: BatchContents | None, rows: tuple[int, int], signs: Mapping[int, str]
 ) -> str:
-    """Return in words that so many rows of a batch count again."""
+    """Return in words how many rows of a batch count again, and how many count in another one."""
+    n, elsewhere = rows
+    if elsewhere and n <= 0:
+        return worded(
+            "Nothing of batch {batch} counts again: it counts in another already.",
+            batch=batch.number,
+        )
     if batch.kind == "findings" and said is not None and batch.rows == 1:
         return worded(
             "Counts again: row {row}, plant {plant} on {date} ({result}).",
@@ -354,7 +363,11 @@ def _counts_again(
             result=_RESULTS.get(said.result, said.result),
         )  # fmt: skip
     noun = {"findings": "inspection", "treatment": "treatment"}[batch.kind]
-    return worded("Batch {batch} counts again: {what}.", batch=batch.number, what=counted(n, noun))
+    again = worded("Batch {batch} counts again: {what}.", batch=batch.number, what=counted(n, noun))
+    if not elsewhere:
+        return again
+    more = worded("{n:,} more {n:counts|count} in another batch already.", n=elsewhere)
+    return joined(" ", (again, more))
 
 
 def _undone(batch: Batch, said: BatchContents | None, signs: Mapping[int, str]) -> str:

@@ -178,6 +178,15 @@ def said_before(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
     return added_nothing
 
 
+def known_before(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
+    """Return ``(k,)`` whether each adds nothing to those held, as the same count adds none."""
+    held = held.take(np.isin(held.plant, brought.plant))
+    counted = {*zip(_told(held), held.count.tolist(), strict=True)}
+    same = [one in counted for one in zip(_told(brought), brought.count.tolist(), strict=True)]
+    known: NDArray[np.bool_] = said_before(brought, held) | np.array(same, bool)
+    return known
+
+
 def _told(inspections: Inspections) -> Iterator[tuple[Key, int, str | None]]:
     """Yield plant and day, result and time of each, as files have them."""
     times = map(time_text, inspections.second.tolist())

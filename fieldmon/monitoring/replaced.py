@@ -144,11 +144,15 @@ def n_counting(db: sqlite3.Connection, mark: str) -> int:
     return int(n)
 
 
-def n_elsewhere(db: sqlite3.Connection, batch: int) -> int:
-    """Return how many inspections of a batch do not count, but another that says the same does."""
+def n_elsewhere(db: sqlite3.Connection, batch: int, only: int | None = None) -> int:
+    """Return how many inspections of a batch do not count, but another that says the same does.
+
+    `only`: `TAKEN_BACK` or `STANDS_BACK`; None: either.
+    """
     (n,) = db.execute(
-        "SELECT count(*) FROM inspections AS one WHERE batch = ? AND undone <> 0 AND EXISTS "
+        "SELECT count(*) FROM inspections AS one WHERE batch = ? AND undone <> 0 "
+        "AND undone = coalesce(?, undone) AND EXISTS "
         "(SELECT 1 FROM inspections WHERE digest = one.digest AND undone = 0)",
-        (batch,),
+        (batch, only),
     ).fetchone()
     return int(n)

@@ -39,6 +39,7 @@ from fieldmon.monitoring.recorded_before import (
     Contradictions,
     contradicting,
     contradictions,
+    known_before,
     said_before,
 )
 from fieldmon.monitoring.settings import seconds
@@ -75,6 +76,10 @@ class SeasonRecords(OpenSeason):
     def contradictions(self, inspections: Inspections) -> Contradictions:
         """Return which `inspections` say otherwise than what is recorded of their plant and day."""
         return contradictions(inspections, self.history.inspections)
+
+    def new_of(self, inspections: Inspections) -> int:
+        """Return how many `inspections` say more than what is recorded."""
+        return int(np.count_nonzero(~known_before(inspections, self.history.inspections)))
 
     def unrecorded(self, inspections: Inspections) -> int:
         """Return how many `inspections` are of a plant, day and result that were never recorded.

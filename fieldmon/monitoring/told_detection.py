@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.wording import share_figure, worded
+from fieldmon.infestation.inspections import SKIPPED
 from fieldmon.monitoring import inspection_lots, season_log, settings_log
 from fieldmon.monitoring.pest_json import pest_of_json
 from fieldmon.monitoring.settings import told_to_detect
@@ -79,6 +80,8 @@ class ToldDetection(NamedTuple):
 
 class ToldOtherwise(NamedTuple):
     """Inspections with which another chance to see what is there was said than the season's own.
+
+    None of plants that could not be inspected.
 
     Parameters
     ----------
@@ -201,7 +204,7 @@ def told_otherwise(
     told = _told(db)
     own = _own(db, inspections, begins, told)
     held = _held(db, inspections, begins, (told, own))
-    apart = held != own
+    apart = (held != own) & (inspections.result != SKIPPED)
     done, held, own = inspections.take(apart), held[apart], own[apart]
     people = {name: person_key(name) for name in dict.fromkeys(done.who.tolist())}
     numbers = {person: k for k, person in enumerate(dict.fromkeys(people.values()))}

@@ -251,10 +251,14 @@ def count_again(db: sqlite3.Connection) -> list[int]:
     return sorted({row["batch"] for row in changed})
 
 
-def n_elsewhere(db: sqlite3.Connection, batch: int) -> int:
-    """Return how many treatments of a batch do not count, but another row of the same does."""
+def n_elsewhere(db: sqlite3.Connection, batch: int, only: int | None = None) -> int:
+    """Return how many treatments of a batch do not count, but another row of the same does.
+
+    `only` as in `replaced.n_elsewhere`.
+    """
     counted = frozenset().union(*counting(db))
-    gone = _rows(db, f"batch = {batch:d} AND undone <> {COUNTS}")
+    which = f"undone <> {COUNTS}" if only is None else f"undone = {only:d}"
+    gone = _rows(db, f"batch = {batch:d} AND {which}")
     return sum(bool(known_by(row) & counted) for row in gone)
 
 

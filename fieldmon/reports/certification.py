@@ -8,6 +8,7 @@ What nobody said stands as not said: nothing is filled in.
 
 from __future__ import annotations
 
+from collections import Counter
 from contextlib import ExitStack
 from dataclasses import dataclass
 from itertools import pairwise
@@ -206,7 +207,7 @@ def _summary(records: list[_PlotRecord]) -> Iterator[tuple[Block, ...]]:
             KeyFigure(words.CERT_AREA, units.square(area_ha * 1e4), words.CERT_AREA_NOTE),
             KeyFigure(words.CERT_INSPECTIONS, figure(sum(k for k, _ in seen))),
             KeyFigure(words.CERT_FINDS, figure(sum(k for _, k in seen))),
-            KeyFigure(words.CERT_CAUTIONS, figure(sum(len(one.cautions) for one in records))),
+            KeyFigure(words.CERT_CAUTIONS, figure(len(_cautions(records)))),
         )
     )
     yield Paragraph(lead, lead=True), figures
@@ -258,7 +259,9 @@ def _parts(table: Table, most: int) -> Iterator[Table]:
 
 
 def _cautions(records: list[_PlotRecord]) -> list[str]:
-    return [_of_plot(one, caution.sentence, records) for one in records for caution in one.cautions]
+    """Return what to beware of; treatments of one day may have the same warning: it stands once."""
+    said = (_of_plot(one, beware.sentence, records) for one in records for beware in one.cautions)
+    return [*dict.fromkeys(said)]
 
 
 def _of_plot(one: _PlotRecord, said: str, records: list[_PlotRecord]) -> str:
@@ -267,7 +270,7 @@ def _of_plot(one: _PlotRecord, said: str, records: list[_PlotRecord]) -> str:
 
 
 def _unsaid(records: list[_PlotRecord]) -> list[str]:
-    """Return what GLOBALG.A.P. asks of each treatment and nobody said."""
+    """Return what GLOBALG.A.P. asks of each treatment, and of inspections, and nobody said."""
     said: list[str] = []
     for one in records:
         for treatment in one.treatments:
@@ -283,6 +286,9 @@ def _unsaid(records: list[_PlotRecord]) -> list[str]:
                         what=joined(", ", missing),
                     )
                 )  # fmt: skip
+        if unnamed := int(np.count_nonzero(one.done.who == "")):
+            by_whom = worded(words.CERT_BY_WHOM, n=unnamed, of=len(one.done))
+            said.append(worded(words.CERT_ON_PLOT, plot=one.name, said=by_whom))
     return said
 
 
@@ -390,14 +396,11 @@ def _inspections(one: _PlotRecord) -> Iterator[Table]:
     days, first = np.unique(done.date, return_index=True)  # they are in order
     for day, (a, b) in zip(days.tolist(), pairwise([*first.tolist(), len(done)]), strict=True):
         of = done.take(slice(a, b))
-        who = sorted({*map(str, {*of.who.tolist()})} - {""})
         found = int(np.count_nonzero(of.result == FOUND))
-        by = joined(", ", who)
+        by = _by(of)
         if authors := ", ".join(sorted(one.corrected.get(str(day), set()) - {""})):
-            by = joined(
-                ", ", [*map(words.isolated, who), worded(words.CERT_CORRECTED, who=authors)]
-            )
-        rows.append((one.units.day(day), figure(len(of)), figure(found), by))
+            by.append(worded(words.CERT_CORRECTED, who=authors))
+        rows.append((one.units.day(day), figure(len(of)), figure(found), joined(", ", by)))
     title = worded(words.CERT_OF_PLOT, plot=one.name)
     if not rows:
         rows = [(words.CERT_NONE, "", "", "")]
@@ -406,3 +409,13 @@ def _inspections(one: _PlotRecord) -> Iterator[Table]:
         whole=True,
     )  # fmt: skip
     yield from _parts(table, _DAYS_A_PAGE)
+
+
+def _by(done: Inspections) -> list[str]:
+    """Return who inspected, each with how many where there are several; nobody named comes last."""
+    who = Counter(map(str, done.who.tolist()))
+    names = [*sorted({*who} - {""}), *[""] * ("" in who)]
+    said = {name: words.isolated(name) if name else words.CERT_NOT_SAID for name in names}
+    if len(names) == 1:
+        return [worded("{who}", who=said[names[0]])]
+    return [worded("{who} {n:,}", who=said[name], n=who[name]) for name in names]

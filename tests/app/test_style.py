@@ -41,3 +41,24 @@ def test_the_route_and_what_was_treated_are_told_apart_on_a_dark_ground_too():
     for route, treated in ((colours.ROUTE, colours.TREATED),
                            (colours.ROUTE_IN_DARK, colours.TREATED_IN_DARK)):  # fmt: skip
         assert sum(abs(a - b) for a, b in zip(route, treated, strict=True)) > 100
+
+
+@pytest.mark.parametrize(
+    ("said", "number_first"), [("10 م", False), ("10 מ׳", False), ("10 m", True)]
+)
+def test_the_scale_bar_has_number_and_unit_in_the_order_of_its_language(
+    browser, said, number_first
+):
+    css = (Path(__file__).parents[2] / "app" / "map_view" / "src" / "style.css").read_text()
+    page = browser.new_page()
+    page.set_content(f"<style>{css}</style><div class=scale><div class=text>{said}</div></div>")
+    first, last = page.evaluate("""() => {
+      const text = document.querySelector(".text").firstChild, range = document.createRange();
+      return [[0, 1], [3, 4]].map(([from, to]) => {
+        range.setStart(text, from);
+        range.setEnd(text, to);
+        return range.getBoundingClientRect().left;
+      });
+    }""")
+    page.close()
+    assert (first < last) == number_first

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fieldmon.cli.report_languages import spoken
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted
 from fieldmon.decisions.map_verdict import verdict_of
@@ -206,7 +207,7 @@ def test_each_verdict_has_its_sentence(season, m2, above, verdict, said):
         (LEAVE, [LEAVE, LEAVE], True, "The zones are below the threshold too."),
         (LEAVE, [LEAVE, LOOK_ON], True, "whatever the threshold says."),
         (LEAVE, [LEAVE, TREAT], True, ""), (TREAT, [LEAVE], True, ""), (LEAVE, [], True, ""),
-        (LOOK_ON, [TREAT], True, "whatever the threshold says."),
+        (LOOK_ON, [TREAT], True, "go by them, else inspect first."),
         (TREAT, [TREAT], False, "whatever the threshold says."), (LEAVE, [], False, ""),
     ],
 )  # fmt: skip
@@ -219,6 +220,23 @@ def test_zones_that_the_threshold_does_not_ask_for_are_said_to_pay_only(
     assert len(though) == bool(said)
     assert said in " ".join(though)
     assert advice.is_below == ("below" in said)
+
+
+def test_one_zone_that_is_the_whole_plot_is_compared_with_nothing(season):
+    cheap = TreatmentCosts(per_ha=0.0, per_zone=0.1)
+    advice = season.advice(BEGINS, AdviceSettings(0.01, costs=cheap))
+    assert (advice.is_whole, len(advice.zones)) == (True, 1)
+    said = " ".join(advice.said_of_zones())
+    assert "It takes 158 l. " in said
+    assert "elsewhere lose" not in said
+
+
+@pytest.mark.parametrize(
+    ("days", "said"), [(14.0, "14 يومًا"), (3.0, "3 أيام"), (2.0, "يومان"), (1.5, "1.5")]
+)
+def test_days_in_arabic_have_the_form_of_their_number(days, said):
+    assumed = AdviceSettings(costs=TreatmentCosts(days=days)).assumed()
+    assert said in spoken("ar", "")[0].say(assumed)
 
 
 def test_what_was_set_is_not_called_assumed():
@@ -269,9 +287,11 @@ def test_sums_of_a_hundred_and_more_are_said_without_hundredths(season, saving, 
     assert advice.saved == said
 
 
-def test_what_the_plants_outside_the_zones_lose_is_said_beside_what_is_saved(season):
-    advice = season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP, rate_l_ha=50_000.0))
-    lost = advice.zones.outside * CHEAP.per_infested_plant
+@pytest.mark.parametrize("works", [0.9, 0.3])
+def test_plants_outside_the_zones_lose_all_of_it_however_well_treating_works(season, works):
+    costs = replace(CHEAP, works=works)
+    advice = season.advice(BEGINS, AdviceSettings(0.01, costs=costs, rate_l_ha=50_000.0))
+    lost = advice.zones.outside * costs.infested_plant_day * costs.days
     assert lost > 0.0
     assert float(advice.lost.replace(",", "")) == pytest.approx(lost, abs=0.5)
     assert f"elsewhere lose {advice.lost}." in " ".join(advice.said_of_zones())

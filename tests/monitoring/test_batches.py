@@ -135,7 +135,8 @@ def test_what_was_taken_back_alone_stays_so_when_its_batch_counts_again(season):
     before = season.history.states(0).copy()
     season.undo(batch)
     other = season.record(Inspections.of(plants[2:], np.array([1]), on), "again.csv").batch
-    assert season.redo(batch) == f"Batch {batch} counts again: 2 inspections."
+    said = f"Batch {batch} counts again: 1 inspection. 1 more counts in another batch already."
+    assert season.redo(batch) == said
     assert np.array_equal(season.history.states(0), before)
     assert len(season.history.inspections.on(BEGINS)) == 2, "the same result counts once"
     season.undo(other)
@@ -149,6 +150,28 @@ def test_a_treatment_that_was_undone_counts_again(season):
     assert not season.treatments()
     assert season.redo(batch) == f"Batch {batch} counts again: 1 treatment."
     assert len(season.treatments()) == 1
+
+
+def test_what_counts_in_another_batch_is_not_said_to_count_again(season):
+    seen = Inspections.of(np.arange(3), np.array([0, 1, 1]), np.datetime64(BEGINS))
+    treated = np.arange(438) < 20
+    for add in (
+        lambda: season.record(seen, "day.csv").batch,
+        lambda: season.record(seen.take(slice(1)), "tap").batch,
+        lambda: season.treat(BEGINS, 0.5, plants=treated).batch,
+    ):
+        one, other = (undone(season, add()) for _ in range(2))
+        season.redo(one)
+        said = season.redo(other)
+        assert said == f"Nothing of batch {other} counts again: it counts in another already."
+        season.undo(one)
+        season.undo(other)
+
+
+def undone(season, batch):
+    """Take a batch back, and return its number."""
+    season.undo(batch)
+    return batch
 
 
 def test_corrections_do_not_count_again(db):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import ObservationError
-from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.monitoring.settings import as_json
@@ -122,8 +122,11 @@ def test_each_of_a_team_of_then_is_read_by_its_own(season):
 def test_what_is_said_with_inspections_holds_and_each_robot_keeps_its_own(season):
     season.plan(BEGINS)
     rex, max_ = seen(0, 2, who="Rex", detects=0.3), seen(2, 2, who="Max", detects=0.6)
-    season.record_all([(rex, "rex.geojson"), (max_, "max.geojson"), (seen(4, 2), "typed")])
-    held = [0.3, 0.3, 0.6, 0.6, SHARP, SHARP]
+    not_seen = replace(seen(6, 1, who="Rex", detects=0.3), result=np.array([SKIPPED], np.int8))
+    typed = seen(4, 2)
+    files = [(rex, "rex.geojson"), (max_, "max.geojson"), (typed, "typed"), (not_seen, "no.csv")]
+    season.record_all(files)
+    held = [0.3, 0.3, 0.6, 0.6, SHARP, SHARP, 0.3]
     assert told(season) == held
     evening = season.evening(BEGINS).tolist()
     change(season, robot=LOOKS_LESS, team=TEAM)

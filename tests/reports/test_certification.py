@@ -192,3 +192,84 @@ def test_what_was_advised_and_the_pest_s_name_are_in_the_record_s_language(tmp_p
     said = " ".join(of_season.words())
     assert "Araña roja, por grados-día" in said
     assert "Two-spotted" not in said
+
+
+def test_who_inspected_is_said_with_how_many_and_so_is_that_nobody_was_named(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    day = np.datetime64(BEGINS)
+    for on, named in ((0, ["Ben"] * 3 + [""] * 6 + ["Ann"] * 4), (1, ["Ben"] * 2), (2, [""] * 5)):
+        seen = Inspections.of(
+            np.arange(len(named)), np.full(len(named), CLEAN), day + on,
+            who=np.array(named, object),
+        )  # fmt: skip
+        season.record(seen, "phone")
+    report = certification_report([season], Units(), BEGINS + timedelta(3))
+    plain = ["Ann 4, Ben 3, not said 6", "Ben", "not said"]
+    assert [row[3] for row in days_of(report)] == plain
+    asked = "Who made the inspections (11 of 20)."
+    assert any(asked in sentence for sentence in listed(report, words.CERT_UNSAID))
+    said = {
+        code: [row[3] for row in days_of(report.said_in(spoken(code, "")[0]))]
+        for code in ("he", "ar", "es")
+    }
+    assert said == {
+        "he": ["Ann 4, Ben 3, לא נאמר 6", "Ben", "לא נאמר"],
+        "ar": ["Ann 4، Ben 3، لم يُذكر 6", "Ben", "لم يُذكر"],
+        "es": ["Ann 4, Ben 3, no se dijo 6", "Ben", "no se dijo"],
+    }
+
+
+def test_who_corrected_is_said_beside_a_name_that_is_no_english(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    season.record(some_results(season, n=3), "monday.csv", "Ben")
+    season.correct_time(1, time(8), "Eva")
+    report = certification_report([season], Units()).said_in(spoken("es", "")[0])
+    assert [row[3] for row in days_of(report)] == ["Ben, corregido por Eva"]
+
+
+def test_a_warning_stands_once_to_beware_of_and_with_each_treatment(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    half = np.arange(len(season.plot.grid)) < 10
+    season.treat(BEGINS, 0.5, product="soap", plants=half)
+    season.treat(BEGINS, 0.5, product="soap", plants=~half)
+    report = certification_report([season], Units())
+    beware = listed(report, words.CERT_CAUTIONS)
+    assert len(beware) == 1
+    said = " ".join(report.words())
+    assert said.count(beware[0]) == 3
+    assert f"{words.CERT_CAUTIONS} 1 " in said
+
+
+def listed(report, title):
+    """Return the sentences under a title."""
+    blocks = [block for sheet in report.sheets for block in sheet.blocks]
+    of = [b.sentences for b in blocks if isinstance(b, Listing) and b.title == title]
+    return [sentence for sentences in of for sentence in sentences]
+
+
+def days_of(report):
+    """Return the days on which was inspected, each with names as they are read."""
+    tables = [block for block in report.sheets[-1].blocks if isinstance(block, Table)]
+    return [
+        tuple(cell.translate({0x2068: None, 0x2069: None}) for cell in row)
+        for table in tables
+        for row in table.rows
+    ]
+
+
+@pytest.mark.parametrize("language", ["en", "he", "es"])
+def test_on_a_phone_no_table_and_no_digest_is_wider_than_the_page(
+    browser, season, language, tmp_path
+):
+    said, units = spoken(language, "")
+    path = tmp_path / "record.html"
+    path.write_text(html_text(certification_report([season], units).said_in(said)), "utf-8")
+    page = browser.new_page(viewport={"width": 360, "height": 800})
+    page.goto(path.as_uri())
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    names = page.locator(".many td").first.evaluate(
+        "one => getComputedStyle(one, '::before').content"
+    )
+    page.close()
+    assert wide == 360
+    assert said.say(words.CERT_PLOT_COLUMNS[0]) in names

@@ -92,7 +92,8 @@ def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(worke
     told = "Chances and hot spots begin with 3 records of 2026-03-30 to 2026-04-02, 1 of them"
     assert any(one.text.startswith(told) for one in on_sheet(of_season, 2, Paragraph))
     found = np.flatnonzero(worked.history.states(status.day) == PRESENT)
-    rows = table(of_season, "Plants found infested, by row").rows
+    rows = (by_row := table(of_season, "Plants found infested, by row")).rows
+    assert by_row.columns == ("row", "plants", "which")  # plants are counted, not finds
     assert sum(int(row[1]) for row in rows) == len(found) == status.found
     line = row_label(worked.plot.grid, found).line
     assert [int(row[0]) for row in rows] == np.unique(line).tolist()

@@ -91,7 +91,7 @@ function legend(pen, { legend: parts, signs, colours, rtl }, part) {
   });
 }
 
-function foot(pen, { bar, credit, colours, rtl }, part) {
+export function foot(pen, { bar, credit, colours, rtl }, part) {
   pen.direction = "ltr";
   pen.textAlign = "left";
   pen.font = `12px ${FONT}`;
@@ -99,7 +99,9 @@ function foot(pen, { bar, credit, colours, rtl }, part) {
   box(pen, x, y, bar.px + 46, 26, colours.surface);
   pen.strokeStyle = pen.fillStyle = colours.ink;
   pen.fillText("▲", x + 8, y + 14);
+  pen.direction = rtl ? "rtl" : "ltr"; // the bar runs from the left, its words as the language does
   pen.fillText(bar.text, x + 30, y + 9);
+  pen.direction = "ltr";
   pen.lineWidth = 1.5;
   pen.beginPath();
   pen.moveTo(x + 30, y + 16);

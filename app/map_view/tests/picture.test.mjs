@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { freePart, linesOf } from "../src/picture.js";
+import { foot, freePart, linesOf } from "../src/picture.js";
 
 test("what panels leave free is taken, and never nothing", () => {
   const size = { width: 1440, height: 840 };
@@ -18,4 +18,13 @@ test("each part of a legend has its title, if it has one, and a line a sign", ()
     { title: "", items: [["line", [7, 8, 9], "route"]] },
   ]);
   assert.deepEqual(lines.map((one) => one.title ?? one.text), ["Chance", "0 %", "1 %", "route"]);
+});
+
+test("the scale bar's number and unit stand in the order of the language", () => {
+  for (const rtl of [false, true]) {
+    const said = new Map();
+    const pen = new Proxy({}, { get: (all, name) => all[name] ?? ((text) => said.set(text, all.direction)) });
+    foot(pen, { bar: { px: 80, text: "10 m" }, credit: "", colours: {}, rtl }, { width: 800, height: 400 });
+    assert.equal(said.get("10 m"), rtl ? "rtl" : "ltr");
+  }
 });

@@ -54,6 +54,7 @@ def test_four_typed_corners_are_a_plot_with_a_route_and_survive_a_reload(drawing
     assert not drawing.error
     assert metric(drawing, "Area") == "4.21 ha"
     assert plot_name(drawing) == texts.OUTLINE_NAME
+    assert "named by column" not in texts_of(drawing)
     word = drawing.query_params["files"]
     again = opened(texts.UPLOAD, files=word[0] if isinstance(word, list) else word)
     assert plot_name(again) == texts.OUTLINE_NAME
@@ -120,6 +121,9 @@ def test_too_few_corners_and_crossed_ones_are_refused_in_a_sentence_and_stay(dra
         assert drawing.button(key="outline_use").disabled
         assert f"needs three corners or more, but {n} are set" in texts_of(drawing)
     corners(drawing, (SQUARE[3], SQUARE[2]))
+    crossing = "4 corners; the edges after corners 2 and 4 cross"
+    assert crossing in texts_of(drawing)
+    assert map_of(drawing)["draw"]["hint"] == crossing
     press(drawing, texts.OUTLINE_USE)
     assert "must not cross itself" in drawing.error[0].value
     assert len(map_of(drawing)["draw"]["points"]) == 4

@@ -3,7 +3,7 @@
 import json
 import shutil
 import uuid
-from datetime import date, time, timedelta
+from datetime import UTC, date, datetime, time, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +11,13 @@ import pytest
 import streamlit as st
 
 from app.actions import recording
+from app.state import seasons_folder, unconfirmed
 from app.state.fresh_boxes import FreshBoxes
+from app.state.unconfirmed import Unconfirmed
 from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.plot import local_clock
 from fieldmon.plot.grid import plant_at
 from tests.app.chosen import in_season
 from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
@@ -666,3 +669,54 @@ def test_stops_of_the_route_are_recorded_though_the_run_of_the_press_is_broken_o
     broken_off(monkeypatch)
     send(season_app, "route")
     assert len(season().history.inspections) == 3
+
+
+def test_what_is_recorded_into_a_season_that_was_renamed_meanwhile_is_said_not_to_be_kept(
+    season_app, season
+):
+    go(season_app, "record")
+    for name, value in {"one_row": 3, "one_plant": 4, "one_result": FOUND}.items():
+        season_app.session_state[key_of(season_app, name)] = value
+    season_app.run()
+    seasons_folder.rename("Gate 2026", "Kumeu 2")
+    season_app.button(key="record_one").click().run()
+    name = "\u2068Gate 2026\u2069"
+    for _ in range(2):
+        (said,) = season_app.error
+        assert said.value == texts.SEASON_GONE_UNKEPT.format(name=name)
+        season_app.run()
+    seasons_folder.rename("Kumeu 2", "Gate 2026")
+    season_app.run()
+    assert not season_app.error
+    assert not len(season().history.inspections)
+    seasons_folder.rename("Gate 2026", "Kumeu 2")
+    season_app.run()
+    (said,) = season_app.error
+    assert said.value == texts.SEASON_GONE.format(name=name)
+
+
+def test_those_that_are_known_are_none_of_the_others_to_record(season_app, season):
+    route = season().kept_route(date(2026, 11, 16))
+    plants = route if len(route) else np.arange(8)
+    on = np.datetime64("2026-11-16")
+    season().record(Inspections.of(plants[:5], [1, 0, 0, 0, 1], on, count=[4, 0, 0, 0, 7]), "file")
+    brought = Inspections.of(plants[:7], [0, 0, 0, 0, 1, 0, 0], on, count=[np.nan] * 4 + [7, 0, 0])
+    for taken, label in ((7, "Leave these out, record 2 others"), (5, "Leave these out")):
+        kept = Unconfirmed(season().key, "2026-11-16", brought.take(slice(taken)), "copy", "", ())
+        season_app.session_state[unconfirmed._KEY] = kept
+        go(season_app, "record")
+        assert season_app.button(key="leave_out").label == label
+
+
+def test_past_midnight_the_answer_names_the_day_that_a_find_was_kept_for(
+    season_app, season, monkeypatch
+):
+    go(season_app, "record")
+    for name, value in {"one_row": 3, "one_plant": 4, "one_result": FOUND}.items():
+        season_app.session_state[key_of(season_app, name)] = value
+    season_app.run()
+    late = datetime(2026, 11, 17, 0, 5, tzinfo=UTC)
+    monkeypatch.setattr(local_clock, "utc_now", lambda: late)
+    season_app.button(key="record_one").click().run()
+    assert season().history.inspections.date.astype(str).tolist() == ["2026-11-16"]
+    assert "Recorded for Mon 16 Nov, not for Tue 17 Nov." in season_app.success[0].value

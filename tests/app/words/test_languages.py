@@ -87,6 +87,20 @@ def test_a_plural_has_as_many_forms_as_the_language_tells_apart(code):
             assert len(strings(held, entry)) == held.num_plurals, entry
 
 
+def test_in_arabic_what_is_counted_from_11_to_99_has_its_own_ending():
+    held = catalogue("ar")
+    some, tanwin = gettext.c2py(held.plural_expr), re.compile(r"{n[^}]*} \w+(ًا|اً)")
+    ended = [
+        (forms[some(14)], forms[some(100)])
+        for forms in (strings(held, entry) for entry in entries() if entry.one)
+        if any(tanwin.search(form) for form in forms)
+    ]
+    assert len(ended) > 15
+    for of_14, of_100 in ended:
+        assert tanwin.search(of_14)
+        assert not tanwin.search(of_100)
+
+
 def says_who_made_it(held):
     """Return whether a catalogue says so, and of a machine at its head too."""
     by = held.last_translator

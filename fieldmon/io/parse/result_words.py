@@ -129,9 +129,13 @@ def plain_word(cell: str) -> str:
     return " ".join(cell.casefold().replace("_", " ").split()).rstrip(".!") or cell.strip()
 
 
-def is_gone(cell: str) -> bool:
-    """Return whether a word for a result says that the plant does not stand there any more."""
-    return plain_word(cell) in _PULLED_OUT
+def is_gone(cell: str, own: str | None = None) -> bool:
+    """Return whether a word for a result says that the plant does not stand there any more.
+
+    `own`: words that say so, too, set apart by commas.
+    """
+    word = plain_word(cell)
+    return word in _PULLED_OUT or (own is not None and word in _own(own))
 
 
 def gone_note(note: str) -> str:

@@ -94,8 +94,8 @@ missing|dead|died|not there|not there anymore|not there any more|no longer there
 no vine|cut down|felled|tot|abgestorben|fehlt|gefällt|dood|ontbreekt|mort|morte|manquant|manquante
 disparu|disparue|muerto|muerta|falta|desaparecido|desaparecida|ya no|ya no está|no hay planta
 talado|talada|morto|morta|mancante|martwy|martwa|martwe|ölü|погиб|погибло|мёртвый|мертвый|νεκρό
-מת|מתה|חסר|חסרה|נכרת|נכרתה|איננו|איננה|אין צמח|אין עץ|אין גפן
-ميت|ميتة|مات|ماتت|مفقود|مفقودة|لا توجد نبتة|لا توجد شجرة|死|枯死|缺株
+מת|מתה|חסר|חסרה|נכרת|נכרתה|איננו|איננה|כבר לא שם|אין צמח|אין עץ|אין גפן
+ميت|ميتة|مات|ماتت|مفقود|مفقودة|لم تعد موجودة|لا توجد نبتة|لا توجد شجرة|死|枯死|缺株
 """
 # words around these that say of what they are
 _THE_PLANT = frozenset(

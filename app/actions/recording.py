@@ -23,8 +23,8 @@ from fieldmon.plot.grid import plant_at, row_label
 from fieldmon.plot.named_rows import plant_meant
 
 from ..show import cautions, day, plant_history, recorded_batches
-from ..state import chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..show.recorded_batches import GONE
+from ..state import chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts

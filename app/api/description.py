@@ -60,7 +60,7 @@ FINDING: dict[str, Any] = {
         "stage": _text("stage"),
         "leaves": _within("leaves"),
         "notes": _text("notes")
-        | {"description": "`gone`, or `gone: why`, of one skipped: it does not stand there any more."},
+        | {"description": "`gone`, or `gone: why`, of one skipped: it stands there no more."},
         **_PLACE,
         "on": _DATE
         | {"description": "The day meant; it has no time where that is not the day of `at`."},

@@ -13,8 +13,8 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 from ..actions import choosing, inviting, recording, scouting
 from ..show import field_map, map_layers
 from ..show.maps import marks
-from ..show.recorded_batches import GONE
 from ..show.next_stop import NextStop, next_stop
+from ..show.recorded_batches import GONE
 from ..state import chosen_day
 from ..words import texts
 

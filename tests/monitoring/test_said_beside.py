@@ -121,7 +121,10 @@ def test_a_file_without_times_notes_what_was_tapped(season):
 
 @pytest.mark.parametrize(
     ("note", "together"),
-    [("gone: burnt", "gone: gate locked; burnt (Bob)"), ("Missing.", "gate locked; Missing. (Bob)")],
+    [
+        ("gone: burnt", "gone: gate locked; burnt (Bob)"),
+        ("Missing.", "gate locked; Missing. (Bob)"),
+    ],
 )
 def test_a_plant_is_gone_once_anybody_notes_it(season, note, together):
     season.record(find("gate locked", "Ada", result=SKIPPED))

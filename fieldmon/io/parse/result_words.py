@@ -98,13 +98,11 @@ talado|talada|morto|morta|mancante|martwy|martwa|martwe|ölü|погиб|пог�
 ميت|ميتة|مات|ماتت|مفقود|مفقودة|لم تعد موجودة|لا توجد نبتة|لا توجد شجرة|死|枯死|缺株
 """
 # words around these that say of what they are
-_THE_PLANT = frozenset(
-    """
-    the this that it its it's plant tree vine palm is was has been
-    la el este esta árbol planta vid está fue es die der das pflanze baum ist le plante arbre est
-    הצמח צמח העץ עץ הגפן גפן זה הזה הזאת הוא היא النبتة نبتة النبات الشجرة شجرة هذه هذا
-    """.split()
-)
+_THE_PLANT = """
+the|this|that|it|its|it's|plant|tree|vine|palm|is|was|has|been|la|el|este|esta|árbol|planta|vid
+está|fue|es|die|der|das|pflanze|baum|ist|le|plante|arbre|est
+הצמח|צמח|העץ|עץ|הגפן|גפן|זה|הזה|הזאת|הוא|היא|النبتة|نبتة|النبات|الشجرة|شجرة|هذه|هذا
+"""
 # where what a note says first ends
 _FIRST = re.compile(r"[:,.!\n(]|\s[-\u2013\u2014]\s")
 #: clean where a column also holds a plus; alone it is an empty cell, unless one says otherwise
@@ -120,6 +118,7 @@ CLEAN = {word.casefold(): ABSENT for word in _split(_CLEAN)}
 _PULLED_OUT = frozenset(word.casefold() for word in _split(_GONE))
 #: words that say so of a plant beside "could not inspect", and alone leave open of what they are
 MAYBE_GONE = frozenset(word.casefold() for word in _split(_MAYBE_GONE))
+_OF_THE_PLANT = _split(_THE_PLANT)
 _SAYS_GONE = _PULLED_OUT | MAYBE_GONE
 NOT_INSPECTED = frozenset(word.casefold() for word in _split(_NOT_INSPECTED)) | _PULLED_OUT
 
@@ -167,7 +166,7 @@ def _part_says_gone(part: str) -> bool:
     if "?" in part:
         return begins_gone(part)
     word = plain_word(_FIRST.split(part.strip(), maxsplit=1)[0])
-    rest = " ".join(one for one in word.split() if one not in _THE_PLANT)
+    rest = " ".join(one for one in word.split() if one not in _OF_THE_PLANT)
     return not {word, rest}.isdisjoint(_SAYS_GONE)
 
 

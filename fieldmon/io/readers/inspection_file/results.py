@@ -118,7 +118,8 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
     seen_so = seen_so._replace(doubt=doubt, messages=[*seen_so.messages, *others.messages])
     if columns.result is None:
         return seen_so
-    gone = np.array([is_gone(text(v), options.gone) for v in layer.column(columns.result)], np.bool_)
+    column = layer.column(columns.result)
+    gone = np.array([is_gone(text(v), options.gone) for v in column], np.bool_)
     return seen_so._replace(gone=gone & (seen_so.result == UNKNOWN))
 
 

@@ -23,7 +23,7 @@ from fieldmon.errors import FieldmonError  # noqa: E402 - after the path is righ
 
 from .show import field_map  # noqa: E402
 from .startup import first_screen, preload  # noqa: E402
-from .state import browser, chosen_language, plot_source, presses, rooms, widget_memory  # noqa: E402
+from .state import browser, button_presses, chosen_language, plot_source, rooms, widget_memory  # noqa: E402
 from .words import language, texts  # noqa: E402
 from .words.language import of_error  # noqa: E402
 
@@ -168,5 +168,5 @@ with ExitStack() as FILES:
     turned.run()
     with map_place:
         field_map.draw()
-    presses.forget()
+    button_presses.forget()
 preload.start().shown.set()

@@ -205,7 +205,7 @@ def test_a_circle_is_noticed_where_a_type_alone_closes_it():
         ("app.state.choices", "from ..show import field_map"),
         ("app.words.texts", "from . import units\nfrom ..state.cached import plots"),
         ("app.views.today", "from ..startup import preload"),
-        ("app.show.maps.deck", "from ...actions.drawing import rows"),
+        ("app.show.maps.deck", "from ...actions.editing_plot import rows"),
     ],
 )
 def test_the_rule_notices_a_breach(here, line):

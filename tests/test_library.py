@@ -49,22 +49,34 @@ def _here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
+def examples_of(name):
+    """Return the examples of a public name, without the names of its module."""
+    return doctest.DocTestFinder().find(FUNCTIONS.get(name) or getattr(fm, name), name, globs={})
+
+
+@pytest.fixture(scope="module")
+def of_public_names():
+    """Return the docstrings whose examples the test of public names runs."""
+    return {test.docstring for name in (*CLASSES, *FUNCTIONS) for test in examples_of(name)}
+
+
 @pytest.mark.usefixtures("_here")
 @pytest.mark.parametrize("module", MODULES)
-def test_examples_run_as_they_stand(module):
+def test_examples_run_as_they_stand(module, of_public_names):
+    """Those of public names need less, and are run by the test below."""
+    tests = doctest.DocTestFinder().find(importlib.import_module(module))
+    others = [test for test in tests if test.docstring not in of_public_names]
     with warnings.catch_warnings():
         # the sample's records lie about several plots, which is said
         warnings.simplefilter("ignore", ImportDoubt)
-        failed, _ = doctest.testmod(importlib.import_module(module))
-    assert failed == 0
+        assert [one.name for one in others if doctest.DocTestRunner().run(one).failed] == []
 
 
 @pytest.mark.usefixtures("_here")
 @pytest.mark.parametrize("name", [*CLASSES, *FUNCTIONS])
 def test_examples_of_public_names_need_nothing_but_the_sample_estate(name):
     """No name of the module in which they stand, and no file that they do not make."""
-    public = FUNCTIONS.get(name) or getattr(fm, name)
-    for test in doctest.DocTestFinder().find(public, name, globs={}):
+    for test in examples_of(name):
         assert not [one.source for one in test.examples if doctest.SKIP in one.options]
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ImportDoubt)

@@ -9,8 +9,8 @@ import streamlit as st
 from streamlit.runtime.scriptrunner import get_script_run_ctx
 from streamlit.runtime.state import SafeSessionState
 
-from ..state import notices, plot_source, presses, work_day
-from ..state.presses import Press
+from ..state import button_presses, notices, plot_source, work_day
+from ..state.button_presses import Press
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def at_press(
     drawn = Press(_chosen(), 0 if boxes is None else boxes.times)
     button(label, key=key, on_click=_press,
            args=(key, label, (boxes, drawn), (action, arguments), at_once), **settings)  # fmt: skip
-    press = presses.waiting().get(key)
+    press = button_presses.waiting().get(key)
     if press is None:
         return
     with _unbroken(), _until_done(key):
@@ -67,10 +67,11 @@ def _press(
     action, arguments = todo
     with _unbroken():
         if _chosen() != drawn.chosen:
-            if not presses.is_done(key, drawn):  # else pressed twice: it chose another itself
+            # where it was pressed twice it chose another itself
+            if not button_presses.is_done(key, drawn):
                 _say_chosen_before(label)
             return
-        presses.waiting()[key] = drawn
+        button_presses.waiting()[key] = drawn
         if at_once and (boxes is None or boxes.times == drawn.times):
             with _until_done(key):
                 action(*arguments)
@@ -92,9 +93,9 @@ def _until_done(key: str) -> Iterator[None]:
     try:
         yield
     except Exception:  # a run broken off is none
-        presses.end(key, done=False)
+        button_presses.end(key, done=False)
         raise
-    presses.end(key, done=True)
+    button_presses.end(key, done=True)
 
 
 @contextmanager

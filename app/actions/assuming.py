@@ -14,7 +14,7 @@ from ..show.assumed import of_who_inspects, sentence
 from ..state import assumptions, notices, widget_memory
 from ..words import texts
 from ..words.language import in_words
-from . import drawing
+from . import editing_plot
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -45,7 +45,7 @@ def finds_are(show: Callable[..., object], key: str, **begins: object) -> None:
 
 def _boxes(choices: Choices) -> None:
     if choices.plot.field.plants is None and not assumptions.asked(choices):
-        drawing.spacings(choices.plot_key)
+        editing_plot.spacings(choices.plot_key)
     usual = f"{100 * PriorSettings().background_chance:g}"
     widget_memory.show(
         st.number_input, texts.BACKGROUND, 0.0, 100.0, step=0.5, key=assumptions.BACKGROUND,

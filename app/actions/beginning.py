@@ -26,7 +26,7 @@ from ..state import (
     work_day,
 )
 from ..words import language, texts
-from . import acting, assuming, drawing
+from . import acting, assuming, editing_plot
 
 if TYPE_CHECKING:
     from fieldmon.infestation.earlier_season import EarlierSeason
@@ -63,11 +63,11 @@ def ask(choices: Choices, place: str) -> None:
                             type="primary")  # fmt: skip
             st.button(texts.BEGIN_NOT_YET, key="begin_not_yet", on_click=assumptions.ask,
                       args=(choices, ""))  # fmt: skip
-        drawing.spacings(key, {name: getattr(grid, name) for name in assumptions.SPACINGS})
+        editing_plot.spacings(key, {name: getattr(grid, name) for name in assumptions.SPACINGS})
         if grid.aisles_m is None:
-            drawing.direction(key, grid.frame.bearing_deg % 180.0)
+            editing_plot.direction(key, grid.frame.bearing_deg % 180.0)
         if choices.plot.field.gate is None:
-            st.button(texts.BEGIN_GATE, key="begin_gate", on_click=drawing.set_gate)
+            st.button(texts.BEGIN_GATE, key="begin_gate", on_click=editing_plot.set_gate)
 
 
 def begin_or_ask(choices: Choices, place: str) -> None:

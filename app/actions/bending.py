@@ -109,7 +109,7 @@ def _tried(choices: Choices) -> Plot | None:
 
 def _handles(grid: PlantGrid, line: int) -> Points:
     """Return the corners of a row on the ground, or some evenly along it where it is straight."""
-    pieces = np.flatnonzero(grid.row_line == line)
+    pieces = np.flatnonzero(grid.row_line[grid.unbroken] == line)
     corners_m = np.concatenate([row_corners(grid)[k] for k in pieces])
     whole = shapely.simplify(shapely.linestrings(corners_m), 0.5)
     places = shapely.get_coordinates(whole)

@@ -23,11 +23,11 @@ from ..state import (
     chosen_language,
     chosen_pest,
     chosen_units,
-    held,
     kept_files,
     plot_files,
     plot_source,
     sample_estate,
+    season_held,
     seasons_folder,
     unit_boxes,
     widget_memory,
@@ -39,8 +39,8 @@ from ..state.work_day import Calendar
 from ..words import language, texts
 from ..words.strategies import sampler_does
 from ..words.units import AREAS_M2, DATES, LENGTHS, hours
-from . import changing, robot_boxes
-from .changing import Work
+from . import changing_strategy, robot_boxes
+from .changing_strategy import Work
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -141,7 +141,7 @@ def _of_files() -> dict[str, str]:
 def _from_season(name: str, work: Work) -> Choices:
     kept_files.sync()
     with work.foot:  # the boxes above are folded on a phone
-        held.wait(seasons_folder.path_of(name))
+        season_held.wait(seasons_folder.path_of(name))
     season = cached.season(seasons_folder.path_of(name))
     settings, key, units = season.settings, season.key, chosen_units.units()
     clock = local_clock(season.plot.field)
@@ -154,7 +154,7 @@ def _from_season(name: str, work: Work) -> Choices:
         key, season.plot, season.observations, said, by.robot, by.sampler, str(day),
         units, season, key, today=calendar.today, prior=settings.prior,
     )  # fmt: skip
-    changing.show(name, choices, work, by)
+    changing_strategy.show(name, choices, work, by)
     return choices
 
 
@@ -274,25 +274,25 @@ def _labels(fields: tuple[Field, ...], units: UnitsInLanguage) -> list[str]:
 def _work(work: Work) -> tuple[Robot, str]:
     with work.foot, st.expander(texts.WHO, expanded=work.day is not None):
         who = widget_memory.show(
-            st.segmented_control, texts.WHO, list(changing.WHO), key="who",
-            default=changing.ROBOT, required=True, label_visibility="collapsed",
-            format_func=changing.who_name, on_change=_keep_hours,
+            st.segmented_control, texts.WHO, list(changing_strategy.WHO), key="who",
+            default=changing_strategy.ROBOT, required=True, label_visibility="collapsed",
+            format_func=changing_strategy.who_name, on_change=_keep_hours,
         )  # fmt: skip
-        base = robots.scout() if who == changing.SCOUT else robots.Robot()
+        base = robots.scout() if who == changing_strategy.SCOUT else robots.Robot()
         with work.hours():
             day_h = widget_memory.show(
                 st.slider, texts.HOURS, 0.5, 16.0, step=0.5, key=f"hours {who}",
-                default=base.hours, format=changing.in_hours(),
+                default=base.hours, format=changing_strategy.in_hours(),
             )  # fmt: skip
         inspection_s = widget_memory.show(
             st.slider, texts.INSPECTION_S, 20, 60, step=5, key=f"inspection_s {who}",
             default=int(base.look_s),
         )  # fmt: skip
-        if who != changing.SCOUT:
+        if who != changing_strategy.SCOUT:
             base = robot_boxes.of_files(base)
         sampler = widget_memory.show(
             st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
-            default=USUAL, **changing.named(),
+            default=USUAL, **changing_strategy.named(),
         )  # fmt: skip
         st.caption(sampler_does(sampler))
     return replace(base, hours=float(day_h), look_s=float(inspection_s)), sampler
@@ -301,7 +301,7 @@ def _work(work: Work) -> tuple[Robot, str]:
 def _keep_hours() -> None:
     """Let a working day be as long as it was, whoever is to inspect now (for callbacks)."""
     who = widget_memory.value("who")
-    before = changing.ROBOT if who == changing.SCOUT else changing.SCOUT
+    before = changing_strategy.ROBOT if who == changing_strategy.SCOUT else changing_strategy.SCOUT
     if (hours_h := widget_memory.value(f"hours {before}")) is not None:
         widget_memory.put(f"hours {who}", hours_h)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.drive.simulated import CHARGED, MUJOCO, MadeUp
+from fieldmon.drive.simulated_robots import CHARGED, MUJOCO, MadeUp
 
 from ..state import cached_simulations, widget_memory
 from ..words import texts

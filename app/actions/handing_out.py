@@ -14,7 +14,7 @@ from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import day_ahead, scouts
 
 from ..show import qr_code
-from ..state import chosen_day, morning, notices, phone, wishes
+from ..state import chosen_day, morning, notices, phone_address, wishes
 from ..words import language, texts
 from . import inviting
 
@@ -55,12 +55,12 @@ def _taken(choices: Choices) -> str:
 def is_out(choices: Choices) -> bool:
     """Return whether a phone has the day without more: by a person's code, or by the address."""
     if choices.season is None:
-        return phone.address().reachable
+        return phone_address.address().reachable
     return bool(scouts.scouts_of(choices.season))
 
 
 def _show_address() -> None:
-    where = phone.address()
+    where = phone_address.address()
     if where.reachable:
         st.markdown(texts.SEND_SCAN)
         st.html(qr_code.image(where.url, texts.SEND_ALT))

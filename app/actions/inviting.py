@@ -12,7 +12,7 @@ from fieldmon.planning.members import person_key
 from fieldmon.plot.named_rows import rows_meant
 
 from ..show import qr_code, who_is_out
-from ..state import morning, notices, phone, scout_page
+from ..state import morning, notices, phone_address, scout_page
 from ..words import language, texts
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def let_in(choices: Choices, name: str, rows: tuple[int, int] | None = None) -> 
     key = scouts.let_in(choices.open_season, name, rows)
     day = "" if choices.is_today else choices.day
     season = choices.open_season.path.stem
-    return scout_page.invitation(phone.base().url, season, key, day, language.current())
+    return scout_page.invitation(phone_address.base().url, season, key, day, language.current())
 
 
 def show_below(choices: Choices) -> None:
@@ -53,7 +53,7 @@ def _show_codes(choices: Choices) -> None:
     notices.show()  # in a window of its own nothing else would
     _show_code()  # above what made it: below it nobody would see it without scrolling
     st.markdown(texts.INVITE_NOTE)
-    if not phone.base().works_offline:
+    if not phone_address.base().works_offline:
         st.info(texts.INVITE_LOCAL)
     with st.form("invite", border=False):
         if choices.team:

@@ -23,7 +23,7 @@ from ..state import (
 from ..state.morning import BEGIN, LOOK_BACK, NEXT_DAY, PLAN, RECORD, REPORT, SEND
 from ..words import texts
 from ..words.language import listed
-from . import acting, beginning, changing, handing_out, news
+from . import acting, beginning, changing_strategy, handing_out, news
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -127,7 +127,7 @@ def _button(step: Step, label: str, action: Callable[..., None], *arguments: obj
 
 def _is_unused(choices: Choices) -> bool:
     """Return whether the plan goes by other settings than the boxes say: nobody means that one."""
-    return choices.season is not None and changing.is_unused()
+    return choices.season is not None and changing_strategy.is_unused()
 
 
 def _of_plan(choices: Choices, step: Step) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import pandas as pd
 import streamlit as st
 
 from fieldmon.compute.working_folder import working_folder
-from fieldmon.errors import ContradictionError, SettingError
+from fieldmon.errors import ContradictionError, FieldmonError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
@@ -29,7 +29,7 @@ from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
 from ..words.language import in_words
-from . import acting, treating
+from . import acting, correcting, treating
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -110,19 +110,35 @@ def _show_one(choices: Choices) -> None:
     )  # fmt: skip
     show(st.number_input, texts.COUNT, 0, None, box="one_count")
     acting.at_press(texts.RECORD_BUTTON, _record_one, choices, key="record_one", boxes=boxes)
+    correcting.show(choices, _plant_typed(choices))
+
+
+def _plant_typed(choices: Choices) -> int | None:
+    """Return the plant of which row and number are typed in; None: there is none yet."""
+    said = FreshBoxes(_ONE, choices).said
+    row, number = said("one_row"), said("one_plant")
+    if {None, ""} & {row, number}:
+        return None
+    try:
+        return _plant_meant(choices, row, number)
+    except FieldmonError:  # it is said once a result is to be recorded
+        return None
+
+
+def _plant_meant(choices: Choices, row: str | int, number: int) -> int:
+    grid = choices.plot.grid
+    if tuple(FreshBoxes(_ONE, choices).said(_TAPPED) or ()) == (row, number):
+        return plant_at(grid, int(row), number)
+    return plant_meant(grid, f"{row}", int(number))
 
 
 @notices.reporting
 def _record_one(choices: Choices) -> str:
-    said, grid = FreshBoxes(_ONE, choices).said, choices.plot.grid
+    said = FreshBoxes(_ONE, choices).said
     row, number, result, count = map(said, ("one_row", "one_plant", "one_result", "one_count"))
     if {None, ""} & {row, number, result}:
         raise SettingError(texts.ONE_UNSAID)
-    plant = (
-        plant_at(grid, int(row), number)
-        if tuple(said(_TAPPED) or ()) == (row, number)
-        else plant_meant(grid, f"{row}", int(number))
-    )
+    plant = _plant_meant(choices, row, number)
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
     result, note = as_kept(result)
     results = Inspections.of(

@@ -13,6 +13,7 @@ from fieldmon.decisions.label_file import read_labels
 from fieldmon.decisions.labels import WAITS_DAYS, irac_groups
 from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
+from fieldmon.io.read import read_treated
 from fieldmon.monitoring import Application
 from fieldmon.plot.named_rows import plants_in_rows
 
@@ -29,11 +30,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
+    from fieldmon.io.import_report import Imported
+
     from ..state.choices import Choices
     from ..words.units import UnitsInLanguage
 
 # boxes of the form for where it was
-_ROWS, _SELECTED = "treat rows", "treat selected"
+_ROWS, _SELECTED, _FILE = "treat rows", "treat selected", "treat file"
 #: boxes of the form for what was said of an application, by what they are about
 _TEXTS = (
     *("active_ingredient", "operator", "reason", "machinery", "weather", "crop", "pest"),
@@ -64,6 +67,7 @@ def show(choices: Choices, zones: Callable[[], Zoned] | None = None) -> None:
     boxes = FreshBoxes("treatment" if zones is None else "treatment of zones", choices)
     if zones is None:
         _where(boxes)
+    st.file_uploader(texts.TREAT_FILE, key=boxes.key(_FILE), help=texts.TREAT_FILE_HELP)
     boxes.show(st.number_input, texts.TREAT_EFFICACY, 0, 100, step=5, box="efficacy")
     boxes.show(st.text_input, texts.TREAT_PRODUCT, box="product", default="")
     with st.expander(texts.TREAT_RECORD):
@@ -88,11 +92,18 @@ def _where(boxes: FreshBoxes) -> None:
 def _plants(boxes: FreshBoxes) -> NDArray[np.bool_] | None:
     """Return the plants ``(n,)`` of the part that was treated; None: it was the whole plot."""
     grid, rows = boxes.choices.plot.grid, (boxes.said(_ROWS) or "").strip()
+    ways = boxes.said(_FILE) is not None, bool(boxes.said(_SELECTED)), bool(rows)
+    if sum(ways) > 1:
+        raise SettingError(texts.TREAT_TWICE)
     if boxes.said(_SELECTED):
-        if rows:
-            raise SettingError(texts.TREAT_TWICE)
         return np.isin(np.arange(len(grid)), wishes.picked(boxes.choices.place))
     return plants_in_rows(grid, rows) if rows else None
+
+
+def _of_file(boxes: FreshBoxes) -> Imported[MultiPolygon] | None:
+    """Return the area that a file says was treated; None: there is no file."""
+    brought = boxes.said(_FILE)
+    return None if brought is None else read_treated(Upload(brought.name, brought.getvalue()))
 
 
 def _boxes(boxes: FreshBoxes) -> None:
@@ -154,11 +165,11 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
     if efficacy is None and not said.product:
         raise SettingError(texts.TREAT_UNSAID)
     works = None if efficacy is None else efficacy / 100
-    zoned = None if zones is None else zones()
+    plants, read = (_plants(boxes) if zones is None else None), _of_file(boxes)
+    zoned = None if zones is None or read is not None else zones()
     if zoned is not None:
         season.advise(choices.on, zoned.advised, choices.who or "")
-    area = None if zoned is None else zoned.area
-    plants = _plants(boxes) if zoned is None else None
+    area = read.value if read is not None else None if zoned is None else zoned.area
     done = season.treat(choices.on, works, area, application=said, plants=plants)
     boxes.empty()
     if plants is not None:
@@ -171,11 +182,12 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
             done.batch, choices.on, choices.units.in_sentences(choices.on)
         )
     ]
+    beware += [in_words(one.sentence) for one in (read.messages if read is not None else ())]
     beware += [ahead] if (ahead := cautions.not_come(choices, choices.on)) else []
     if beware:
         notices.warn()
     noted = texts.TREATED
-    if plants is not None or zoned is not None:
+    if plants is not None or area is not None:
         (kept,) = (one for one in season.treatments() if one.batch == done.batch)
         n = int(np.count_nonzero(kept.place.plants))
         noted = texts.TREATED_PART.format(plants=texts.PLANTS_COUNTED.format(n=n))

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.drive.vda5050.mqtt import Broker, RobotName
 from fieldmon.drive.vda5050.versions import USUAL, VERSIONS
 from fieldmon.drive.vda5050.watcher import FAILED, LOST, PAUSED, WAITING
-from fieldmon.drive.vda5050.wire import Broker, RobotName
 from fieldmon.errors import FieldmonError
 
 from ..state import cached_simulations, widget_memory

@@ -34,7 +34,7 @@ from fieldmon.monitoring.plant_states import hot_spots_on, shown_states
 from fieldmon.planning.skips import left_out
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
-from ..state import heard
+from ..state import last_heard
 
 if TYPE_CHECKING:
     from datetime import date
@@ -53,7 +53,7 @@ _FEW = 8
 def plot_document(season: Season) -> tuple[str, bytes]:
     """Return a short name of what the plot is, and its document; it never changes."""
     grid, field = season.plot.grid, season.plot.field
-    lonlat = np.round(grid.lonlat(), _DIGITS)
+    lonlat, rows = np.round(grid.lonlat(), _DIGITS), grid.unbroken
     document = {
         "name": field.name,
         "boundary": _geometry(field.boundary),
@@ -63,11 +63,11 @@ def plot_document(season: Season) -> tuple[str, bytes]:
         "row_spacing_m": grid.row_spacing_m,
         "plant_spacing_m": grid.plant_spacing_m,
         "rows": {
-            "start": grid.row_start.tolist(),
-            "row": grid.row_number.tolist(),
-            "sign": [grid.row_signs[row] for row in grid.row_number.tolist()],
-            "aisle": grid.corridor.tolist(),
-            "side": (-grid.side).tolist(),
+            "start": grid.unbroken_start.tolist(),
+            "row": grid.row_number[rows].tolist(),
+            "sign": [grid.row_signs[row] for row in grid.row_number[rows].tolist()],
+            "aisle": grid.corridor[rows].tolist(),
+            "side": (-grid.side[rows]).tolist(),
         },
         "plants": {
             "lon": lonlat[:, 0].tolist(),
@@ -93,7 +93,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
     route, history = route_ahead(season, on, part), season.history
     ahead = DayAhead.of(season, on)
     settings, plan, member = ahead.settings, ahead.plan_of(part), ahead.member(part)
-    heard.note(season.path, scout.name, on, plan if has is None else has)
+    last_heard.note(season.path, scout.name, on, plan if has is None else has)
     robot = season.plot.aisles.worked_by(settings.robot if member is None else member.robot)
     hours = work_hours(season, on, part)
     known = shown_states(history, settings.day(on))
@@ -146,7 +146,7 @@ def rest_document(
         route = planned_again(season, on, part, seconds_left)
         plan = DayAhead.of(season, on).plan_of(part)
         told = _route(route, season.reads(on, scout.name))
-    heard.note(season.path, scout.name, on, plan)
+    last_heard.note(season.path, scout.name, on, plan)
     return _json({"day": on.isoformat(), "route": told, "plan": plan})
 
 

@@ -34,7 +34,7 @@ from fieldmon.monitoring import findings, photos, photos_asked, scouts
 from fieldmon.monitoring.file_problems import FileHeld
 from fieldmon.monitoring.transactions import waiting_at_most
 
-from ..state import heard, opened_seasons, seasons_folder
+from ..state import last_heard, opened_seasons, seasons_folder
 from . import description, documents, reading
 
 if TYPE_CHECKING:
@@ -167,8 +167,8 @@ def _opened(name: str, key: str) -> tuple[Season, Scout]:
             "The season's file must be within reach, but it is not just now; nothing is lost. Try "
             "again later."
         ) from error
-    heard.note(path, scout.name)
-    heard.note_key(path, key)
+    last_heard.note(path, scout.name)
+    last_heard.note_key(path, key)
     return season, scout
 
 
@@ -185,7 +185,7 @@ def _may_hold(path: Path, key: str) -> bool:
 
     One that held holds while the file is out of reach; any may while the folder of all is.
     """
-    return scouts.holds(path, key) or heard.knew_key(path, key) or not path.parent.is_dir()
+    return scouts.holds(path, key) or last_heard.knew_key(path, key) or not path.parent.is_dir()
 
 
 def _is_foreign(request: Request) -> bool:

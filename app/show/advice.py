@@ -12,7 +12,7 @@ import shapely
 import streamlit as st
 from pydeck import Layer
 
-from fieldmon.compute.wording import share_figure
+from fieldmon.compute.wording import chance_figure, share_figure
 from fieldmon.io.spray_rate import litres_figure
 from fieldmon.plot.grid import row_ends, row_label
 
@@ -79,7 +79,7 @@ def figures(choices: Choices, advice: Advice, product: str) -> None:
             width="content",
             help=texts.DECIDE_SAVING_HELP.format(lost=in_words(advice.lost)),
         )
-        st.metric(enough, number(advice.said.enough, ".0%"), width="content",
+        st.metric(enough, in_words(chance_figure(advice.said.enough, drawn=True)), width="content",
                   help=texts.DECIDE_ENOUGH_HELP)  # fmt: skip
 
 
@@ -109,7 +109,7 @@ def table(advice: Advice) -> pd.DataFrame:
             texts.DECIDE_PLANTS: [_span(label.number[plants]) for plants in mine],
             texts.DECIDE_INFESTED: [number(one.share, ".0%") for one in said],
             texts.DECIDE_ITSELF: [texts.DECIDE_VERDICTS[one.verdict] for one in said],
-            texts.DECIDE_WRONG: [number(one.wrong, ".0%") for one in said],
+            texts.DECIDE_WRONG: [in_words(chance_figure(one.wrong, drawn=True)) for one in said],
         }
     )
 

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import streamlit as st
 
+from fieldmon.compute.wording import chance_figure
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.day_figures import flagged_said
 from fieldmon.planning.bound_wording import PROVED, share_above
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.monitoring import DayFigures, Progress
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
@@ -150,6 +152,32 @@ def _is_of_nobody(choices: Choices) -> bool:
         return False
     kept = chosen_day.planned_and_done(choices)
     return kept is not None and kept.people > 1
+
+
+def figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
+    """Show a season's figures as they stand on a day."""
+    plants = len(choices.plot.grid)
+    shares = now.share_found_pct(progress.found)
+    detected, least, most = (number(one, ".0f") for one in shares)
+    star = " *" if assumptions.of(choices) else ""
+    with st.container(horizontal=True):
+        still = chosen_day.still_infested(choices, choices.day)
+        low, high = (number(one, ",") for one in (still.low, still.high))
+        expected = f"{about(still.expected)} ({low}–{high})"
+        st.metric(f"{texts.EXPECTED_LEFT}{star}", expected,
+                  help=texts.EXPECTED_HELP, width="content")  # fmt: skip
+        st.metric(texts.FOUND_EVER, number(progress.found, ","), width="content")
+        share = texts.IN_PERCENT.format(value=f"{detected} ({least}–{most})")
+        if not progress.inspected:
+            share = texts.NOT_KNOWN_YET
+        st.metric(f"{texts.DETECTED}{star}", share, help=texts.DETECTED_HELP, width="content")
+        seen = f"{number(progress.inspected, ',')} / {number(plants, ',')}"
+        st.metric(texts.INSPECTED_EVER, seen, width="content")
+        st.metric(
+            f"{texts.CLEAN_CHANCE}{star}",
+            in_words(chance_figure(now.chance_clean, 1)),
+            width="content",
+        )
 
 
 def beside_figures(choices: Choices) -> None:

@@ -35,6 +35,8 @@ def show(choices: Choices) -> None:
     notes = [] if taught is None else [in_words(taught)]
     if not chosen_day.progress(choices).inspected:
         notes.append(texts.LEARNT_AT_FIRST)
+        if len(records := chosen_day.records_known(choices)):
+            notes.append(in_words(records.sentence()))
     notes += [texts.LEARNT_COUNTS_FOR, texts.LEARNT_INTERVALS]
     st.caption(" ".join(notes))
     worth = (one.sentence() for one in worth_saying(estimates))

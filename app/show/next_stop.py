@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import chance_figure
 from fieldmon.plot.grid import row_label
 
 from ..words import texts
+from ..words.language import in_words
 
 if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
@@ -54,7 +56,8 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
         ),
         texts.ARROWS[sector],
         texts.NEXT_CHANCE.format(
-            chance=float(route.chance[0]), done=done, left=len(route), hours=str(left)[:-3],
+            chance=in_words(chance_figure(float(route.chance[0]), 1)), done=done,
+            left=len(route), hours=str(left)[:-3],
         ),
     )  # fmt: skip
 

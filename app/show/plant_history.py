@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.compute.wording import chance_figure
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import photos
@@ -20,7 +21,7 @@ from fieldmon.plot.named_rows import plant_meant
 
 from ..state import chosen_day, widget_memory
 from ..words import texts
-from ..words.language import number
+from ..words.language import in_words, number
 from . import field_map
 from .map_view import MapAnswers
 from .maps import plant_layers
@@ -104,10 +105,10 @@ def show(choices: Choices) -> None:
     now = first = chosen_day.chance(choices)
     if choices.season is not None:
         first = chosen_day.morning(choices, str(choices.season.settings.begins))
-    st.markdown(texts.HISTORY_NOW.format(now=now[plant], first=first[plant]))
+    st.markdown(texts.HISTORY_NOW.format(now=_chance(now[plant]), first=_chance(first[plant])))
     low, high = chosen_day.level_range(choices).of(now[[plant]])
-    if f"{low[0]:.1%}" != f"{high[0]:.1%}":
-        st.markdown(texts.HISTORY_BETWEEN.format(low=low[0], high=high[0]))
+    if (least := _chance(low[0])) != (most := _chance(high[0])):
+        st.markdown(texts.HISTORY_BETWEEN.format(low=least, high=most))
         st.caption(texts.HISTORY_CHANCE)
     st.markdown(_on_route(choices, plant))
     if _taken_as_treated(choices, plant):
@@ -215,7 +216,7 @@ def _inspected(choices: Choices, done: Inspections, gone: NDArray[np.bool_]) -> 
         if not np.isnan(done.count[k]):
             result = texts.RESULT_COUNTED.format(result=result, n=number(done.count[k], ",g"))
         beside = [texts.written(said) for said in (done.notes[k], done.who[k]) if said]
-        lines.append(" · ".join([_line(choices, day, second, result), *beside]))
+        lines.append(" · ".join([line_of(choices, day, second, result), *beside]))
     return lines
 
 
@@ -224,12 +225,16 @@ def _treated(choices: Choices, one: KeptTreatment) -> str:
     said = texts.HISTORY_SPRAYED
     if product := one.application.product:
         said = texts.HISTORY_SPRAYED_WITH.format(product=texts.isolated(product))
-    return _line(choices, one.on, one.application.over_s, said)
+    return line_of(choices, one.on, one.application.over_s, said)
 
 
-def _line(choices: Choices, on: date, second: float, what: str) -> str:
+def line_of(choices: Choices, on: date, second: float, what: str) -> str:
     """Return what was done on a day, with its time where that is known and of this day."""
     known = second < DAY_S
     at = f" {int(second) // 3600:02d}:{int(second) // 60 % 60:02d}" if known else ""
     day = choices.units.said_day(on, choices.on)
     return texts.HISTORY_LINE.format(day=day, time=at, result=what)
+
+
+def _chance(chance: float) -> str:
+    return in_words(chance_figure(chance, 1))

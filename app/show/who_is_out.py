@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.monitoring.scouts_out import scouts_out
 
-from ..state import heard
+from ..state import last_heard
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.scouts_out import ScoutOut
 
     from ..state.choices import Choices
-    from ..state.heard import LastHeard
+    from ..state.last_heard import LastHeard
 
 
 # up to there one counts in minutes
@@ -41,7 +41,7 @@ def lines(choices: Choices) -> tuple[OutLine, ...]:
     """Return a line for each who has a code or is of the team."""
     season = choices.open_season
     return tuple(
-        _line(choices, one, heard.last(season.path, one.name))
+        _line(choices, one, last_heard.last(season.path, one.name))
         for one in scouts_out(season, choices.on)
     )
 

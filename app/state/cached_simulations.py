@@ -19,8 +19,8 @@ from .driving import DayInTime, DriveRun
 from .live_drive import LiveDrive
 
 if TYPE_CHECKING:
-    from fieldmon.drive.simulated import MadeUp
-    from fieldmon.drive.vda5050.wire import Broker, RobotName
+    from fieldmon.drive.simulated_robots import MadeUp
+    from fieldmon.drive.vda5050.mqtt import Broker, RobotName
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler, Scene

@@ -292,6 +292,11 @@ def _known_on(choices: Choices) -> str:
     return choices.day if choices.season is None else str(choices.season.settings.begins)
 
 
+def records_known(choices: Choices) -> Observations:
+    """Return the records that count: in a season those from which it began."""
+    return _recorded(choices)[2]
+
+
 def _recorded(choices: Choices) -> tuple[str, Plot, Observations]:
     """Return the records that are known, their plot, and a key for both."""
     on = _known_on(choices)

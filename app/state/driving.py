@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.recording import Recording
-from fieldmon.drive.simulated import simulated_robot
+from fieldmon.drive.simulated_robots import simulated_robot
 from fieldmon.drive.trace import (
     Trace,
     believed_on_the_way,
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from fieldmon.drive.day import DrivenStop
     from fieldmon.drive.errand import Errand
-    from fieldmon.drive.simulated import MadeUp
+    from fieldmon.drive.simulated_robots import MadeUp
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler, Scene

@@ -11,7 +11,15 @@ from fieldmon.monitoring.estate_day import days_since
 from fieldmon.plot.local_clock import local_clock
 
 from ..words.language import of_error
-from . import cached, cached_files, held, plot_files, plot_source, sample_estate, seasons_folder
+from . import (
+    cached,
+    cached_files,
+    plot_files,
+    plot_source,
+    sample_estate,
+    season_held,
+    seasons_folder,
+)
 from .brought_files import settled
 
 if TYPE_CHECKING:
@@ -69,12 +77,14 @@ def plots() -> tuple[list[PlotState], list[NotAmong]]:
     for name in seasons_folder.names():
         try:
             path = seasons_folder.path_of(name)
-            held.wait(path, patience_s=_GLANCE_S)
+            season_held.wait(path, patience_s=_GLANCE_S)
             found.append(_of_season(name, cached.season(path)))
         except FieldmonError as error:
             said = of_error(error)
             said = said if name in said else f"{name}: {said}"
-            problems.append(NotAmong(said, name if isinstance(error, held.SeasonHeld) else ""))
+            problems.append(
+                NotAmong(said, name if isinstance(error, season_held.SeasonHeld) else "")
+            )
     files = plot_files.of_session()
     if files is not None and files.plot is not None:
         try:
@@ -99,8 +109,8 @@ def is_one_free(names: list[str]) -> bool:
     """Tell whether another program holds one of these seasons no more; nobody waits for that."""
     for name in names:
         try:
-            held.wait(seasons_folder.path_of(name), patience_s=0.0)
-        except held.SeasonHeld:
+            season_held.wait(seasons_folder.path_of(name), patience_s=0.0)
+        except season_held.SeasonHeld:
             continue
         except FieldmonError:
             pass  # what is wrong with it is said when it is opened

@@ -8,7 +8,7 @@ the ones to come.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import time
+from datetime import date, time
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import streamlit as st
@@ -23,6 +23,13 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 _BOXES, _TIMES = "fresh boxes", "emptied "
 _WHERE, _HELD, _LATE = "form and name of boxes", "boxes held", "boxes filled late"
+# boxes of days and times, which are kept as texts
+_READ = {
+    "treat began ": time.fromisoformat,
+    "treat ended ": time.fromisoformat,
+    "when_time ": time.fromisoformat,
+    "when_day ": date.fromisoformat,
+}
 _MOVED = "boxes filled from another day's"
 
 
@@ -155,7 +162,7 @@ def unfinished() -> dict[str, Any]:
     """Return what was said in all boxes and not kept yet, as JSON can hold it; empty: nothing."""
     said = {key: [of, widget_memory.value(key)] for key, of in _shown().items()}
     boxes = {
-        key: [of, str(one) if isinstance(one, time) else one]
+        key: [of, str(one) if isinstance(one, date | time) else one]
         for key, (of, one) in said.items()
         if one not in (None, "", [])
     }
@@ -170,8 +177,8 @@ def take(said: dict[str, Any]) -> None:
     st.session_state.update(said.get("times", {}))
     for key, (of, value) in said.get("boxes", {}).items():
         _shown()[key] = of
-        is_time = isinstance(value, str) and key.startswith(("treat began ", "treat ended "))
-        widget_memory.first(key, time.fromisoformat(value) if is_time else value)
+        read = next((read for box, read in _READ.items() if key.startswith(box)), None)
+        widget_memory.first(key, read(value) if read and isinstance(value, str) else value)
 
 
 def _shown() -> dict[str, str]:

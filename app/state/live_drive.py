@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.drive.trace import Trace
+from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard, RobotWatcher
-from fieldmon.drive.vda5050.wire import Wire
 from fieldmon.monitoring.history import BeliefSettings
 
 from .background import BackgroundWork
@@ -19,7 +19,7 @@ from .driving import DayInTime
 
 if TYPE_CHECKING:
     from fieldmon.drive.errand import Float
-    from fieldmon.drive.vda5050.wire import Broker, RobotName
+    from fieldmon.drive.vda5050.mqtt import Broker, RobotName
     from fieldmon.samplers.base import Scene
 
 _EVERY_S = 0.25

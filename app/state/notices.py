@@ -10,7 +10,7 @@ from fieldmon.errors import FieldmonError
 
 from ..words import texts
 from ..words.language import of_error
-from . import held
+from . import season_held
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,7 +51,7 @@ def reporting(action: Callable[..., str]) -> Callable[..., None]:
         season = getattr(arguments[0], "season", None) if arguments else None
         try:
             if season is not None:  # what is done may be kept in it
-                held.wait(season.path, to_write=True)
+                season_held.wait(season.path, to_write=True)
             sentence = action(*arguments)
         except FieldmonError as error:
             keep("error", of_error(error))

@@ -18,6 +18,7 @@ from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.prepare import with_plants
 from fieldmon.io.prepared import Laid
 from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
+from fieldmon.io.unused import unused_of
 
 from . import brought_files, cached, cached_files, rasters, sample_estate
 from .brought_files import File, FileMessage, LeftOut, answers, messages_of, settled
@@ -192,7 +193,7 @@ def prepared(files: Files, outline: Outline) -> PlotFromFiles:
     records, read, left_out, key = _records(files.records, outline, plot, key)
     plot, missing, key = rasters.without_missing(plot, key)
     risk, said, key = rasters.risk(plot, key)
-    of_rows = _said_of_rows(files, plot)
+    of_rows = _said_of_rows(files, plot, outline.key)
     messages = (*outline.messages, *_said_of_place(files, plot), *of_rows, *missing, *read, *said)
     return PlotFromFiles(key, plot, records, risk, messages, left_out)
 
@@ -205,10 +206,11 @@ def _said_of_place(files: Files, plot: Plot) -> tuple[FileMessage, ...]:
     return tuple(FileMessage(asked, message) for message in said)
 
 
-def _said_of_rows(files: Files, plot: Plot) -> tuple[FileMessage, ...]:
+def _said_of_rows(files: Files, plot: Plot, plot_key: str) -> tuple[FileMessage, ...]:
     """Return how plants stand in rows, as it is said of the file that tells of them."""
     file = files.plants or files.rows or files.place
-    return tuple(FileMessage(file.asked, message) for message in Laid(plot).messages)
+    unused = unused_of(plot.field, PlantingChoices(**row_settings(plot_key)))
+    return tuple(FileMessage(file.asked, message) for message in (*Laid(plot).messages, *unused))
 
 
 def _plot(files: Files, outline: Outline) -> tuple[Plot, str]:

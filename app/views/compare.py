@@ -9,7 +9,7 @@ import streamlit as st
 
 from fieldmon.simulation.worker import LaidPlot
 
-from ..actions import background, changing, comparing
+from ..actions import background, changing_strategy, comparing
 from ..show import charts, field_map, map_layers, verdicts
 from ..state import cached_simulations, chosen_day, chosen_pest
 from ..state.comparison import WatchedComparison, curve, gains, outcomes
@@ -75,4 +75,5 @@ def _results(choices: Choices, running: WatchedComparison) -> None:
     with st.container(horizontal=True, vertical_alignment="bottom"):
         box = f"use_strategy {running.settings.strategies}"
         st.selectbox(texts.STRATEGY, alone, format_func=verdicts.name, width=340, key=box)
-        st.button(texts.USE_THIS, key="use_this", on_click=changing.use, args=(choices, box))
+        use = changing_strategy.use
+        st.button(texts.USE_THIS, key="use_this", on_click=use, args=(choices, box))

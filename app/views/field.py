@@ -21,7 +21,9 @@ def show(choices: Choices) -> None:
     """Show hot spots in words and a plant's history, of any day of the season."""
     plant_history.want(choices, map_layers.day_map(choices))
     st.markdown(f"### {texts.HOT_TITLE}")
-    spots = chosen_day.hot_spots(choices)
+    spots, records = chosen_day.hot_spots(choices), chosen_day.records_known(choices)
+    if len(records):
+        st.caption(in_words(records.sentence()))
     said = hot_spot_meanings(choices.plot.grid, spots, chosen_day.finds_apart(choices))
     # as their numbers on the map
     signs = [f"{k}." if len(spots) else "-" for k in range(1, len(said) + 1)]

@@ -11,8 +11,8 @@ from ..actions import (
     beginning,
     bringing_files,
     choosing_pest,
-    drawing,
     drawing_plot,
+    editing_plot,
     laying_ground,
     rasters,
     turning_rows,
@@ -43,7 +43,7 @@ def bring(problem: FieldmonError | None) -> None:
     if problem is not None:
         with said:
             answering.show(problem)
-            drawing.within_reach(problem)
+            editing_plot.within_reach(problem)
     without_map.want(problem)
 
 
@@ -63,9 +63,9 @@ def show(choices: Choices) -> None:
             bringing_files.show()
     records, said = records_shown.records_until(choices.records)
     if choices.season is None:
-        drawing.tools(choices)
-        drawing.rows(choices.plot_key, measured=choices.plot.field.plants is not None)
-        drawing.blocks(choices)
+        editing_plot.tools(choices)
+        editing_plot.rows(choices.plot_key, measured=choices.plot.field.plants is not None)
+        editing_plot.blocks(choices)
         rasters.show()
     else:
         st.info(texts.FIXED)
@@ -76,4 +76,4 @@ def show(choices: Choices) -> None:
         bringing_files.show_messages(choices.messages)
         bringing_files.show_of_records(choices)
     records_shown.say(choices, said)
-    field_map.want(*answering.of_records(choices) or drawing.content(choices, records, before))
+    field_map.want(*answering.of_records(choices) or editing_plot.content(choices, records, before))

@@ -11,9 +11,8 @@ import streamlit as st
 from ..actions import assuming, beginning, keeping, treating
 from ..show import cautions, charts, development, forecast, learnt, map_layers, plant_history
 from ..show import day as show_day
-from ..state import assumptions, chosen_day
+from ..state import chosen_day
 from ..words import texts
-from ..words.language import about, number
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import DayFigures, Progress
@@ -30,7 +29,7 @@ def show(choices: Choices) -> None:
         beginning.show(choices)
         return
     days, progress = chosen_day.figures_so_far(choices), chosen_day.progress(choices)
-    _figures(choices, days[-1], progress)
+    show_day.figures(choices, days[-1], progress)
     show_day.beside_figures(choices)
     show_day.planned_only(choices)
     cautions.show(choices)
@@ -42,25 +41,6 @@ def show(choices: Choices) -> None:
     forecast.show(choices)
     learnt.show(choices)
     keeping.show(choices)
-
-
-def _figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
-    plants = len(choices.plot.grid)
-    shares = now.share_found_pct(progress.found)
-    detected, least, most = (number(one, ".0f") for one in shares)
-    star = " *" if assumptions.of(choices) else ""
-    with st.container(horizontal=True):
-        still = chosen_day.still_infested(choices, choices.day)
-        low, high = (number(one, ",") for one in (still.low, still.high))
-        expected = f"{about(still.expected)} ({low}–{high})"
-        st.metric(f"{texts.EXPECTED_LEFT}{star}", expected,
-                  help=texts.EXPECTED_HELP, width="content")  # fmt: skip
-        st.metric(texts.FOUND_EVER, number(progress.found, ","), width="content")
-        share = texts.IN_PERCENT.format(value=f"{detected} ({least}–{most})")
-        st.metric(f"{texts.DETECTED}{star}", share, help=texts.DETECTED_HELP, width="content")
-        seen = f"{number(progress.inspected, ',')} / {number(plants, ',')}"
-        st.metric(texts.INSPECTED_EVER, seen, width="content")
-        st.metric(f"{texts.CLEAN_CHANCE}{star}", number(now.chance_clean, ".1%"), width="content")
 
 
 def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> None:

@@ -558,6 +558,7 @@ TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start a
 TIP_ALONE, NEXT_ALONE = "plant {plant}{note}", "Plant {plant}"
 SCOUT_LAST_ALONE = "Last: plant {plant}: {result}"
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
+TIP_LEAST, TIP_MOST = "under 0.1 %", "over 99.9 %"
 TIP_CHANCE_BETWEEN = ": {chance} chance ({low} to {high})"
 TIP_SEEN_TODAY, TIP_NEVER = "{result} today", "never inspected"
 TIP_SEEN_BEFORE = Plural("{result} {n} day ago", "{result} {n} days ago")
@@ -778,8 +779,8 @@ DECIDE_FILES = {
 HOT_TITLE = "Hot spots"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
 HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
-HISTORY_NOW = Text("Chance of infestation now: **{now:.1%}** (first morning: {first:.1%}).")
-HISTORY_BETWEEN = Text("If the plot had fewer or more than expected: {low:.1%} to {high:.1%}.")
+HISTORY_NOW = Text("Chance of infestation now: **{now}** (first morning: {first}).")
+HISTORY_BETWEEN = Text("If the plot had fewer or more than expected: {low} to {high}.")
 HISTORY_CHANCE = (
     "A chance says all that is believed of one plant. Its interval says what the chance would be "
     "at the low and high end of what the plot as a whole may have (90 %)."
@@ -837,6 +838,7 @@ NEEDS_SEASON = (
 LEAST, MOST = "at least (90 %)", "at most (90 %)"
 EXPECTED_LEFT, EXPECTED_HELP = "Still infested", "Expected, and the interval that holds 90 %."
 CLEAN_CHANCE, DETECTED = "Chance that the plot is clean", "Share found"
+NOT_KNOWN_YET = "not known yet"
 DETECTED_HELP = (
     "Plants found so far, in percent of these and of those not found yet. Plants that a treatment "
     "cleaned before anybody found them are in neither: the share rises with it."
@@ -850,11 +852,17 @@ FOUND_AGAIN = (
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
 CORRECTED_BY = "Who corrected"
 CORRECTED_BY_HELP = (
-    "Findings that QGIS or QField changed or deleted in a copy of this season come in as "
+    "Inspections that QGIS or QField changed or deleted in a copy of this season come in as "
     "corrections, under this name."
 )
 CORRECTED_UNSAID = (
-    "Corrections must have an author, but nobody is named. Say who corrected the findings."
+    "Corrections must have an author, but nobody is named. Say who corrected the inspections."
+)
+CORRECT_WHEN, CORRECT_BUTTON = "Correct the day or time of an inspection", "Correct"
+CORRECT_WHEN_NOTE = "What is left empty stays as it is. Undo brings back what stood there before."
+CORRECT_WHICH, CORRECT_DAY, CORRECT_TIME = "Inspection", "Right day", "Right time"
+CORRECT_UNSAID = (
+    "A day or a time must be said that is right, but both boxes are empty. Fill in one or both."
 )
 CORRECTED = Plural("{n} correction taken", "{n} corrections taken")
 RECORD_FILE_IN = (
@@ -934,9 +942,11 @@ TREAT, TREAT_EFFICACY, TREAT_PRODUCT = "Treatment of the plot", "Efficacy (%)", 
 TREAT_ROWS, TREAT_ROWS_HELP = "Rows (empty: the whole plot)", "Rows as people count, such as 3-5,8."
 TREAT_SELECTED = "Only the {plants} selected on the map"
 TREAT_TWICE = (
-    "A treatment is of rows or of what is selected on the map, but both are said. Empty the box of "
-    "rows, or treat not only what is selected."
+    "A treatment is of rows, of what is selected on the map or of a file's area, but two of them "
+    "are said. Leave one."
 )
+TREAT_FILE = "File of the area that was sprayed"
+TREAT_FILE_HELP = "As it was downloaded on Decide, or any file of areas."
 TREATED_PART = "Treatment noted, of {plants}."
 TREAT_UNSAID = (
     "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
@@ -944,8 +954,8 @@ TREAT_UNSAID = (
 )
 DECIDE_TREATED = "The zones were treated"
 DECIDE_TREATED_NOTE = (
-    "Noted are the zones that you see here: {plants}, {area}. Were others sprayed, from a file of "
-    "before? Note their rows under *Record*."
+    "Noted are the zones that you see here: {plants}, {area}. If others were sprayed, from a file "
+    "of before, drop that file."
 )
 DECIDE_ASKED_SINCE = (
     "What is asked was changed since these zones were drawn, so nothing was noted. Look at the "
@@ -1047,7 +1057,7 @@ NEXT, NEXT_PLACE = "Next", "Row {row} · plant {plant}"
 NEXT_WAY = "{metres} {compass}{along}"
 NEXT_ALONG = ", in this row"
 NEXT_AISLE = ", change rows"
-NEXT_CHANCE = Text("Chance {chance:.1%} · {done:,} done, {left:,} to go · {hours} left")
+NEXT_CHANCE = Text("Chance {chance} · {done:,} done, {left:,} to go · {hours} left")
 COMPASS = ("north", "north-east", "east", "south-east", "south", "south-west", "west",
            "north-west")  # fmt: skip
 ARROWS = ("⬆️", "↗️", "➡️", "↘️", "⬇️", "↙️", "⬅️", "↖️")
@@ -1204,7 +1214,9 @@ SCOUT_PAGE = {
     "photo_asked": "A photo is asked for.", "photo_asked_of": "A photo is asked for: {note}",
     "asked": "Photos asked for: {n}", "photo_comes": "The photo is being kept ...",
     "kept": "Kept: {what}", "keeping": "Being kept: {what}",
-    "away": "{m} m away", "chance": "Chance {n} %", "off_route": "Off the route",
+    "away": "{m} m away", "chance": "Chance {n} %",
+    "chance_least": "Chance under 0.1 %", "chance_most": "Chance over 99 %",
+    "off_route": "Off the route",
     "who_says": "{who}: {result}",
     "closed": "Sprayed: do not enter before {until}.",
     "closed_rows": "Rows {low} to {high} are sprayed: do not enter before {until}.",

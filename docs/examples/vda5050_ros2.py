@@ -10,8 +10,8 @@ import rclpy
 from geometry_msgs.msg import PoseStamped
 from nav2_simple_commander.robot_navigator import BasicNavigator, TaskResult
 
+from fieldmon.drive.vda5050.mqtt import Broker, RobotName
 from fieldmon.drive.vda5050.stand_in import StandIn
-from fieldmon.drive.vda5050.wire import Broker, RobotName
 
 
 class NavigatingRobot(StandIn):

@@ -8,7 +8,7 @@ import typer
 
 from fieldmon.cli.numbers import within
 from fieldmon.cli.options import SeasonFile
-from fieldmon.cli.times import clock
+from fieldmon.cli.times import clock, day
 from fieldmon.compute.ranges import NUMBER
 from fieldmon.errors import SettingError
 
@@ -19,28 +19,38 @@ def correct(
     inspection: Annotated[
         int | None,
         typer.Option(
-            help="Number (fid) of one inspection whose --time was wrong.", callback=within(NUMBER)
+            help="Number (fid) of one inspection whose --date or --time was wrong.",
+            callback=within(NUMBER),
         ),
     ] = None,
     at: Annotated[
         str | None, typer.Option("--time", help="Local time of that --inspection, HH:MM.")
     ] = None,
+    on: Annotated[
+        str | None, typer.Option("--date", help="Day of that --inspection, YYYY-MM-DD.")
+    ] = None,
 ) -> None:
     """Accept inspections that QGIS or another program changed, as somebody's corrections.
 
-    Until then the season refuses to go on, and names the rows. With --inspection and --time the
-    time of one is corrected instead. fieldmon undo brings back what stood there before.
+    Until then the season refuses to go on, and names the rows. With --inspection and --date
+    or --time the day or time of one is corrected instead. fieldmon undo brings back what stood
+    there before.
 
     Example: fieldmon correct season.gpkg --who Ann
+    Example: fieldmon correct season.gpkg --who Ann --inspection 12 --date 2026-11-17 --time 08:30
     """
     if not who.strip():
         raise SettingError("--who must name whose corrections these are, but it is empty.")
-    if (inspection is None) != (at is None):
-        raise SettingError("To correct a time, --inspection and --time must both be given.")
+    if (inspection is None) != (at is None and on is None):
+        raise SettingError(
+            "To correct when an inspection was made, --inspection must be given with --date or "
+            "--time."
+        )
     from fieldmon.monitoring import Season
 
-    if inspection is not None and at is not None:
-        typer.echo(Season(season).correct_time(inspection, clock(at, "--time"), who.strip()))
+    if inspection is not None:
+        moment = None if at is None else clock(at, "--time")
+        typer.echo(Season(season).correct_time(inspection, moment, who.strip(), day(on)))
         return
     n = Season(season).correct(who.strip())
     if n:

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from fieldmon.drive.errand import DayToDrive, DrivingRobot
     from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
-    from fieldmon.drive.vda5050.wire import RobotName
+    from fieldmon.drive.vda5050.mqtt import RobotName
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.plot.plot import Plot
@@ -303,8 +303,8 @@ def _team_day(
     from fieldmon.cli.team_files import files_of_each
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.team_season import TeamSeason, robots_of
+    from fieldmon.drive.vda5050.mqtt import Broker
     from fieldmon.drive.vda5050.team import drive_team
-    from fieldmon.drive.vda5050.wire import Broker
 
     asked = [path for path in (options.output, options.bag) if path is not None]
     robots = robots_of(settings.team)
@@ -459,13 +459,13 @@ def _driver(
     recording = Recording(plot.aisles.for_robot(worker), worker, believed[0])
     if options.robot is Drives.VDA5050:
         from fieldmon.drive.vda5050.fleet import live_robot
-        from fieldmon.drive.vda5050.wire import Broker
+        from fieldmon.drive.vda5050.mqtt import Broker
 
         who = _robot_name(options)
         with live_robot(Broker.of(options.broker), who, str(believed[1]), _say) as live:
             yield live, recording
         return
-    from fieldmon.drive.simulated import MadeUp, simulated_robot
+    from fieldmon.drive.simulated_robots import MadeUp, simulated_robot
 
     made_up = MadeUp(options.infested, options.seed)
     decides = sampler_of(options.sampler, options.every)
@@ -536,8 +536,8 @@ def _refuse_written_over(season: Season | None, outputs: Iterable[Path | None]) 
 
 
 def _robot_name(options: DriveOptions) -> RobotName:
+    from fieldmon.drive.vda5050.mqtt import RobotName
     from fieldmon.drive.vda5050.versions import known_version
-    from fieldmon.drive.vda5050.wire import RobotName
 
     return RobotName(options.manufacturer, options.serial, known_version(options.vda))
 

@@ -158,7 +158,7 @@ def _spreading(belief: BeliefSettings, rate: float) -> BeliefSettings:
 
 @with_options
 def init(options: InitOptions) -> None:
-    """Begin a season on a plot: one GeoPackage that grows with every day's findings.
+    """Begin a season on a plot: one GeoPackage that grows with every day's inspections.
 
     QGIS and QField can open it. Then, every day: fieldmon plan, the work, fieldmon record.
 

@@ -12,10 +12,10 @@ from fieldmon.cli.backup import backup
 from fieldmon.cli.change import change
 from fieldmon.cli.compare import compare
 from fieldmon.cli.correct import correct
-from fieldmon.cli.cycles import cycles_seldom_looked_for
 from fieldmon.cli.decide import decide
 from fieldmon.cli.drive import drive
 from fieldmon.cli.export import export
+from fieldmon.cli.garbage_collection import cycles_seldom_looked_for
 from fieldmon.cli.help_text import Commands
 from fieldmon.cli.init import init
 from fieldmon.cli.labels import labels

@@ -174,7 +174,7 @@ def assumed_in_words(assumed: Iterable[Assumed]) -> str:
 
 
 def tell_drafts(sentences: Iterable[str]) -> None:
-    """Print which findings of another program do not count."""
+    """Print which inspections that another program added do not count."""
     for sentence in sentences:
         typer.echo(sentence, err=True)
 
@@ -218,10 +218,13 @@ def tell_past_midnight(on: date, settings: MonitoringSettings) -> None:
 
 
 def tell_unusable(records: Observations, day: np.datetime64, prior: PriorSettings) -> None:
-    """Print which records say nothing, or hardly anything, about a day."""
+    """Print of which days records are, and which say nothing, or hardly anything, about a day."""
     from fieldmon.infestation.observations import usable
 
-    for sentence in usable(records, day, prior.hardly_days).messages():
+    known = usable(records, day, prior.hardly_days)
+    if len(known.observations):
+        typer.echo(f"seen: {known.observations.sentence()}", err=True)
+    for sentence in known.messages():
         typer.echo(sentence, err=True)
 
 

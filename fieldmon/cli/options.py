@@ -61,7 +61,8 @@ RecordChoices = Annotated[
     typer.Option(
         "--record-option",
         help="What the records do not say, as NAME=VALUE: crs=EPSG:2039, date_order=dmy, "
-        "columns=date=Datum, columns=count=Milben, found=WORD,WORD, clean=WORD, degrees=dms.",
+        "columns=date=Datum, columns=count=Milben, found=WORD,WORD, clean=WORD, degrees=dms, "
+        "place=plant.",
     ),
 ]
 Plants = Annotated[

@@ -147,7 +147,7 @@ def _plan_every_plot(options: PlanOptions) -> None:
     import numpy as np
 
     from fieldmon.cli.plan_all import EstateDay, plan_all
-    from fieldmon.planning.batch import Orders
+    from fieldmon.planning.many_plots import Orders
 
     worker, starts = options.worker, options.starts()
     # what cannot be is refused before any plot is read

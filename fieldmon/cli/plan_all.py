@@ -28,7 +28,7 @@ from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name
 from fieldmon.planning.assumptions import assumed_by
-from fieldmon.planning.batch import plan_task
+from fieldmon.planning.many_plots import plan_task
 from fieldmon.samplers.own import label_of
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fieldmon.io.prepared import Estate, EstateRecords
-    from fieldmon.planning.batch import Orders, Task
+    from fieldmon.planning.many_plots import Orders, Task
 
 SUMMARY = "summary.csv"
 _COLUMNS = (
@@ -105,7 +105,7 @@ def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None 
 
 def _tasks(plots: Estate, orders: Orders) -> dict[str, Task]:
     """Return the tasks by the names of their files."""
-    from fieldmon.planning.batch import (
+    from fieldmon.planning.many_plots import (
         Task,
     )
 

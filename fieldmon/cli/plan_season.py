@@ -49,22 +49,30 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
 
 def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     """Plan a day for who works alone or for each of a team."""
-    from fieldmon.monitoring.day_ahead import plan_ahead
-    from fieldmon.planning.day_bound import with_bound
-    from fieldmon.planning.route import with_forecast
-    from fieldmon.reports.words import DAY_OF_NOBODY
-
-    settings, field = season.planned_by(on), season.plot.field
+    settings = season.planned_by(on)
     now = None if options.now is None else clock(options.now, "--now")
     _tell_settings_of_then(season, on, settings)
     hours = max(one.hours for one in (settings.robot, *(m.robot for m in settings.team)))
-    tell_clock_change(datetime.combine(on, settings.starts), hours, field)
+    tell_clock_change(datetime.combine(on, settings.starts), hours, season.plot.field)
     tell_past_midnight(on, settings)
     if now is not None:
         _refuse_worked(season, on, now, [one.name for one in settings.team])
-    if settings.team:
-        _plan_team(season, options, on, settings)
-        return
+    plan = _plan_team if settings.team else _plan_alone
+    plan(season, options, on, now, settings)
+
+
+def _plan_alone(
+    season: Season,
+    options: PlanOptions,
+    on: date,
+    now: time | None,
+    settings: MonitoringSettings,
+) -> None:
+    """Plan what is left of a day for who works alone, and write the route."""
+    from fieldmon.monitoring.day_ahead import plan_ahead
+    from fieldmon.planning.day_bound import with_bound
+    from fieldmon.planning.route import with_forecast
+
     refuse_unrecorded(season, options.output or [ROUTE])
     if now is None:
         today = plan_ahead(season, on, keep=True, anew=options.enter_treated or options.as_now)
@@ -72,12 +80,11 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
         today = season.plan(on, now)
     if options.bound and len(today.route):
         today = with_bound(today)
-    route = today.route
     off = _LeftOff.of(season, on, (("", today),))
     if off.all_closed and not options.enter_treated:
         raise _nobody_may_enter(on, off)
     _tell_skipped((today,))
-    if not len(route):
+    if not len(today.route):
         _refuse_nothing_left((today,))
         if left_h := today.scene.seconds_left / 3600:
             _tell_left_off(options, off, on_foot=True)
@@ -85,17 +92,24 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
             "The working day must be long enough to reach another plant and come back, but "
             f"{left_h:.1f} h are left of {on}. Plan another day with --date."
         )
-    seen = season.worked(on)
-    done = f"{len(seen)} done, " if len(seen) else ""
-    infested = float(season.evening(on)[route.plant].sum())
-    typer.echo(f"{on}: {done}{day_in_words(route, infested)}")
-    if [*season.codes_on(on).values()] not in ([], [None]):
-        typer.echo(f"seen: {DAY_OF_NOBODY}", err=True)
+    _tell_route(season, on, today)
     _tell_left_off(options, off, on_foot=settings.robot.on_foot)
     tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
-    write_routes(with_forecast(route, lambda: season.forecast(on)), options.output)
+    write_routes(with_forecast(today.route, lambda: season.forecast(on)), options.output)
     write_chance_map(options.chance_map, season.plot, season.evening(on))
+
+
+def _tell_route(season: Season, on: date, today: DayPlan) -> None:
+    """Print what was done of a day, what its route will find, and whether codes share its rows."""
+    from fieldmon.reports.words import DAY_OF_NOBODY
+
+    seen = season.worked(on)
+    done = f"{len(seen)} done, " if len(seen) else ""
+    infested = float(season.evening(on)[today.route.plant].sum())
+    typer.echo(f"{on}: {done}{day_in_words(today.route, infested)}")
+    if [*season.codes_on(on).values()] not in ([], [None]):
+        typer.echo(f"seen: {DAY_OF_NOBODY}", err=True)
 
 
 def _refuse_worked(season: Season, on: date, now: time, team: list[str]) -> None:
@@ -225,19 +239,21 @@ def _tell_detection(season: Season, on: date) -> None:
 
 
 def _plan_team(
-    season: Season, options: PlanOptions, on: date, settings: MonitoringSettings
+    season: Season,
+    options: PlanOptions,
+    on: date,
+    now: time | None,
+    settings: MonitoringSettings,
 ) -> None:
     """Plan what is left of a day for each of a team; write a file for each."""
     from fieldmon.monitoring.day_ahead import Part, by_the_clock
-    from fieldmon.monitoring.history import Besides
     from fieldmon.planning.route import with_forecast
-    from fieldmon.planning.team import bound_of_days
 
     team = settings.team
     files = files_of_each(options.output, team)
     refuse_unrecorded(season, (file for each in files for file in each))
-    days = season.plan_each(on, None if options.now is None else clock(options.now, "--now"))
-    if options.now is None:
+    days = season.plan_each(on, now)
+    if now is None:
         days = tuple(by_the_clock(season, on, Part(name=one.name), today)
                      for one, today in zip(team, days, strict=True))  # fmt: skip
     named = tuple(zip((one.name for one in team), days, strict=True))
@@ -252,15 +268,7 @@ def _plan_team(
             f"Somebody must have time to reach another plant and come back, but nobody has on "
             f"{on}. Plan another day with --date."
         )
-    names = tuple(one.name for one in team)
-    # of who is not of the team any more, too
-    done = len(season.worked(on, Besides(names))) + sum(len(season.worked(on, n)) for n in names)
-    typer.echo(f"{on}{f': {done} done' if done else ''}")
-    for member, today in zip(team, days, strict=True):
-        if (notes := today.route.notes) is not None and notes.start is not None:
-            tell_member(member.name, notes.start, today.route)
-    if options.bound and (said := bound_of_days(days)):
-        typer.echo(said)
+    _tell_routes(season, options, on, named)
     _tell_left_off(options, off, on_foot=all(one.robot.on_foot for one in team))
     tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
@@ -268,3 +276,21 @@ def _plan_team(
     for member, today, paths in zip(team, days, files, strict=True):
         write_member(member.name, with_forecast(today.route, ahead), paths)
     write_chance_map(options.chance_map, season.plot, season.evening(on))
+
+
+def _tell_routes(
+    season: Season, options: PlanOptions, on: date, named: Sequence[tuple[str, DayPlan]]
+) -> None:
+    """Print what was done of a day, when each of a team begins, and the bound if it is asked."""
+    from fieldmon.monitoring.history import Besides
+    from fieldmon.planning.team import bound_of_days
+
+    names = tuple(name for name, _ in named)
+    # of who is not of the team any more, too
+    done = len(season.worked(on, Besides(names))) + sum(len(season.worked(on, n)) for n in names)
+    typer.echo(f"{on}{f': {done} done' if done else ''}")
+    for name, today in named:
+        if (notes := today.route.notes) is not None and notes.start is not None:
+            tell_member(name, notes.start, today.route)
+    if options.bound and (said := bound_of_days([today for _, today in named])):
+        typer.echo(said)

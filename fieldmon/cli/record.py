@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 FindingFiles = Annotated[
     list[Path],
     typer.Argument(
-        help="Findings: CSV, Excel, GeoJSON, GPX, GeoPackage... with plants or positions; "
+        help="Inspections: CSV, Excel, GeoJSON, GPX, GeoPackage... with plants or positions; "
         "the route file given out, filled in; or what a phone saved as not sent."
     ),
 ]
@@ -61,7 +61,7 @@ class RecordFlags:
 
     on: Annotated[
         str | None,
-        typer.Option("--date", help="Day of findings whose file names no day, YYYY-MM-DD."),
+        typer.Option("--date", help="Day of inspections whose file names no day, YYYY-MM-DD."),
     ] = None
     who: Annotated[
         str, typer.Option(help="Who inspected, whatever the files say; in a copy, who corrected.")
@@ -73,7 +73,7 @@ class RecordFlags:
 
 @with_options
 def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
-    """Record what was found; recording the same findings twice changes nothing.
+    """Record what was found; recording the same inspections twice changes nothing.
 
     What contradicts results recorded of the same plants and day (clean against found) is listed,
     and nothing is recorded, unless --contradicting is given.

@@ -56,9 +56,9 @@ def stand_in(options: StandInOptions) -> None:
 
     Example: fieldmon stand-in --broker 127.0.0.1:1883 --faster 100
     """
+    from fieldmon.drive.vda5050.mqtt import Broker, RobotName
     from fieldmon.drive.vda5050.stand_in import StandIn
     from fieldmon.drive.vda5050.versions import known_version
-    from fieldmon.drive.vda5050.wire import Broker, RobotName
 
     broker, version = Broker.of(options.broker), known_version(options.vda)
     robots = [

@@ -136,7 +136,7 @@ def _other_days(said: BatchContents, recorded: date) -> str:
 
 def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
-    from fieldmon.compute.wording import estimate, written
+    from fieldmon.compute.wording import chance_figure, estimate, written
     from fieldmon.infestation.learnt import worth_saying
     from fieldmon.monitoring.day_figures import flagged_said
 
@@ -161,12 +161,8 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     )
     for said in flagged_said(ahead, now.flagged):
         yield f"  {'':22} {said}"
-    least, most = now.detection_range_pct
-    yield (
-        f"  share found            {now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %) of "
-        "found and not found yet"
-    )
-    yield f"  chance it is clean     {100 * ahead.chance_clean:6.1f} %"
+    yield f"  share found            {_share_found(now)}"
+    yield f"  chance it is clean     {chance_figure(ahead.chance_clean, 1):>8}"
     since = "learnt so far" if now.inspected else "believed at first"
     for number, learnt in enumerate(worth_saying(now.learnt)):
         yield f"  {'' if number else since:22} {learnt.sentence()}"
@@ -185,6 +181,16 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"
         for h in range(min(len(spots), 3))
     )
+    if len(records := season.records_known()):
+        yield f"  {'':22} {records.sentence()}"
+
+
+def _share_found(now: Status) -> str:
+    """Return which share of the infested plants was found; of no inspections none is known."""
+    if not now.inspected:
+        return "not known: nothing was inspected yet"
+    least, most = now.detection_range_pct
+    return f"{now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %) of found and not found yet"
 
 
 def _of_pest(season: Season, now: Status) -> Iterator[str]:

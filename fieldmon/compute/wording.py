@@ -143,6 +143,34 @@ def share_figure(share: float) -> Worded:
     return figure(100 * share, ".2g", " %") if 0 < share < 0.01 else figure(share, ".0%")
 
 
+def chance_figure(chance: float, digits: int = 0, *, drawn: bool = False) -> Worded:
+    """Return a chance in percent; none that is not exactly so is said to be 0 or 100 %.
+
+    Parameters
+    ----------
+    chance
+        Between 0 and 1.
+    digits
+        How many digits behind the point it is worth.
+    drawn
+        Whether it is a share of fields that were drawn: then it is never exactly so.
+
+    Examples
+    --------
+    >>> chance_figure(0.843), chance_figure(0.9999), chance_figure(0.0002), chance_figure(1)
+    ('84 %', 'over 99 %', 'under 1 %', '100 %')
+    >>> chance_figure(0.0002, 1), chance_figure(1, drawn=True)
+    ('under 0.1 %', 'over 99 %')
+    """
+    form, least = f".{digits}%", 10.0 ** -(digits + 2)
+    rounded = round(chance, digits + 2)
+    if rounded <= 0.0 and (drawn or chance > 0.0):
+        return worded("under {share}", share=figure(least, form))
+    if rounded >= 1.0 and (drawn or chance < 1.0):
+        return worded("over {share}", share=figure(1.0 - least, form))
+    return figure(chance, form)
+
+
 def hours_figure(value_h: float) -> Worded:
     """Return hours to the tenth, whole ones without; what takes time takes a tenth or more.
 

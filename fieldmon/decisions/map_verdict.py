@@ -10,7 +10,7 @@ from scipy.sparse import csc_array
 
 from fieldmon.compute.arguments import array_of
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.wording import counted, joined, worded
+from fieldmon.compute.wording import chance_figure, counted, joined, worded
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pairs_of
@@ -84,8 +84,9 @@ class MapVerdict:
         # its interval hangs on rates alone: another than that of the status, it would confuse
         return worded(
             "{share:.1%} of the plants are believed infested. Treating pays if it is {level:.1%} "
-            "or more; the chance of that is {chance:.0%}.",
-            share=self.share, level=self.level, chance=self.chance_above,
+            "or more; the chance of that is {chance}.",
+            share=self.share, level=self.level,
+            chance=chance_figure(self.chance_above, drawn=True),
         )  # fmt: skip
 
 

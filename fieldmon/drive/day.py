@@ -141,7 +141,7 @@ def drive_day(
     Examples
     --------
     >>> import fieldmon as fm
-    >>> from fieldmon.drive.charged import ChargedRobot
+    >>> from fieldmon.drive.charged_robot import ChargedRobot
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
     >>> robot = fm.Robot(hours=1)
     >>> with fm.Monitor(plot, robot=robot).day() as day:

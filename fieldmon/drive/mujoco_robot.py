@@ -9,11 +9,11 @@ import numpy as np
 import shapely
 
 from fieldmon.drive.errand import Visit
+from fieldmon.drive.mujoco_plot import lay_ground, world_xml
 from fieldmon.drive.pursuit import Pace, Pursuit
 from fieldmon.drive.robot_body import RobotBody, sharpest_of
 from fieldmon.drive.steered_pursuit import SteeredPursuit
 from fieldmon.drive.track import Track
-from fieldmon.drive.world import lay_ground, world_xml
 from fieldmon.errors import SettingError
 from fieldmon.plot.clearance import STRAY_M, half_canopy_m
 from fieldmon.plot.steered_way import way_of

@@ -83,7 +83,7 @@ def trace_of(recording: Recording) -> Trace:
     Examples
     --------
     >>> import fieldmon as fm
-    >>> from fieldmon.drive.charged import ChargedRobot
+    >>> from fieldmon.drive.charged_robot import ChargedRobot
     >>> from fieldmon.drive.day import drive_day
     >>> from fieldmon.drive.recording import Recording
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")

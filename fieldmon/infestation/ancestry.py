@@ -20,21 +20,21 @@ from fieldmon.infestation.ancestry_rates import (
     DrawnEvidence,
     Rates,
 )
+from fieldmon.infestation.cell_squares import NOBODY
 from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.cohorts import Age
-from fieldmon.infestation.course import BEFORE, Course
 from fieldmon.infestation.drawn_ancestry import DrawnSums, draw_ancestries
-from fieldmon.infestation.landing import SHARES, landing_of, pest_landing_of
+from fieldmon.infestation.infestation_course import BEFORE, Course
+from fieldmon.infestation.jump_landing import SHARES, landing_of, pest_landing_of
 from fieldmon.infestation.latency import HIDDEN_NIGHTS
 from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE, SIGMAS, Estimate
 from fieldmon.infestation.pest_in_weather import kernel_of
-from fieldmon.infestation.squares import NOBODY
 from fieldmon.infestation.unseen_offspring import Unseen, stays_unseen, unseen_now
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.landing import Landing
+    from fieldmon.infestation.jump_landing import Landing
     from fieldmon.pests.pest import Pest
     from fieldmon.plot.grid import PlantGrid
 

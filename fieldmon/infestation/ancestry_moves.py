@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import part
+from fieldmon.infestation.cell_squares import NOBODY, Squares, gather, leave, stand
 from fieldmon.infestation.cells import cell_of, in_one_cell
-from fieldmon.infestation.squares import NOBODY, Squares, gather, leave, stand
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -103,7 +103,7 @@ class Weights(NamedTuple):
         The first morning of the season, and that until which infestations were found that stay as
         they are.
     grown, grown_by
-        ``(t,)`` as `fieldmon.infestation.course.Course` has them.
+        ``(t,)`` as `fieldmon.infestation.infestation_course.Course` has them.
     lasting
         ``(n + m, t)`` how likely it is that an infestation that begins on a morning goes on to its
         end as it was seen, if it sends out only what the ancestry has: of one that was not found at

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fieldmon.infestation.chance_bounds import LEAST_CHANCE
-from fieldmon.infestation.course import BEFORE
-from fieldmon.infestation.landing import SHARES
+from fieldmon.infestation.infestation_course import BEFORE
+from fieldmon.infestation.jump_landing import SHARES
 from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.drawn_ancestry import DrawnSums
-    from fieldmon.infestation.landing import Landing
+    from fieldmon.infestation.jump_landing import Landing
 
     Floats = NDArray[np.floating[Any]]
 

@@ -1,4 +1,4 @@
-"""What a belief about a plot is, and how findings change it."""
+"""What a belief about a plot is, and how inspections change it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Learning:
-    """How findings change the chance map.
+    """How inspections change the chance map.
 
     Parameters
     ----------

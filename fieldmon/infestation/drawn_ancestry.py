@@ -31,7 +31,7 @@ from fieldmon.infestation.ancestry_moves import (
     take_out,
     try_others,
 )
-from fieldmon.infestation.squares import NOBODY, empty_squares
+from fieldmon.infestation.cell_squares import NOBODY, empty_squares
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -1,8 +1,8 @@
 """Many simulated fields as a belief: slower than pairs, free of their shortcuts; to compare with.
 
-Findings change the fields where they are: a field that says otherwise takes the plants about the
-look from a field that says the same (a particle filter, resampled locally). Far away it stays as
-it is, so that a thousand looks a day do not leave one field only.
+Inspections change the fields where they are: a field that says otherwise takes the plants about
+them from a field that says the same (a particle filter, resampled locally). Far away it stays as
+it is, so that a thousand inspections a day do not leave one field only.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import Csr, PlantGrid
 
 _FIELDS = 300
-# plants up to three steps from the look come along from the other field
+# plants up to three steps from one inspected come along from the other field
 _RINGS = 3
 _ROOM = 64
 _MOST = 1.0 - 1e-6

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import estimate, figure, worded
+from fieldmon.compute.wording import chance_figure, estimate, figure, worded
+from fieldmon.infestation.jump_reach import kernel_means
 from fieldmon.infestation.origins import (
     ANYWHERE,
     ARRIVE,
@@ -20,7 +21,6 @@ from fieldmon.infestation.origins import (
     Estimate,
 )
 from fieldmon.infestation.plot_estimate import estimate_plot
-from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class Learnt:
                 low=low,
                 high=high,
             )
-        if self.name == "infested at the start":
+        if self.name == _INFESTED_AT_START:
             return worded(
                 "{value} plants were infested at the start ({low} to {high}).",
                 value=value,
@@ -89,23 +89,25 @@ class Learnt:
                 low=low,
                 high=high,
             )
-        return self._guess_alone(value)
+        return self._guess_alone()
 
-    def _guess_alone(self, value: str) -> Worded:
+    def _guess_alone(self) -> Worded:
         """Return it in words where there is no interval to tell."""
+        chance = chance_figure(self.value)
         if self.name == "hiding":
             return worded(
-                "New infestations hide for some nights with a chance of {value}.", value=value
+                "New infestations hide for some nights with a chance of {value}.", value=chance
             )
         if self.name == "more than told":
             return worded(
                 "Far more was found than was told: the map goes on as if {value} of the plants had "
                 "been told.",
-                value=value,
+                value=figure(self.value, ".0%"),
             )
-        return worded("Insects jump beyond the next plant with a chance of {value}.", value=value)
+        return worded("Insects jump beyond the next plant with a chance of {value}.", value=chance)
 
 
+_INFESTED_AT_START = "infested at the start"
 _SHARES = ("detection", "jumps beyond neighbours", "hiding", "more than told")
 # a chance below this is said to be 0 %: how far insects would jump is then of no use
 _SAID = 0.005
@@ -140,12 +142,37 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
     return (
         *_more_than_told(belief),
         Learnt("detection", found.value, found.low, found.high),
-        Learnt("infested at the start", *astuple(at_start)),
+        Learnt(_INFESTED_AT_START, *astuple(at_start)),
         Learnt("arrivals a night", *astuple(arrivals)),
         Learnt("jumps beyond neighbours", jumps, jumps, jumps),
         *_length(belief),
         *_hiding(belief),
     )
+
+
+def with_start(
+    learnt: Iterable[Learnt], ever: Estimate, *, nights_passed: bool
+) -> tuple[Learnt, ...]:
+    """Return the same with as many infested at the start as can be where so many `ever` were.
+
+    Until a night has passed, these are the same plants; later there were no more at the start.
+
+    Parameters
+    ----------
+    learnt
+        What is learnt. The number at the start is by the ancestry of finds, and `ever` by the
+        chance map, which is pooled of two.
+    ever
+        How many plants have been infested by now: all that were found, and those not found yet.
+    nights_passed
+        Whether a night of the season has passed.
+    """
+
+    def agreeing(one: Learnt) -> Learnt:
+        at_start = Estimate(one.value, one.low, one.high).at_most(ever) if nights_passed else ever
+        return Learnt(one.name, *astuple(at_start))
+
+    return tuple(agreeing(one) if one.name == _INFESTED_AT_START else one for one in learnt)
 
 
 def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:

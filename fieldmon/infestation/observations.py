@@ -18,6 +18,8 @@ from fieldmon.plot.positions import lonlat_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.compute.wording import Worded
+
 
 UNKNOWN, ABSENT, PRESENT = -1, 0, 1
 #: a record this close to a plot is taken for one of its own
@@ -96,6 +98,34 @@ class Observations:
     def __len__(self) -> int:
         """Return the number of records."""
         return len(self.lonlat)
+
+    def in_words(self) -> Worded:
+        """Return how many there are and of which days, with the years: last year's count, too.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> days = np.array(["2024-08-11", "2024-06-03", "NaT"], "datetime64[D]")
+        >>> Observations.of(np.full((3, 2), 30.0), np.ones(3, np.int8), days).in_words()
+        '3 records of 2024-06-03 to 2024-08-11, 1 of them without a date'
+        """
+        n, days = counted(len(self), "record"), self.day[~np.isnat(self.day)]
+        if not len(days):
+            return worded("{records} without a date", records=n)
+        first, last = str(days.min()), str(days.max())
+        said = worded("{records} of {first} to {last}", records=n, first=first, last=last)
+        if first == last:
+            said = worded("{records} of {day}", records=n, day=first)
+        undated = len(self) - len(days)
+        return (
+            worded("{records}, {n:,} of them without a date", records=said, n=undated)
+            if (undated)
+            else said
+        )
+
+    def sentence(self) -> Worded:
+        """Return that chances and hot spots begin with them, and of which days they are."""
+        return worded("Chances and hot spots begin with {records}.", records=self.in_words())
 
     def reach_m(self) -> NDArray[np.float64]:
         """Return ``(m,)`` metres outside a plot at which a record is still one of its own.

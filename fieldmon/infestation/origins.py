@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 #: infested on the first morning, among plants that the first map suspected as much as the average
 #: one or more, and among the others; from outside, anywhere or by the plot's edge; by the plant
-#: beside it; overlooked at an inspection; and by jumps of each kernel of `reach.kernels`, from
+#: beside it; overlooked at an inspection; and by jumps of each kernel of `jump_reach.kernels`, from
 #: `JUMPED` on
 AT_START, ANYWHERE, BY_EDGE, BY_ADJACENT, OVERLOOKED, AT_START_ELSEWHERE, JUMPED = range(7)
 N_ORIGINS = JUMPED + 6
@@ -56,6 +56,11 @@ class Estimate:
     def __add__(self, other: Estimate) -> Estimate:
         """Return the estimate of both numbers together, as wide as if both were off alike."""
         return Estimate(self.value + other.value, self.low + other.low, self.high + other.high)
+
+    def at_most(self, other: Estimate) -> Estimate:
+        """Return the estimate of a number of which it is known that it is no more than another."""
+        ends = min(self.low, other.low), min(self.high, other.high)
+        return Estimate(min(self.value, other.value), *ends)
 
 
 @dataclass(frozen=True, eq=False)

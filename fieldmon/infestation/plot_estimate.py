@@ -14,7 +14,7 @@ from scipy.special import gammaincinv, ndtri
 
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.random_streams import coin
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import chance_figure, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.chance_bounds import KNOWN
 from fieldmon.infestation.pairs import pairs_of
@@ -80,7 +80,7 @@ class PlotEstimate:
         """Return the estimate in words."""
         within, clean = (
             f"between {self.low:,} and {self.high:,}",
-            f"{100 * self.chance_clean:.0f} %",
+            chance_figure(self.chance_clean),
         )
         if self.found == 0:
             return (

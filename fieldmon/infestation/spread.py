@@ -36,7 +36,9 @@ class Spread:
     Parameters
     ----------
     rate_per_day
-        Chance per night (thesis: 0.3, 0.5, 0.8). What it is the chance of, `to` says.
+        Chance per night (thesis: 0.3, 0.5, 0.8). What it is the chance of, `to` says. Unless told
+        it is the thesis's 0.5, as in the studies of its chapters and of teams. Commands that
+        simulate take `SIMULATED_PER_DAY` (0.1), and seasons on disk 0.02: see the glossary.
     to
         The thesis leaves open who infects whom. ``"each"``: every infested plant infects each of
         its neighbours with that chance, independently. ``"one"``: with that chance it infects one

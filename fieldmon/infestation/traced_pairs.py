@@ -1,9 +1,9 @@
 """Chances of plants and pairs that know of more than the plants next to an infestation.
 
 Beside a plant lies what `fieldmon.infestation.pairs` says of pairs of neighbours. Beyond, insects
-jump by a mixture of kernels (`reach`), arrive from outside, and are overlooked; a find is traced to
-where it came from and what it sent out (`tracing`). Which of that is so, and how much, the season's
-own inspections tell (`clustering`, `origins`).
+jump by a mixture of kernels (`jump_reach`), arrive from outside, and are overlooked; a find is
+traced to where it came from and what it sent out (`tracing`). Which of that is so, and how much,
+the season's own inspections tell (`clustering`, `origins`).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from fieldmon.infestation.clustering import (
     no_evidence,
 )
 from fieldmon.infestation.cohorts import Cohorts
-from fieldmon.infestation.heavier import (
+from fieldmon.infestation.heavier_priors import (
     IN_DOUBT,
     TOLD,
     doubt_between,
@@ -37,6 +37,7 @@ from fieldmon.infestation.heavier import (
     odds_times,
     refuted,
 )
+from fieldmon.infestation.jump_reach import pest_reach_of, reach_of
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import (
     ANYWHERE,
@@ -56,7 +57,6 @@ from fieldmon.infestation.pairs import Neighbourhood, pair_chances, pairs_left
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.plot_estimate import drawn_numbers
 from fieldmon.infestation.prior import odds_ratio
-from fieldmon.infestation.reach import pest_reach_of, reach_of
 from fieldmon.infestation.traced_day import KernelRoom, TracedDay, learn_day
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
 from fieldmon.infestation.unwatched import Counted, Since, Unwatched
@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Learning
-    from fieldmon.infestation.reach import Reach
+    from fieldmon.infestation.jump_reach import Reach
     from fieldmon.infestation.spread import Spread
     from fieldmon.pests.pest import Pest
     from fieldmon.plot.grid import PlantGrid
@@ -142,7 +142,7 @@ class TracedPairs:
         The logarithm of how likely it is that so many were infested as this map was told, and that
         inspections so far had their results.
     is_heavier
-        Whether it takes more for infested on the first morning than was told, see `heavier`.
+        Whether it takes more for infested on the first morning than was told, see `heavier_priors`.
     others
         Other such maps that are possible still; None: nothing was inspected yet.
     """

@@ -19,8 +19,8 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.course import Course
-    from fieldmon.infestation.landing import Landing
+    from fieldmon.infestation.infestation_course import Course
+    from fieldmon.infestation.jump_landing import Landing
 
     Floats = NDArray[np.floating[Any]]
 

@@ -259,15 +259,27 @@ class RecordOptions(ReadOptions):
         The plot whose rows and plants the records name, where no column says which.
     found, clean
         Words of one's own for a plant with pests and for one without, set apart by commas.
+    place
+        Where a record lies that gives a position and names a plant, too: ``"position"`` or
+        ``"plant"``. None: at the position, and it is doubted where the two disagree.
     """
 
     date_order: DateOrder | None = None
     plot: str | None = None
     found: str | None = None
     clean: str | None = None
+    place: str | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if self.place not in {None, "position", "plant"}:
+            raise SettingError(
+                worded(
+                    "The place of records must be that of their position or of their plant, but "
+                    "it is {place!r}. Say position or plant.",
+                    place=self.place,
+                )
+            )
         if self.date_order not in {None, "dmy", "mdy", "ymd"}:
             raise SettingError(
                 worded(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import shapely
@@ -10,7 +11,7 @@ import shapely
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FieldmonError, ObservationError, PlotError
 from fieldmon.infestation.observations import Observations
-from fieldmon.io.import_report import ImportMessage, doubtful
+from fieldmon.io.import_report import Imported, ImportMessage, doubtful
 from fieldmon.io.options import source_name
 from fieldmon.io.prepared import EstateRecords, Laid
 from fieldmon.io.read import (
@@ -18,17 +19,18 @@ from fieldmon.io.read import (
     read_records_by_plot,
 )
 from fieldmon.io.readers.nearby import on_other_plots, on_plants, without_corners
+from fieldmon.io.readers.placed_twice import PlacedTwice
 from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fieldmon.io.import_report import Imported
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.sources import (
         RecordSource,
     )
     from fieldmon.plot.field import Field
+    from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
 
 #: names of plots in a sentence
@@ -62,6 +64,7 @@ def records_on(
     apart_m = plot.grid.plant_spacing_m
     try:
         read = read_records(source.file, source.options, plot.field, apart_m=apart_m)
+        read = _doubted(read, partial(_doubts_on, plot.field, lambda: plot.grid, measured))
     except ChoiceNeeded as question:
         if question.option not in {"plants", "plots"}:
             raise
@@ -73,6 +76,58 @@ def records_on(
             raise elsewhere from None
         raise
     return read.having(read.value, on_plants(read.value, plot.grid))
+
+
+def _doubted(
+    read: Imported[Observations], doubts: Callable[[PlacedTwice], list[ImportMessage]]
+) -> Imported[Observations]:
+    """Return what was read with doubts in place of what is said of records placed twice."""
+    twice = next((one for one in read.messages if isinstance(one, PlacedTwice)), None)
+    said = [] if twice is None else doubts(twice)
+    if not said:
+        return read
+    return Imported(read.value, (*(one for one in read.messages if one is not twice), *said))
+
+
+def _doubts_on(
+    field: Field, make: Callable[[], PlantGrid], measured: Plants | None, twice: PlacedTwice
+) -> list[ImportMessage]:
+    """Return a doubt where records on a plot lie elsewhere than the plants of it that they name."""
+    here = twice.on(field)
+    if not len(here.lonlat):
+        return []
+    try:
+        grid = make()
+    except PlotError:  # it carries no plants, which is said where they are asked for
+        return []
+    return here.doubts(NamedPlaces.of((field,), grid, measured, field.name), _spacing_m(grid))
+
+
+def _doubts_on_all(
+    fields: tuple[Field, ...], lay: Callable[[Field], Laid], twice: PlacedTwice
+) -> list[ImportMessage]:
+    """Return the same of every plot: of those that records name, or else on which they lie."""
+    if named := plots_called(twice.plots, fields):
+        try:
+            grids = {each.name: lay(each).plot.grid for each in named}
+        except PlotError:
+            return []
+        plants = {each.name: labelled(grids[each.name], None, each.blocks) for each in named}
+        spacing_m = max(map(_spacing_m, grids.values()))
+        return twice.doubts(NamedPlaces(fields, plants_of=plants), spacing_m)
+    return [
+        replace(doubt, feature=each.name if len(fields) > 1 else None)
+        for each in fields
+        for doubt in _doubts_on(each, partial(_grid_of, each, lay), None, twice)
+    ]
+
+
+def _grid_of(field: Field, lay: Callable[[Field], Laid]) -> PlantGrid:
+    return lay(field).plot.grid
+
+
+def _spacing_m(grid: PlantGrid) -> float:
+    return max(grid.row_spacing_m, grid.plant_spacing_m)
 
 
 def _elsewhere(
@@ -101,6 +156,7 @@ def records_of(
         if question.option != "plants":
             raise
         return _by_plant(fields, source, lay, question.choices)
+    read = _doubted(read, partial(_doubts_on_all, fields, lay))
     records, corners = without_corners(read.value, fields)
     far = _far_from_all(fields, source, records)
     return read.having(EstateRecords(records), [*corners, *far])

@@ -33,10 +33,12 @@ from fieldmon.io.read import (
 )
 from fieldmon.io.readers.nearby import plants_on
 from fieldmon.io.sources import PlantingChoices
+from fieldmon.io.unused import unused_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plants_outside import distance_m
 from fieldmon.plot.plot import Plot, planting_of, plot_around
+from fieldmon.plot.row_report import told_by_hand
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -82,10 +84,12 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
         role = sources.first
         exchanged = getattr(sources, f"{role}_options").swap_axes
         hearing.say(role, file, said_of_place(laid.plot.field, exchanged=exchanged))
-    if sources.plants is not None:
-        hearing.say("plants", sources.plants, laid.messages)
-    elif sources.rows is not None:
-        hearing.say("rows", sources.rows, laid.messages)
+    role = "plants" if sources.plants is not None else "rows"
+    if (file := getattr(sources, role)) is not None:
+        hearing.say(role, file, laid.messages)
+        hearing.say(role, file, unused_of(laid.plot.field, request.planting))
+    elif (file := sources.plot) is not None:
+        hearing.say("plot", file, unused_of(laid.plot.field, request.planting))
     if listener is not None:
         listener.laid(laid)
     plot, records, risk = laid.plot, Observations.none(), None
@@ -181,6 +185,8 @@ def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Es
     places = (one for each in fields for one in said_of_place(each, exchanged=exchanged))
     hearing.say("plot", file, gathered(places))
     fields = with_rows(fields, sources, request.planting, hearing)
+    unused = (one for each in fields for one in unused_of(each, request.planting))
+    hearing.say("plot" if sources.rows is None else "rows", sources.rows or file, gathered(unused))
     fields = _with_paths(fields, sources, hearing)
     if (asked := request.records) is not None:
         lay_one = partial(lay, choices=request.planting)
@@ -212,7 +218,7 @@ def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
         return Laid(Plot.of(replace(field, in_rows=False)))
     given = choices.given()
     plot = Plot.of(field, planting_of(field, **given))
-    return Laid(replace(plot, assumed=assumed_of(field, choices)))
+    return Laid(replace(_told(plot, given), assumed=assumed_of(field, choices)))
 
 
 def assumed_of(field: Field, choices: PlantingChoices) -> tuple[Assumed, ...]:
@@ -240,7 +246,15 @@ def lay_around(
     if not choices.in_rows:
         return Laid(Plot.among(name, measured.lonlat.copy(), sources.gate))
     plants = measured.lonlat.copy()
-    return Laid(plot_around(name, plants, planting, sources.gate, measured.names))
+    plot = plot_around(name, plants, planting, sources.gate, measured.names)
+    return Laid(_told(plot, choices.given()))
+
+
+def _told(plot: Plot, given: dict[str, float]) -> Plot:
+    """Return a plot that knows which spacings of its measured plants were said by hand."""
+    if plot.rows is None:
+        return plot
+    return replace(plot, rows=told_by_hand(plot.rows, plot.grid, given))
 
 
 def with_plants(field: Field, measured: Plants) -> Field:

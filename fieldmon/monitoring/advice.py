@@ -13,13 +13,13 @@ from scipy.spatial import cKDTree
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.ranges import USUAL_SURE
 from fieldmon.compute.units import Units
-from fieldmon.compute.wording import counted, figure, joined, share_figure, worded
+from fieldmon.compute.wording import chance_figure, counted, figure, joined, share_figure, worded
 from fieldmon.decisions.map_verdict import AskedVerdict, verdict_of, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import best_zones, outlines
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.reach import RADIUS
+from fieldmon.infestation.jump_reach import RADIUS
 from fieldmon.io.spray_rate import USUAL_RATE_L_HA, litres_figure, must_be_rate
 from fieldmon.io.writers.treatment_map import TreatmentMap
 from fieldmon.samplers.decide import Decide
@@ -447,7 +447,8 @@ class Advice:
         )  # fmt: skip
 
     def _enough_said(self) -> str:
-        return worded("The chance that it is enough is {enough:.0%}.", enough=self.said.enough)
+        enough = chance_figure(self.said.enough, drawn=True)
+        return worded("The chance that it is enough is {enough}.", enough=enough)
 
     def treatment_map(self, field: Field, product: str = "") -> TreatmentMap:
         """Return what the sprayer needs.

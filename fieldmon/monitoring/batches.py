@@ -174,12 +174,12 @@ def name(db: sqlite3.Connection, batch: int, who: str) -> None:
 
 
 def must_count(db: sqlite3.Connection, batch: int) -> None:
-    """Raise `SettingError` unless a batch of findings is there and was not undone."""
+    """Raise `SettingError` unless a batch of inspections is there and was not undone."""
     row = db.execute("SELECT kind, undone FROM batches WHERE fid = ?", (batch,)).fetchone()
     if row is None or row[0] != "findings" or row[1]:
         raise SettingError(
             worded(
-                "A batch to add findings to must still count, but batch {batch} does not. See "
+                "A batch to add inspections to must still count, but batch {batch} does not. See "
                 "what was recorded with: fieldmon status --batches",
                 batch=batch,
             )
@@ -197,8 +197,8 @@ def end(db: sqlite3.Connection, batch: int, rows: int, *, grows: bool = False) -
     touch(db, schema.BATCHES.name)
 
 
-def count_findings(db: sqlite3.Connection) -> None:
-    """Let each batch of findings have as many rows as are left of it: some may be corrections."""
+def count_inspections(db: sqlite3.Connection) -> None:
+    """Let batches of inspections have as many rows as are left: some may be corrections."""
     db.execute(
         "UPDATE batches SET rows = (SELECT count(*) FROM inspections WHERE batch = batches.fid) "
         "WHERE kind = 'findings'"

@@ -230,13 +230,13 @@ def counts_no_more(one: KeptTreatment, label: ProductLabel | None, why: str) -> 
 
 
 def same_plants_twice(one: KeptTreatment, other: KeptTreatment, units: Units | None = None) -> str:
-    """Return that two sprayings with one product on one day may be one; "": of other plants."""
+    """Return that two treatments with one product on one day may be one; "": of other plants."""
     n = int(np.count_nonzero(one.place.plants & other.place.plants))
     if not n:
         return ""
     first, second = sorted((one.batch, other.batch))
     return worded(
-        "Two sprayings of {plants} with {product} on {day}: batches {first} and {second}. Both "
+        "Two treatments of {plants} with {product} on {day}: batches {first} and {second}. Both "
         "count; undo one if it was the same.",
         plants=counted(n, "plant"), first=figure(first), second=figure(second),
         **_named(one, units or Units()),

@@ -60,7 +60,7 @@ def take(
             taken.append(one)
         else:
             taken.append(_rewrite(db, theirs, one, (plot, settings, batch)))
-    batches.count_findings(db)
+    batches.count_inspections(db)
     batches.end(db, batch, len(changes))
     touch(db, INSPECTIONS.name)
     return tuple(outside_changes.in_words(db, one) for one in taken)

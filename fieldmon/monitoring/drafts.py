@@ -1,4 +1,4 @@
-"""Findings that another program (QGIS, QField) added to the season itself: drafts, and who counts.
+"""Inspections that another program (QGIS, QField) added to the season: drafts, and who counts.
 
 A draft has no digest. It counts from the season's next opening on, if it says what was seen at
 which plant and when; what does not stays a draft, and is told of.
@@ -33,7 +33,7 @@ _SAID = {"found": PRESENT, "clean": ABSENT, "skipped": UNKNOWN}
 
 
 class Draft(NamedTuple):
-    """A finding that another program added.
+    """An inspection that another program added.
 
     Parameters
     ----------

@@ -17,6 +17,7 @@ from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
 if TYPE_CHECKING:
     import sqlite3
+    from datetime import date
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -32,6 +33,7 @@ _SAYS = (
     f"UPDATE inspections SET result = ?, count = ?, time = coalesce(?, time), {_BESIDE} "  # noqa: S608 - ours
     "WHERE fid = ?"
 )
+_WHEN = "UPDATE inspections SET date = coalesce(?, date), time = coalesce(?, time) WHERE fid = ?"
 _WAS = f"SELECT {INSPECTED} FROM inspections AS old WHERE fid = ?"  # noqa: S608 - as above
 
 
@@ -65,7 +67,7 @@ def take(
             other = OutsideChange(INSPECTIONS.name, fid, "delete", stood)
             copy_corrections.stand_back(db, other, batch)
             taken.append(other)
-    batches.count_findings(db)
+    batches.count_inspections(db)
     batches.end(db, batch, len(inspections))
     touch(db, INSPECTIONS.name)
     return tuple(outside_changes.in_words(db, one) for one in taken)
@@ -74,16 +76,21 @@ def take(
 def retime(
     db: sqlite3.Connection,
     row: int,
-    second: float,
+    when: tuple[date | None, float | None],
     plot: tuple[PlantGrid, RowLabel],
     settings: MonitoringSettings,
     who: str,
 ) -> tuple[str, ...]:
-    """Give one inspection that counts another time of its day; say so."""
+    """Give one inspection that counts another day, or another time of its day; say so.
+
+    `when` are the day and the seconds since its midnight; None: as it is.
+    """
+    day, second = when
     batches.counting(db, row)
     (was,) = db.execute(_WAS, (row,)).fetchone()
     batch = batches.begin(db, "corrections", "", who)
-    says = "UPDATE inspections SET time = ? WHERE fid = ?", (time_text(second), row)
+    on, at = day and day.isoformat(), None if second is None else time_text(second)
+    says = _WHEN, (on, at, row)
     change = _changed(db, (row, was), says, plot, (settings, batch))
     batches.end(db, batch, 1)
     touch(db, INSPECTIONS.name)

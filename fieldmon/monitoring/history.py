@@ -21,9 +21,10 @@ from fieldmon.infestation.chance_bounds import KNOWN
 from fieldmon.infestation.earlier_season import Believed, EarlierSeason
 from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections, after_their_find
-from fieldmon.infestation.learnt import learnt_from
+from fieldmon.infestation.learnt import learnt_from, with_start
 from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.origins import Estimate
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
@@ -470,7 +471,27 @@ class History:
         told = self.mean_detection(day) if detection is None else detection
         if np.all(self.until(day).result == SKIPPED):  # nights alone teach nothing
             return learnt_from(self.first_morning, told)
-        return learnt_from(self.in_hindsight(morning, day), told)
+        learnt = learnt_from(self.in_hindsight(morning, day), told)
+        if not learnt or self._ended_unfound(day):
+            return learnt
+        ever = self._ever_infested(morning, day)
+        return with_start(learnt, ever, nights_passed=day > 0)
+
+    def _ever_infested(self, morning: Belief, day: int) -> Estimate:
+        """Return how many plants were infested by the evening of a day, if found or still so."""
+        done, left = self.until(day), self.estimate(morning, day)
+        found = len(np.unique(done.plant[done.result == FOUND]))
+        return Estimate(found + left.expected, found + left.low, found + left.high)
+
+    def _ended_unfound(self, day: int) -> bool:
+        """Tell whether infestations may have ended until a day that nobody found."""
+        lives_in = self.pest_in_weather
+        dies = lives_in is not None and lives_in.pest.mortality_per_day > 0.0
+        return (
+            (dies and day > 0)
+            or any(one.day <= day for one in self.treatments)
+            or bool(self.gone(day).any())
+        )
 
     def first_find(self, on: date) -> date | None:
         """Return the day of the first find up to a date; None: there is none yet."""

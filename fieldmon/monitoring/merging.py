@@ -7,6 +7,9 @@ added to it (`treatments.known_by`). Everything is put in the order in which it 
 that it does not matter which copy takes in the other; what a copy recorded later stays so, whatever
 its clock said. Inspections that both copies begin with, and that come out where they are, are left
 there: of a long season these are nearly all.
+
+What is refused here pages may show, so that it is `worded`; what came of merging only commands and
+programs say.
 """
 
 from __future__ import annotations
@@ -158,60 +161,127 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
     """
     refuse_strangers(db, other)
     refuse_another_pest(db, other)
-    less = [table for table in TAKEN if table is not schema.INSPECTIONS]
-    copies = [{table.name: _rows(one, table) for table in less} for one in (db, other)]
-    phones = [phone_tables.brought(one) for one in (db, other)]
+    both = db, other
+    copies = [_read(one) for one in both]
+    phones = [phone_tables.brought(one) for one in both]
     batches = _merged_batches(copies)
     numbers = [
         {row["fid"]: batches[_key(row, _BATCH)]["fid"] for row in copied["batches"]}
         for copied in copies
     ]
-    stay = _n_staying((db, other), numbers)
-    before, keys, noted = _counting(db, stay), _keys(db), said_beside.notes(db, stay)
+    stay = _n_staying(both, numbers)
+    before = _Standing.of(db, stay)
     unnamed = (*_of_no_pest(db, other), *_of_no_pest(other, db))
     applied = [treatments.counting_of(copied["treatments"]) for copied in copies]
+    gone = _merge_changes(db, copies, batches)
+    _merge_inspections(both, numbers, gone, stay)
+    treated, held = _merge_treatments(db, copies, numbers)
+    _write_batches(db, batches)
+    _write_routes(db, copies, _given_out(db, other))
+    differing, chosen = _merge_settings(db, copies)
+    _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, "at"))
+    replaced_twice, other_labels = _merge_labels(both, copies)
+    for batch, _ in phone_tables.bring_together(db, phones):
+        close_if_empty(db, batch)
+    after = _Standing.of(db, stay)
+    n_treated, undone = _changed_treatments(db, applied)
+    return MergedCopy(
+        new=len(after.counting - before.counting),
+        taken_back=len(before.counting - after.counting),
+        differing=(
+            *differing,
+            *unnamed,
+            *replaced_twice,
+            *_alike_but_for_labels(treated, held),
+        ),
+        treatments=n_treated,
+        codes=tuple(sorted(name for key, name in after.keys.items() if key not in before.keys)),
+        numbers={old: number for old, number in numbers[0].items() if old != number},
+        gone=undone,
+        chosen=(*chosen, *other_labels),
+        alike=tuple(_of_one_product(treated, held)),
+        noted=said_beside.n_noted(before.notes, after.notes, {*after.notes} - after.counting),
+    )
+
+
+class _Standing(NamedTuple):
+    """What holds in a season file at a moment of merging, to tell what merging changed.
+
+    Parameters
+    ----------
+    counting
+        Inspections that count, by their digests.
+    keys
+        Whose keys hold, by the digests of these.
+    notes
+        What is noted of each inspection, by its digest.
+    """
+
+    counting: set[str]
+    keys: dict[str, str]
+    notes: dict[str, said_beside.Notes]
+
+    @classmethod
+    def of(cls, db: sqlite3.Connection, stay: int) -> _Standing:
+        """Return it; inspections that `stay` are left out."""
+        return cls(_counting(db, stay), _keys(db), said_beside.notes(db, stay))
+
+
+def _read(db: sqlite3.Connection) -> dict[str, list[Row]]:
+    """Return the rows of what is taken row by row, by their table; inspections are read later."""
+    return {table.name: _rows(db, table) for table in TAKEN if table is not schema.INSPECTIONS}
+
+
+def _merge_changes(
+    db: sqlite3.Connection, copies: list[dict[str, list[Row]]], batches: dict[Hashable, Row]
+) -> Corrected:
+    """Let `db` have what other programs changed in either copy; return what was corrected."""
     changes = _merged_changes(copies, batches)
     _write(db, schema.OUTSIDE_CHANGES, changes)
-    gone = replaced.corrected([row for row in changes if row["batch"] is not None])
-    _merge_inspections((db, other), numbers, gone, stay)
+    return replaced.corrected([row for row in changes if row["batch"] is not None])
+
+
+def _merge_treatments(
+    db: sqlite3.Connection, copies: list[dict[str, list[Row]]], numbers: list[Numbers]
+) -> tuple[list[Row], list[set[tuple[str | None, int | None]]]]:
+    """Let `db` have the treatments of both; return them, and which each copy had.
+
+    These by their digests and the numbers that their batches have now.
+    """
     own = [copied["treatments"] for copied in copies]
-    treated = _merged_findings(own, numbers, set(), {})
+    treated = _merged_rows(own, numbers, set(), {})
     treatments.settle(treated)
     _write(db, schema.TREATMENTS, treated)
+    held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
+            for rows, batch_of in zip(own, numbers, strict=True)]  # fmt: skip
+    return treated, held
+
+
+def _write_batches(db: sqlite3.Connection, batches: dict[Hashable, Row]) -> None:
+    """Let these be the batches, each with how many rows it has now."""
     _count(db, batches)
     numbered = [row["fid"] for row in batches.values()]
     _write(db, schema.BATCHES, list(batches.values()), numbers=numbered)
-    _write_routes(db, copies, _given_out(db, other))
+
+
+def _merge_settings(
+    db: sqlite3.Connection, copies: list[dict[str, list[Row]]]
+) -> tuple[tuple[str, ...], list[str]]:
+    """Let `db` have the choices of both; return which both chose differently, and what changed."""
     chosen = _once(copies, "settings", _CHOICE, "changed")
-    chosen_before = settings_log.as_written_now(settings_log.now(db))
+    before = settings_log.as_written_now(settings_log.now(db))
     _write(db, schema.SETTINGS, chosen)
-    taken_over = settings_log.differences(
-        chosen_before, settings_log.as_written_now(settings_log.now(db))
-    )
-    _write(db, schema.IMPORTS, _once(copies, "import_findings", schema.IMPORTS.names, "at"))
-    tables_kept = [season_log.labels_kept(one) for one in (db, other)]
-    labels, replaced_twice = _kept_last(copies, tables_kept)
-    taken_over += _other_labels(copies[0]["labels"], labels)
-    _write(db, schema.LABELS, labels)
-    for batch, _ in phone_tables.bring_together(db, phones):
-        close_if_empty(db, batch)
-    after = _counting(db, stay)
-    new, taken_back = len(after - before), len(before - after)
-    now = said_beside.notes(db, stay)
-    n_noted = said_beside.n_noted(noted, now, {*now} - after)
-    codes = tuple(sorted(name for key, name in _keys(db).items() if key not in keys))
-    n_treated, undone = _changed_treatments(db, applied)
-    held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
-            for rows, batch_of in zip(own, numbers, strict=True)]  # fmt: skip
-    said = (
-        *_differing(copies, chosen), *unnamed, *replaced_twice,
-        *_alike_but_for_labels(treated, held),
-    )  # fmt: skip
-    anew = {old: number for old, number in numbers[0].items() if old != number}
-    return MergedCopy(
-        new, taken_back, said, n_treated, codes, anew, undone, tuple(taken_over),
-        tuple(_of_one_product(treated, held)), n_noted,
-    )  # fmt: skip
+    after = settings_log.as_written_now(settings_log.now(db))
+    return _differing(copies, chosen), settings_log.differences(before, after)
+
+
+def _merge_labels(
+    both: tuple[sqlite3.Connection, sqlite3.Connection], copies: list[dict[str, list[Row]]]
+) -> tuple[tuple[str, ...], list[str]]:
+    """Let the first have the table of labels kept last; say if both kept one, and if it changed."""
+    labels, replaced_twice = _kept_last(copies, [season_log.labels_kept(one) for one in both])
+    _write(both[0], schema.LABELS, labels)
+    return replaced_twice, _other_labels(copies[0]["labels"], labels)
 
 
 def _changed_treatments(
@@ -309,10 +379,9 @@ def _of_no_pest(db: sqlite3.Connection, other: sqlite3.Connection) -> Iterator[s
     """Yield a sentence where `db` names a pest, and another names none but found something."""
     pest, named = _pests(db, other)
     if pest and not named and _counting(other, 0) - _counting(db, 0):
-        yield worded(
-            "Only one copy names a pest, {pest}: what the other found counts as found of it, too. "
-            "If that one looked for another pest, undo its batches.",
-            pest=pest,
+        yield (
+            f"Only one copy names a pest, {pest}: what the other found counts as found of it, too. "
+            "If that one looked for another pest, undo its batches."
         )
 
 
@@ -441,7 +510,7 @@ def _merge_inspections(
     counts = "SELECT digest FROM inspections WHERE digest = ? AND undone = 0 AND fid <= ?"
     digests = {row["digest"] for rows in copies for row in rows}
     counting = {held for one in digests for (held,) in db.execute(counts, (one, stay))}
-    _write(db, schema.INSPECTIONS, _merged_findings(copies, numbers, counting, gone), stay)
+    _write(db, schema.INSPECTIONS, _merged_rows(copies, numbers, counting, gone), stay)
 
 
 def _n_staying(both: tuple[sqlite3.Connection, sqlite3.Connection], numbers: list[Numbers]) -> int:
@@ -499,7 +568,7 @@ def _spans(db: sqlite3.Connection) -> dict[int, tuple[int, int, int]]:
     return {number: (first, last, count) for number, first, last, count in db.execute(spans)}
 
 
-def _merged_findings(
+def _merged_rows(
     copies: list[list[Row]], numbers: list[Numbers], counting: set[str], gone: Corrected
 ) -> list[Row]:
     """Return inspections or treatments of both copies, once each, in the order of their batches.

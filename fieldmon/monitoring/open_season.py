@@ -299,6 +299,11 @@ class OpenSeason:
         with self.store.reading() as db:
             return season_log.entries(db)
 
+    def records_known(self) -> Observations:
+        """Return the records from which the season began."""
+        begins = np.datetime64(self.settings.begins, "D")
+        return usable(self.observations, begins).observations
+
     def last_date(self) -> date:
         """Return the last day on which anything was planned or recorded; at first the first."""
         with self.store.reading() as db:

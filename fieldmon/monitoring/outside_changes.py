@@ -203,7 +203,7 @@ def correct(
         [fid for _, fid in kept],
     )
     db.executemany("UPDATE outside_changes SET now = ? WHERE fid = ?", kept)
-    batches.count_findings(db)
+    batches.count_inspections(db)
     db.execute("UPDATE batches SET rows = ? WHERE fid = ?", (len(found), batch))
     db.execute("UPDATE outside_changes SET batch = ? WHERE batch IS NULL", (batch,))
     return tuple(said)

@@ -1,4 +1,4 @@
-"""A QGIS project inside a season's file: today's route, findings to fill in, nothing internal.
+"""A QGIS project inside a season's file: today's route, inspections to fill in.
 
 QGIS and QField list it with the file and open it with one tap, without a network. It is XML in a
 zip, in hexadecimal, as QGIS itself keeps projects in GeoPackages (``qgsgeopackageprojectstorage``).
@@ -215,7 +215,7 @@ def _themes(today: tuple[Shown, ...], earlier: tuple[Shown, ...]) -> str:
 
 
 def _form() -> str:
-    """Return what people fill in of a finding: a choice list, today's date, a count."""
+    """Return what people fill in of an inspection: a choice list, today's date, a count."""
     day = option("display_format", "yyyy-MM-dd") + option("field_format", "yyyy-MM-dd")
     return (
         "<fieldConfiguration>"

@@ -22,6 +22,7 @@ from fieldmon.monitoring import (
     inspection_table,
     label_table,
     merging,
+    numbered_inspections,
     outside_changes,
     phone_tables,
     said_beside,
@@ -53,8 +54,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fieldmon.monitoring.batches import Batch, BatchContents
+    from fieldmon.monitoring.merging import MergedCopy
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.tables import KeptMessage
+    from fieldmon.monitoring.treatments import KeptTreatment
 
 
 #: why treatments do not count any more after merging, as `MergedCopy` has them
@@ -190,8 +193,9 @@ class SeasonRecords(OpenSeason):
     def record_instead(self, inspections: Inspections, source: str = "", who: str = "") -> Recorded:
         """Add inspections; where they contradict what is recorded, they hold in its place.
 
-        Those are a batch of corrections, the others one of findings. Undoing the corrections brings
-        back what stood there before. Of results that contradict each other the later one holds.
+        Those are a batch of corrections, the others one of inspections. Undoing the corrections
+        brings back what stood there before. Of results that contradict each other the later one
+        holds.
 
         Parameters
         ----------
@@ -372,8 +376,10 @@ class SeasonRecords(OpenSeason):
             self._corrected(db, taken, who)
         return len(taken)
 
-    def correct_time(self, inspection: int, at: time, who: str) -> str:
-        """Give one inspection another time of its day; return what was done.
+    def correct_time(
+        self, inspection: int, at: time | None, who: str, on: date | None = None
+    ) -> str:
+        """Give one inspection another day, or another time of its day; return what was done.
 
         That is a batch of its own; undoing it brings back the time before.
 
@@ -382,21 +388,44 @@ class SeasonRecords(OpenSeason):
         inspection
             Its number (fid) in the season's file.
         at
-            The local time that is right.
+            The local time that is right; None: as it is.
         who
             Who corrects.
+        on
+            The day that is right, of the season and not to come; None: as it is.
 
         Raises
         ------
         SettingError
-            If there is no such inspection that counts.
+            If there is no such inspection that counts, or no such day yet.
         """
         with self._writing() as db:
             plot, settings = (self.plot.grid, self.label), settings_of(db)
-            who = written_in(db, who)
-            said = held_instead.retime(db, inspection, seconds(at), plot, settings, who)
+            if on is not None:
+                settings.day(on)
+                self._must_have_come(on, at)
+            who, when = written_in(db, who), (on, None if at is None else seconds(at))
+            said = held_instead.retime(db, inspection, when, plot, settings, who)
             self._corrected(db, said, who)
         return said[0]
+
+    def _must_have_come(self, on: date, at: time | None) -> None:
+        """Raise `SettingError` if a moment, or a whole day, lies ahead of the plot's clock."""
+        now = local_clock(self.plot.field).now()
+        if (on, at or now.time()) > (now.date(), now.time()):
+            raise SettingError(
+                worded(
+                    "An inspection must be of a moment that has come, but {day} has not: on the "
+                    "plot it is {now}.",
+                    day=str(on) if at is None else f"{on} {at:%H:%M}",
+                    now=f"{now:%Y-%m-%d %H:%M}",
+                )
+            )
+
+    def inspections_of(self, plant: int) -> tuple[numbered_inspections.NumberedInspection, ...]:
+        """Return the inspections of a plant that count, in their order, with their numbers."""
+        with self.store.reading() as db:
+            return numbered_inspections.of_plant(db, plant)
 
     def number_of(self, inspections: Inspections) -> int:
         """Return the number (fid) in the file of the last of some inspections with times."""
@@ -412,7 +441,7 @@ class SeasonRecords(OpenSeason):
         return int(number)
 
     def take_drafts(self) -> tuple[str, ...]:
-        """Let findings count that another program added to the file itself.
+        """Let inspections count that another program added to the file itself.
 
         They are a batch of their own. Return a sentence for each that does not count, and why; it
         stays as it is. Where more was changed, nothing is taken before that is settled.
@@ -535,45 +564,35 @@ class SeasonRecords(OpenSeason):
                 # nobody writes there from here on
                 contradict = contradictions(other.inspections, held)
                 clock = local_clock(self.plot.field)
-                treated = [treatments.kept(one, self._inside, clock) for one in (db, theirs)]
+                here, there = (treatments.kept(one, self._inside, clock) for one in (db, theirs))
                 taken = merging.merge(db, theirs)
             self._refresh(db)
             # what either copy took back or corrected contradicts nothing
             contradict = contradict.still(self._inspections(db))
-            moved = bool(taken.numbers)
+            ended = _ended(here, there, taken)
             states, labels = season_log.states(db), label_table.read(db)
-            here, there = treated
-            gone = [(one, why) for why, each, no_more in zip(_GONE, (here, there, here), taken.gone,
-                    strict=True) for one in each if one.number in no_more]  # fmt: skip
             if states != was:
-                undone = [f"{one.application.product or 'a product that nobody named'} on {one.on}"
-                          for one, why in gone if why != _GONE[1]]  # fmt: skip
-                season_log.append(
-                    db, "merged", states=states, new=taken.new, entries=len(told), theirs=told,
-                    moved=moved, numbers=taken.numbers, undone=undone,
-                    chosen=taken.chosen, more=str(more_in_words(taken.noted)),
-                )  # fmt: skip
-            by_number = {one.number: one for one in treatments.kept(db, self._inside, clock)}
-            twice = (
-                cautions.same_plants_twice(by_number[one], by_number[other])
-                for one, other in taken.alike
-            )
-            twice_said = tuple(said for said in twice if said)
+                _log_merged(db, states, told, taken, ended)
+            twice = _recorded_twice(treatments.kept(db, self._inside, clock), taken)
             overlaps = scouts.overlaps(db, int(self.label.line.max()))
-        undone_in_one = (
-            cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in gone
+        no_more = (
+            cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in ended
         )
-        said = *contradict.sentences(self.plot.grid), *taken.differing, *twice_said, *undone_in_one
         return Merged(
-            taken.new,
-            said,
-            taken.taken_back,
-            moved,
-            taken.treatments,
-            taken.codes,
-            overlaps,
-            taken.chosen,
-            taken.noted,
+            new=taken.new,
+            contradictions=(
+                *contradict.sentences(self.plot.grid),
+                *taken.differing,
+                *twice,
+                *no_more,
+            ),
+            taken_back=taken.taken_back,
+            moved=bool(taken.numbers),
+            treatments=taken.treatments,
+            codes=taken.codes,
+            overlaps=overlaps,
+            chosen=taken.chosen,
+            noted=taken.noted,
         )
 
     def batches(self) -> tuple[Batch, ...]:
@@ -601,3 +620,52 @@ def _by_those_known(known: dict[str, str], told: Inspections) -> Inspections:
     """Return inspections whose people are written as they are known."""
     names = [as_written(known, str(name)) for name in told.who]
     return replace(told, who=np.array(names, object))
+
+
+def _ended(
+    here: Sequence[KeptTreatment], there: Sequence[KeptTreatment], taken: MergedCopy
+) -> list[tuple[KeptTreatment, str]]:
+    """Return the treatments of two copies that do not count any more, each with why."""
+    return [
+        (one, why)
+        for why, counted, gone in zip(_GONE, (here, there, here), taken.gone, strict=True)
+        for one in counted
+        if one.number in gone
+    ]
+
+
+def _log_merged(
+    db: sqlite3.Connection,
+    states: dict[str, str],
+    told: list[dict[str, str]],
+    taken: MergedCopy,
+    ended: list[tuple[KeptTreatment, str]],
+) -> None:
+    """Note that another copy was taken in, with the entries that its log `told` beside ours."""
+    undone = [
+        f"{one.application.product or 'a product that nobody named'} on {one.on}"
+        for one, why in ended
+        if why != _GONE[1]
+    ]
+    season_log.append(
+        db,
+        "merged",
+        states=states,
+        new=taken.new,
+        entries=len(told),
+        theirs=told,
+        moved=bool(taken.numbers),
+        numbers=taken.numbers,
+        undone=undone,
+        chosen=taken.chosen,
+        more=str(more_in_words(taken.noted)),
+    )
+
+
+def _recorded_twice(counting: Sequence[KeptTreatment], taken: MergedCopy) -> list[str]:
+    """Return a sentence for each two treatments that may be one, recorded in either copy."""
+    by_number = {one.number: one for one in counting}
+    said = (
+        cautions.same_plants_twice(by_number[one], by_number[other]) for one, other in taken.alike
+    )
+    return [one for one in said if one]

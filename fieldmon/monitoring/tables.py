@@ -179,7 +179,8 @@ def _write_grid(db: sqlite3.Connection, grid: PlantGrid) -> None:
 
 def _write_plant_layers(db: sqlite3.Connection, grid: PlantGrid) -> None:
     lonlat, label = grid.lonlat(), row_label(grid)
-    lines = zip(row_corners(grid), grid.row_number, np.diff(grid.row_start), strict=True)
+    numbers, counts = grid.row_number[grid.unbroken], np.diff(grid.unbroken_start)
+    lines = zip(row_corners(grid), numbers, counts, strict=True)
     rows = [
         (blob(LineString(grid.frame.lonlat(corners))), int(line), int(n))
         for corners, line, n in lines

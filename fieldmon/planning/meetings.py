@@ -97,14 +97,15 @@ def _of_stops(route: Route, start_s: float) -> list[_Presence]:
     Aisles that are driven through between two count for all of that way: more than is true.
     """
     grid, legs = route.aisles.grid, legs_of(route.aisles)
-    aisle = grid.corridor[grid.row[route.plant]].tolist()
+    row = grid.row[route.plant]
+    aisle, stretch = grid.corridor[row].tolist(), grid.stretches[row].tolist()
     plants = route.plant.tolist()
     begins = [float(route.line_s[0]), *route.leave_s[:-1].tolist()]
     ends = [*route.arrive_s[1:].tolist(), route.end_s]
     found = []
     for k, one in enumerate(aisle):
         found.append(_Presence(one, start_s + begins[k], start_s + ends[k]))
-        if k and aisle[k - 1] != one:
+        if k and stretch[k - 1] != stretch[k]:
             through = legs.leg(plants[k - 1], plants[k]).through
             way = start_s + begins[k], start_s + float(route.arrive_s[k])
             found += [_Presence(passed, *way) for passed in through]

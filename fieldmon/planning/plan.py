@@ -143,7 +143,7 @@ class DayPlan:
         >>> [layer.id for layer in deck.layers]
         ['plot', 'plants', 'route', 'stops']
         """
-        from fieldmon.planning.explore import deck_of  # noqa: PLC0415 - loads pydeck
+        from fieldmon.planning.notebook_map import deck_of  # noqa: PLC0415 - loads pydeck
 
         return deck_of(self.route, self.chance)
 

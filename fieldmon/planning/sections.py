@@ -90,7 +90,7 @@ def aisle_worth(aisles: Aisles, robots: Sequence[Robot], chance: Float) -> Aisle
     travel, grid = aisles.travel, aisles.grid
     dearest = max(robot.detects / robot.visit_s for robot in robots) * float(chance.max())
     price = np.array([max(dearest, 1e-12) / _STEP**k for k in range(1, _PRICES + 1)])
-    n_aisles = int(grid.corridor.max()) + 1
+    n_aisles, lanes = int(grid.corridor.max()) + 1, (grid.corridor, ~grid.cut_ends)
     made: dict[tuple[object, ...], tuple[Float, Float]] = {}
     for robot in robots:
         clock = robot_clock(robot, robot.day_s)
@@ -98,7 +98,8 @@ def aisle_worth(aisles: Aisles, robots: Sequence[Robot], chance: Float) -> Aisle
         if key not in made:
             net, seconds = np.zeros((2, _PRICES, n_aisles))
             for p in range(_PRICES):
-                _value(travel, clock, chance * robot.detects, price[p], (net[p], seconds[p]))
+                finds = chance * robot.detects
+                _value(travel, lanes, clock, finds, price[p], (net[p], seconds[p]))
             made[key] = net, seconds
     keys = [(*robot_clock(robot, robot.day_s), robot.detects) for robot in robots]
     net = np.stack([made[key][0] for key in keys], axis=1)
@@ -139,19 +140,25 @@ def best_sections(worth: AisleWorth, heights: Float, left_s: Float, up: Int) -> 
 @loop
 def _value(
     travel: TravelTable,
+    lanes: tuple[NDArray[np.int32], NDArray[np.bool_]],
     clock: Clock,
     finds: Float,
     price: float,
     worth: tuple[Float, Float],
 ) -> None:
-    """Add up what the best drive in each row gains beyond its seconds, by aisle."""
-    net, seconds = worth
+    """Add up what the best drive in each row gains beyond its seconds, by aisle.
+
+    `lanes` are the aisle of each row ``(r,)``, and by which ends it is entered ``(r, 2)``.
+    """
+    (aisle, entered), (net, seconds) = lanes, worth
     least = price * clock.visit_s
     for row in range(travel.row_start.size - 1):
         first, end = travel.row_start[row], travel.row_start[row + 1]
         low_m, high_m = travel.end_x_m[row, 0], travel.end_x_m[row, 1]
         best, best_s = 0.0, 0.0
         for from_high in (False, True):
+            if not entered[row, int(from_high)]:
+                continue
             gains, n = 0.0, 0
             for k in range(end - first):
                 i = end - 1 - k if from_high else first + k
@@ -163,10 +170,10 @@ def _value(
                     spent_s += 2.0 * deep_m / clock.speed_m_s
                     if gains - price * spent_s > best:
                         best, best_s = gains - price * spent_s, spent_s
-            if n > 0 and not from_high:  # all through
+            if n > 0 and not from_high and entered[row, 1]:  # all through
                 spent_s = clock.row_change_s + n * clock.visit_s
                 spent_s += (high_m - low_m) / clock.speed_m_s
                 if gains - price * spent_s > best:
                     best, best_s = gains - price * spent_s, spent_s
-        net[travel.corridor[row]] += best
-        seconds[travel.corridor[row]] += best_s
+        net[aisle[row]] += best
+        seconds[aisle[row]] += best_s

@@ -176,6 +176,36 @@ def plan_team(
     must_differ(members)
     refuse_far_gates(members, plot.field)
     chance, begins = chances_of(chance, plot.n_plants), starts_at(on, plot)
+    _must_be_a_width(passing_m)
+    tasks = _tasks_of(plot, chance, members)
+    search = _StopSearch(plot, tasks, progress or (lambda _done, _of: None))
+    timed = max(
+        (_kept_apart(tasks, days, passing_m) for days in search.ways_to_share()),
+        key=lambda each: _expected(each.days),
+    )
+    if not _expected(timed.days):
+        raise _nothing_in_reach(chance)
+    starts_s = timed.late_s + [one.starts_s for one in members]
+    days = tuple(
+        _handed_out(
+            day,
+            chance,
+            RouteNotes(
+                plot.field.name,
+                _BEST_ROUTES,
+                begins + timedelta(seconds=round(float(s))),
+                member.name,
+            ),
+        )
+        for member, day, s in zip(members, timed.days, starts_s, strict=True)
+    )
+    held = _expected(days)
+    most = sound_bound(held, team_bound(tasks, held, search.proving))
+    search.proving(PRICES)  # it may have ended sooner
+    return TeamPlan(tuple(members), days, timed.late_s, most, passing_m)
+
+
+def _must_be_a_width(passing_m: float) -> None:
     if not 0.0 <= passing_m < np.inf:
         raise SettingError(
             worded(
@@ -183,7 +213,11 @@ def plan_team(
                 passing_m=passing_m,
             )
         )
-    tasks = [
+
+
+def _tasks_of(plot: Plot, chance: Float, members: Sequence[TeamMember]) -> list[MemberTask]:
+    """Return what each member looks for: from its own gate, as well as it finds, and when."""
+    return [
         MemberTask(
             plot.aisles if one.gate is None else plot.with_gate(one.gate).aisles,
             one.robot,
@@ -192,50 +226,29 @@ def plan_team(
         )
         for one in members
     ]
-    search = _StopSearch(plot, tasks, progress or (lambda _done, _of: None))
-    in_turn = search.in_turn()
-    exclusive = search.aisle_by_aisle(in_turn)
-    shared = search.apart(search.plant_by_plant(exclusive))
-    found = [search.turned(stops) for stops in (in_turn, exclusive, shared)]
-    timed = max(
-        (_kept_apart(tasks, days, passing_m) for days in found),
-        key=lambda each: _expected(each.days),
-    )
-    if not _expected(timed.days):
-        if not chance.any():
-            raise SettingError(
-                worded(
-                    "Some plant must have a chance of infestation above 0, but none has: there is "
-                    "nothing to look for. Give chances as of a chance map."
-                )
-            )
-        raise SettingError(
+
+
+def _nothing_in_reach(chance: Float) -> SettingError:
+    """Return why no member's day holds anything: no chances, or no time."""
+    if not chance.any():
+        return SettingError(
             worded(
-                "The hours of some member must be long enough to reach a plant and come back, "
-                "but none are. Give more hours."
+                "Some plant must have a chance of infestation above 0, but none has: there is "
+                "nothing to look for. Give chances as of a chance map."
             )
         )
-    days = tuple(replace(day, scene=replace(day.scene, chance=chance)) for day in timed.days)
-    starts_s = timed.late_s + [one.starts_s for one in members]
-    days = tuple(
-        replace(
-            day,
-            route=replace(
-                route_of(day.scene, day.work),
-                notes=RouteNotes(
-                    plot.field.name,
-                    _BEST_ROUTES,
-                    begins + timedelta(seconds=round(float(s))),
-                    member.name,
-                ),
-            ),
+    return SettingError(
+        worded(
+            "The hours of some member must be long enough to reach a plant and come back, "
+            "but none are. Give more hours."
         )
-        for member, day, s in zip(members, days, starts_s, strict=True)
     )
-    held = _expected(days)
-    most = sound_bound(held, team_bound(tasks, held, search.proving))
-    search.proving(PRICES)  # it may have ended sooner
-    return TeamPlan(tuple(members), days, timed.late_s, most, passing_m)
+
+
+def _handed_out(day: DayPlan, chance: Float, notes: RouteNotes) -> DayPlan:
+    """Return a day with the chances as they were given, and with what its route says beside."""
+    scene = replace(day.scene, chance=chance)
+    return replace(day, scene=scene, route=replace(route_of(scene, day.work), notes=notes))
 
 
 def _expected(days: Sequence[DayPlan]) -> float:
@@ -283,6 +296,13 @@ class _StopSearch:
     def proving(self, prices: int) -> None:
         """Tell how far the bound is, which is looked for after all routes."""
         self.progress(self.looked + prices, self.looked + PRICES)
+
+    def ways_to_share(self) -> list[list[DayPlan]]:
+        """Return three ways to share the plot, a day of each task in each; any may be the best."""
+        in_turn = self.in_turn()
+        exclusive = self.aisle_by_aisle(in_turn)
+        shared = self.apart(self.plant_by_plant(exclusive))
+        return [self.turned(stops) for stops in (in_turn, exclusive, shared)]
 
     def in_turn(self) -> list[Int]:
         """Return stops for each task, the best in the aisles that those before it leave.

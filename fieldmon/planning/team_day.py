@@ -139,7 +139,8 @@ class _TeamDay:
             worker.over, worker.end_s = True, now_s
             return
         aisle = int(self.corridor[target]) if target >= 0 else NOWHERE
-        if aisle == worker.holds and aisle >= 0 and self.holder[aisle] == worker.k:
+        holds = aisle == worker.holds and aisle >= 0 and self.holder[aisle] == worker.k
+        if holds and np.ptp(worker.stretch(np.array([worker.at, target]))) == 0:
             self._visit(worker, now_s + worker.seconds(worker.at, target), 0.0)
             return
         worker.claims = aisle
@@ -280,11 +281,11 @@ class _TeamDay:
         )
 
     def _visit(self, worker: TeamWorker, arrive_s: float, wait_s: float) -> None:
-        """Make the stops in the aisle that a worker is in."""
+        """Make the stops in the stretch of aisle that a worker is in."""
         plan, first = worker.plan, worker.next
         assert plan is not None  # noqa: S101 - it has a target
-        aisle = self.corridor[plan.plant[first:]]
-        n = 1 if worker.anew else int(np.argmax(np.append(aisle != aisle[0], True)))
+        stretch = worker.stretch(plan.plant[first:])
+        n = 1 if worker.anew else int(np.argmax(np.append(stretch != stretch[0], True)))
         late_s = arrive_s - worker.plan_from_s - float(plan.arrive_s[first])
         worker.visit = len(worker.done)
         for j in range(first, first + n):

@@ -12,6 +12,8 @@ from fieldmon.plot.passing import legs_of
 from fieldmon.plot.travel import GATE, travel_s
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.planning.headlands import Steps
     from fieldmon.plot.passing import Leg, Legs
     from fieldmon.samplers.base import Scene, WouldFind
@@ -115,6 +117,12 @@ class TeamWorker:
     def scene(self) -> Scene:
         """What it knew as its day began."""
         return self.post.scene
+
+    def stretch(self, plants: NDArray[np.integer]) -> NDArray[np.int32]:
+        """Return from which stretches of aisles it inspects plants ``(k,)``."""
+        travel = self.scene.aisles.travel
+        stretch: NDArray[np.int32] = travel.corridor[travel.row[plants]]
+        return stretch
 
     @property
     def until_s(self) -> float:

@@ -102,13 +102,19 @@ def _ground(field: Field, block: Block, planting: Planting) -> _BlockGround:
         for name in ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
         if (value := getattr(block, name)) is not None
     }
-    mine = [
-        line
-        for line in field.row_lines.geoms
-        if shapely.intersection(line, block.area).length > _MOST * line.length
-    ]
     own = replace(planting, **stated)
-    return _BlockGround(block, MultiPolygon(parts), MultiLineString(mine), own)
+    return _BlockGround(block, MultiPolygon(parts), drawn_in(field, block), own)
+
+
+def drawn_in(field: Field, block: Block) -> MultiLineString:
+    """Return the rows of a plot that were drawn in a block of it: those that lie there mostly."""
+    return MultiLineString(
+        [
+            line
+            for line in field.row_lines.geoms
+            if shapely.intersection(line, block.area).length > _MOST * line.length
+        ]
+    )
 
 
 def _bearing(field: Field, ground: _BlockGround) -> float:

@@ -79,10 +79,10 @@ class Clearance(NamedTuple):
         if not grid.in_rows:
             return np.zeros(grid.n_rows, np.bool_)
         room_m = lane_room_m(grid)
-        corridors = np.zeros(int(grid.corridor.max()) + 1, np.bool_)
-        alone = (room_m < self.way_m) | self.tight_ends(grid).all(axis=1)
-        corridors[grid.corridor[alone]] = True
-        rows: Mask = corridors[grid.corridor]
+        stretches = np.zeros(int(grid.stretches.max()) + 1, np.bool_)
+        tight = self.tight_ends(grid).all(axis=1) & ~grid.cut_ends.all(axis=1)
+        stretches[grid.stretches[(room_m < self.way_m) | tight]] = True
+        rows: Mask = stretches[grid.stretches]
         if rows.all() and (room_m >= self.way_m).any():
             if self.circle is not None:
                 raise PlotError(
@@ -123,11 +123,13 @@ class Clearance(NamedTuple):
     def turn_room(self, grid: PlantGrid) -> Mask:
         """Tell of each lane end whether there is room to turn right and left, ``(r, 2, 2)``.
 
-        As the lane runs to its high end; on the spot it is as much to both sides.
+        As the lane runs to its high end; on the spot it is as much to both sides. Nobody turns
+        where a lane is cut.
         """
         if self.circle is not None:
-            return end_turns(grid, self.circle).room
-        room: Mask = np.repeat((self.end_room_m(grid) >= self.turn_m)[..., None], 2, axis=2)
+            return end_turns(grid, self.circle).room & ~grid.cut_ends[..., None]
+        roomy = (self.end_room_m(grid) >= self.turn_m) & ~grid.cut_ends
+        room: Mask = np.repeat(roomy[..., None], 2, axis=2)
         return room
 
     @staticmethod
@@ -171,8 +173,9 @@ def lane_room_m(grid: PlantGrid) -> Float:
 
 def narrow_sentence(rows: Mask, grid: PlantGrid, needs: Clearance) -> str:
     """Return for people which rows ``(r,)`` a robot that needs so much cannot enter, and why."""
-    room_m, ends_m = lane_room_m(grid), needs.end_room_m(grid).max(axis=1)
-    in_aisle = np.isin(grid.corridor, grid.corridor[room_m < needs.way_m])
+    room_m = lane_room_m(grid)
+    ends_m = np.where(grid.cut_ends, 0.0, needs.end_room_m(grid)).max(axis=1)
+    in_aisle = np.isin(grid.stretches, grid.stretches[room_m < needs.way_m])
     said = []
     if (narrow := rows & in_aisle).any():
         said.append(

@@ -71,7 +71,7 @@ def opened(grid: PlantGrid, needs_m: float, off: shapely.Geometry) -> PlantGrid:
         What nobody may drive over.
     """
     plant_m = grid.along_m[grid.end_plants]
-    short = grid.beyond_plants_m < needs_m
+    short = (grid.beyond_plants_m < needs_m) & ~grid.cut_ends
     far_m = plant_m + (needs_m + _BESIDE_M) * np.array([-1.0, 1.0])
     wider = replace(grid, lane_x_m=np.where(short, far_m, grid.lane_x_m))
     ends_m = np.asarray(shapely.points(lane_ends(wider)[0]))

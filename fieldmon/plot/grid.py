@@ -82,7 +82,8 @@ class PlantGrid:
     lane_x_m
         ``(r, 2)`` x of the lane's two ends in the headland, low and high.
     corridor
-        ``(r,)`` rows with the same number are inspected from the same stretch of aisle.
+        ``(r,)`` rows with the same number are inspected from the same aisle, in which one drives
+        straight from each to each unless it is cut (see `stretch`).
     side
         ``(r,)`` int8: which side of its lane the row is on (-1: lower y, +1: higher y).
     drivable_m
@@ -121,6 +122,11 @@ class PlantGrid:
         more than their numbers; None: it is not. Several names of a line are lines of text.
     block_named
         ``(blocks,)`` the same of the blocks.
+    stretch, whole, cut
+        Where something cuts lanes of unbroken rows, else None: a row here is a piece of one then.
+        ``(r,)`` rows with the same number are inspected from the same stretch of lane, and are
+        pieces of the same unbroken row; ``(r, 2)`` ends at which a lane is cut while the row goes
+        on: nobody leaves it there.
     """
 
     frame: Frame
@@ -152,6 +158,9 @@ class PlantGrid:
     plant_named: NDArray[np.str_] | None = None
     block_named: NDArray[np.str_] | None = None
     beyond_m: MultiPolygon | None = None
+    stretch: NDArray[np.int32] | None = None
+    whole: NDArray[np.int32] | None = None
+    cut: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         for value in vars(self).values():
@@ -191,6 +200,45 @@ class PlantGrid:
         """Return how far each lane reaches beyond the first and the last plant, ``(r, 2)``."""
         beyond_m: NDArray[np.float64] = np.abs(self.lane_x_m - self.along_m[self.end_plants])
         return beyond_m
+
+    @property
+    def cut_ends(self) -> NDArray[np.bool_]:
+        """Return at which ends ``(r, 2)`` a lane is cut while the row goes on."""
+        return np.zeros((self.n_rows, 2), np.bool_) if self.cut is None else self.cut
+
+    @property
+    def closed_rows(self) -> NDArray[np.bool_]:
+        """Return which rows ``(r,)`` nobody gets to: their stretch of lane is cut at both ends."""
+        if self.cut is None:
+            return np.zeros(self.n_rows, np.bool_)
+        entered = np.zeros(int(self.stretches.max()) + 1, np.bool_)
+        entered[self.stretches[~self.cut.all(axis=1)]] = True
+        return ~entered[self.stretches]
+
+    @property
+    def stretches(self) -> NDArray[np.int32]:
+        """Return a number for each row ``(r,)``: one drives straight between rows of the same."""
+        return self.corridor if self.stretch is None else self.stretch
+
+    @property
+    def unbroken(self) -> NDArray[np.intp]:
+        """Return the first piece of each row that is unbroken on the ground, ``(w,)``."""
+        if self.whole is None:
+            return np.arange(self.n_rows)
+        return np.flatnonzero(np.diff(self.whole, prepend=-1) != 0)
+
+    @cached_property
+    def unbroken_row(self) -> NDArray[np.int32]:
+        """Row of each plant as it is unbroken on the ground, ``(n,)``, whatever cuts its lane."""
+        if self.whole is None:
+            return self.row
+        rows = np.arange(len(self.unbroken), dtype=np.int32)
+        return read_only(np.repeat(rows, np.diff(self.unbroken_start)))
+
+    @property
+    def unbroken_start(self) -> NDArray[np.int64]:
+        """Return offsets ``(w + 1,)`` of the plants of rows that are unbroken on the ground."""
+        return np.append(self.row_start[self.unbroken], len(self))
 
     @property
     def n_blocks(self) -> int:

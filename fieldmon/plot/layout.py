@@ -73,14 +73,15 @@ def lay(field: Field, planting: Planting) -> PlantGrid:
     Where rows were drawn, or the plot has blocks, plants stand along these, or in each of those.
     Raise `PlotError` if there is no room for a plant.
     """
-    bearing_deg = planting.row_bearing_deg
     if field.blocks:
         return lay_blocks(field, planting, _obstacles)
     if (along := _drawn_rows(field, planting)) is not None:
         return along
-    if bearing_deg is None:
-        found = rows_from_lines if not field.row_lines.is_empty else rows_from_boundary
-        bearing_deg = found(field).bearing_deg
+    bearing_deg = planting.row_bearing_deg
+    if not field.row_lines.is_empty:
+        bearing_deg = rows_from_lines(field).bearing_deg
+    elif bearing_deg is None:
+        bearing_deg = rows_from_boundary(field).bearing_deg
     frame = field.frame(bearing_deg)
     area = frame.geometry_m(field.drivable())
     check_size(field.name, area, planting)

@@ -10,6 +10,7 @@ import shapely
 
 from fieldmon.compute.arrays import offsets
 from fieldmon.plot.bent_layout import bent_grid
+from fieldmon.plot.names_on_ground import Stray, strays
 from fieldmon.plot.row_curves import row_lines_of
 from fieldmon.plot.row_detection import frame_around, rows_from_plants, split_lines
 from fieldmon.plot.row_lines import Ground, RowLines
@@ -49,7 +50,7 @@ class SaidRows(NamedTuple):
     whether somebody said that rows run about along x. ``misnamed`` is the share of plants that
     stand in another row than their name says, None where that was not looked at. ``block (n,)``
     numbers the block of each, None where these are not known; ``of_trial`` tells whether the
-    blocks named were none.
+    blocks named were none. ``strays`` are plants amid another row than they name.
     """
 
     label: NDArray[np.int64] | None
@@ -57,6 +58,7 @@ class SaidRows(NamedTuple):
     misnamed: float | None = None
     block: NDArray[np.int64] | None = None
     of_trial: bool = False
+    strays: tuple[Stray, ...] = ()
 
     def __repr__(self) -> str:
         return f"<SaidRows: {0 if self.label is None else len(self.label)} names>"
@@ -69,7 +71,8 @@ class SaidRows(NamedTuple):
         """
         if self.label is None and self.block is None:
             return self
-        traced = trace(frame_around(lonlat).xy_m(lonlat))
+        xy_m = frame_around(lonlat).xy_m(lonlat)
+        traced = trace(xy_m)
         if traced is None:
             return self
         if self.block is not None and _cut_rows(traced, self.block) > _MOST_CUT:
@@ -81,8 +84,11 @@ class SaidRows(NamedTuple):
         # every block may count its rows from 1
         named = self.label * (int(traced.block[-1]) + 1) + traced.block[row]
         misnamed = 1.0 - min(_shared(row, named), _shared(named, row))
-        label = None if misnamed > _NONSENSE else self.label
-        return self._replace(label=label, misnamed=misnamed)
+        if misnamed > _NONSENSE:
+            return self._replace(label=None, misnamed=misnamed)
+        # amid which row a plant stands is only seen where plants keep to theirs
+        gone = strays(xy_m, traced, self.label) if blur(traced) <= _NO_ROWS else ()
+        return self._replace(misnamed=misnamed, strays=gone)
 
 
 def said_rows(plants: Float, names: PlantNames, field: Field | None, *, bearing: bool) -> SaidRows:

@@ -29,25 +29,7 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
     is left goes, and lines that are counted from 1 are so anew where a whole line goes. Where
     both faces of a plant are inspected, both go. Raise `PlotError` if none is left.
     """
-    if len(missing) != len(grid):
-        raise PlotError(
-            worded(
-                "Missing plants must be marked for each of {n} plants, "
-                "but {given} marks were given.",
-                n=len(grid),
-                given=len(missing),
-            )
-        )
-    gone = missing | (missing[grid.twin] & (grid.twin >= 0))
-    if gone.all():
-        raise PlotError(
-            worded(
-                "One plant at least must be there, but all were marked as "
-                "missing. Check the canopy raster and the value below which a "
-                "plant is missing."
-            )
-        )
-    kept = ~gone
+    kept = ~_gone(grid, missing)
     new = np.where(kept, np.cumsum(kept) - 1, -1).astype(np.int32)
     n_plants = np.add.reduceat(kept.astype(np.int64), grid.row_start[:-1])
     rows = np.flatnonzero(n_plants)
@@ -70,6 +52,9 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
         across_plant=across[1],
         twin=np.where(twin >= 0, new[twin], -1).astype(np.int32),
         block=None if grid.block is None else _counted(grid.block[rows]),
+        stretch=None if grid.stretch is None else _counted(grid.stretch[rows]),
+        whole=None if grid.whole is None else _counted(grid.whole[rows]),
+        cut=_picked(grid.cut, rows),
         aisle=_picked(grid.aisle, rows),
         place_m=_picked(grid.place_m, kept),
         block_named=_picked(
@@ -80,6 +65,29 @@ def without(grid: PlantGrid, missing: NDArray[np.bool_]) -> PlantGrid:
         plant_called=_picked(grid.plant_called, kept),
         plant_named=_picked(grid.plant_named, kept),
     )
+
+
+def _gone(grid: PlantGrid, missing: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return which plants ``(n,)`` go: those missing, and their other faces; never all."""
+    if len(missing) != len(grid):
+        raise PlotError(
+            worded(
+                "Missing plants must be marked for each of {n} plants, "
+                "but {given} marks were given.",
+                n=len(grid),
+                given=len(missing),
+            )
+        )
+    gone = missing | (missing[grid.twin] & (grid.twin >= 0))
+    if gone.all():
+        raise PlotError(
+            worded(
+                "One plant at least must be there, but all were marked as "
+                "missing. Check the canopy raster and the value below which a "
+                "plant is missing."
+            )
+        )
+    return gone
 
 
 def _picked(values: NDArray[_T] | None, which: NDArray[Any]) -> NDArray[_T] | None:

@@ -99,7 +99,8 @@ class Obstacles:
         if clearance is None:
             beyond_m = grid.beyond_plants_m
             # where a lane ends at its last plant nobody turns
-            least_m = float(beyond_m.min(where=beyond_m > 0.0, initial=np.inf))
+            turned = (beyond_m > 0.0) & ~grid.cut_ends
+            least_m = float(beyond_m.min(where=turned, initial=np.inf))
             clearance_m = min(_CLEARANCE_M, 0.4 * least_m)
         else:
             clearance_m = clearance.way_m
@@ -198,8 +199,9 @@ def off_limits(grid: PlantGrid, no_go_m: shapely.Geometry | None, off_m: float) 
 
 
 def filled(area: shapely.Geometry) -> shapely.Geometry:
-    """Return an area without its holes."""
-    return shapely.union_all([Polygon(part.exterior) for part in shapely.get_parts(area)])
+    """Return an area without its holes, and without lines along which others only touch it."""
+    parts = (part for part in shapely.get_parts(area) if part.geom_type == "Polygon")
+    return shapely.union_all([Polygon(part.exterior) for part in parts])
 
 
 def _wider(area: shapely.Geometry, by_m: float) -> shapely.Geometry:
@@ -254,10 +256,9 @@ def _within(
 
 
 def _row_boxes(grid: PlantGrid, clearance_m: float) -> Float:
-    ends = grid.end_plants
-    corner = _corner_plants(grid)
-    step = np.flatnonzero(grid.row[corner[1:]] == grid.row[corner[:-1]])
-    alone = ends[ends[:, 0] == ends[:, 1], 0]
+    corner, row = _corner_plants(grid), grid.unbroken_row
+    step = np.flatnonzero(row[corner[1:]] == row[corner[:-1]])
+    alone = _alone(grid)
     start = grid.xy_m[np.append(corner[step], alone)]
     end = grid.xy_m[np.append(corner[step + 1], alone)]
     box_m = np.concatenate(
@@ -267,17 +268,23 @@ def _row_boxes(grid: PlantGrid, clearance_m: float) -> Float:
 
 
 def row_lines(grid: PlantGrid) -> NDArray[np.object_]:
-    """Return each row as a line through its plants, first to last, ``(r,)``.
+    """Return each unbroken row as a line through its plants, first to last, ``(w,)``.
 
     Plants in the middle of a row along x are left out. A row of one plant is a line of no length.
     Where rows bend they bend on between plants that are far apart.
     """
     if grid.aisles_m is not None:
         return row_courses(grid)
-    ends = grid.end_plants
-    plant = np.sort(np.append(_corner_plants(grid), ends[ends[:, 0] == ends[:, 1], 0]))
-    lines: NDArray[np.object_] = shapely.linestrings(grid.xy_m[plant], indices=grid.row[plant])
-    return lines
+    plant = np.sort(np.append(_corner_plants(grid), _alone(grid)))
+    row = grid.unbroken_row[plant]
+    return np.asarray(shapely.linestrings(grid.xy_m[plant], indices=row), np.object_)
+
+
+def _alone(grid: PlantGrid) -> Index:
+    """Return the plants that are all of their row."""
+    start = grid.unbroken_start
+    alone: Index = start[:-1][np.diff(start) == 1]
+    return alone
 
 
 def _corner_plants(grid: PlantGrid) -> Index:
@@ -286,5 +293,6 @@ def _corner_plants(grid: PlantGrid) -> Index:
     level = np.abs(np.diff(y)) < SAME_M
     inner = np.zeros(len(grid), np.bool_)
     inner[1:-1] = level[1:] & level[:-1]
-    inner[grid.end_plants] = False
+    start = grid.unbroken_start
+    inner[start[:-1]] = inner[start[1:] - 1] = False
     return np.flatnonzero(~inner)

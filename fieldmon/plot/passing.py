@@ -21,7 +21,7 @@ _TOUCHES_M = 0.1
 
 
 class Leg(NamedTuple):
-    """The way from one plant (or the gate) to another in another aisle.
+    """The way from one plant (or the gate) to another in another aisle, or stretch of one.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Leg(NamedTuple):
         By which end it is left, as numbered in `TravelTable.between_m`.
     through
         Aisles, as in `PlantGrid.corridor`, that are driven through after that; where a headland
-        opens half-way along an aisle, one's own may be among them.
+        opens half-way along an aisle, or an aisle is cut, one's own may be among them.
     """
 
     out_m: float
@@ -63,7 +63,7 @@ class Legs:
         self._aisles, grid = aisles, aisles.grid
         self._corridor = grid.corridor.tolist()
         self._row, self._along_m = grid.row.tolist(), grid.along_m.tolist()
-        self._end_m = grid.lane_x_m.tolist()
+        self._end_m, self._cut = grid.lane_x_m.tolist(), grid.cut_ends.tolist()
         ends = zip(aisles.roads.end.tolist(), self._corridor, strict=True)
         self._lane = {(min(a, b), max(a, b)): corridor for (a, b), corridor in ends}
         self._through: dict[tuple[int, int], tuple[int, ...]] = {}
@@ -72,7 +72,7 @@ class Legs:
         return f"<Legs of {counted(len(self._row), 'plant')}>"
 
     def leg(self, i: int, j: int) -> Leg:
-        """Return the leg from plant i to plant j of another aisle; -1 is the gate."""
+        """Return the leg from plant i to plant j of another stretch of aisle; -1 is the gate."""
         between_m = self._aisles.travel.between_m
         _, out_m, a, b, length_m = min(
             (length_m, out_m, a, b, length_m)
@@ -86,7 +86,9 @@ class Legs:
         if i < 0:
             return [(2 * len(self._end_m), 0.0)]
         row, at_m = self._row[i], self._along_m[i]
-        return [(2 * row + e, abs(at_m - self._end_m[row][e])) for e in range(2)]
+        # by a cut end nobody leaves
+        ends = [e for e in range(2) if not self._cut[row][e]] or range(2)
+        return [(2 * row + e, abs(at_m - self._end_m[row][e])) for e in ends]
 
     def _between(self, a: int, b: int) -> tuple[int, ...]:
         """Return the aisles on the way between two lane ends, as numbered in `TravelTable`."""

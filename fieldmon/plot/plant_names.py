@@ -81,7 +81,7 @@ def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) ->
         in_block = row_in_block(grid, np.unique(line, return_index=True)[1])
         grid = replace(grid, line_named=_beyond_numbers(own, in_block))
     if names.plant is not None:
-        plants = _numbers(names.plant)[of]
+        plants = numbers_in(names.plant)[of]
         grid = replace(grid, plant_called=_plants_called(grid, plants))
         number = row_label(grid).number
         grid = replace(grid, plant_named=_beyond_numbers(names.plant[of], number))
@@ -90,11 +90,11 @@ def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) ->
 
 def _beyond_numbers(names: NDArray[np.str_], numbers: Int) -> NDArray[np.str_] | None:
     """Return names ``(k,)`` if one of them says more than its number; else None."""
-    plain = np.char.isdecimal(names) & (_numbers(names) == numbers)
+    plain = np.char.isdecimal(names) & (numbers_in(names) == numbers)
     return None if plain.all() else names
 
 
-def _numbers(names: NDArray[np.str_]) -> Int:
+def numbers_in(names: NDArray[np.str_]) -> Int:
     """Return the number at the end of each name ``(n,)``; -1 where there is none."""
     known, which = np.unique(names, return_inverse=True)
     found = (_NUMBER.match(name.strip()) for name in known.tolist())
@@ -107,7 +107,7 @@ def _lines_called(grid: PlantGrid, names: NDArray[np.str_]) -> Int | None:
     Lines without a number of their own get one beyond all in the names, which nobody means.
     """
     own = [name.splitlines() for name in names.tolist()]
-    numbers = [set(_numbers(np.array(one or [""])).tolist()) for one in own]
+    numbers = [set(numbers_in(np.array(one or [""])).tolist()) for one in own]
     called = np.array([one.pop() if len(one) == 1 else -1 for one in numbers], np.int64)
     on, kept = called.copy(), called[called >= 0]
     if len(np.unique(kept)) < len(kept):
@@ -248,7 +248,7 @@ def _of_plants(grid: PlantGrid) -> str:
     label = row_label(grid)
     shown = np.arange(min(len(grid), 2))
     if grid.plant_called is not None:
-        shown = np.flatnonzero(_numbers(grid.plant_named) == label.number)[:2]
+        shown = np.flatnonzero(numbers_in(grid.plant_named) == label.number)[:2]
     some = [
         worded("{name} is plant {number} of row {row}", name=name, number=n, row=row)
         for name, n, row in zip(
@@ -269,7 +269,7 @@ def _doubt_of_plants(grid: PlantGrid) -> str:
     """Return which plants take the numbers in their names from all of their row."""
     if grid.plant_named is None:
         return ""
-    plants = _numbers(grid.plant_named)
+    plants = numbers_in(grid.plant_named)
     if grid.plant_called is not None and (plants == grid.plant_called).all():
         return ""
     wrong = _not_told_apart(grid, plants)

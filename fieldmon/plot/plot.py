@@ -12,13 +12,14 @@ from shapely import MultiPolygon
 
 from fieldmon.compute.arguments import must_be, must_be_shaped
 from fieldmon.compute.kinds import checked, must_hold_kinds
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ImportDoubt, PlotError
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import check_apart, grid_from_plants, lay, planting_in
 from fieldmon.plot.line_layout import lay_along
 from fieldmon.plot.measured_rows import said_rows
 from fieldmon.plot.missing_plants import without
+from fieldmon.plot.names_on_ground import doubts_of_order, said_of_strays
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, numbered
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plants_outside import PlantsOutside
@@ -28,6 +29,7 @@ from fieldmon.plot.row_lines import Ground
 from fieldmon.plot.row_report import RowReport, row_report
 from fieldmon.plot.travel import Aisles
 from fieldmon.plot.trees import trees_grid
+from fieldmon.plot.way_joining import CutOffError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -76,7 +78,9 @@ def _in_rows(
     bearing = planting.row_bearing_deg is not None
     said = said_rows(plants, names, field, bearing=bearing).checked(plants)
     grid = grid_from_plants(plants, planting_in(rows, planting), field, said)
-    return numbered(grid, plants, names), row_report(grid, rows, said, planting)
+    report = row_report(grid, rows, said, planting)
+    report = replace(report, strayed=said_of_strays(said.strays, names, plants))
+    return numbered(grid, plants, names), report
 
 
 @checked
@@ -122,7 +126,7 @@ class Plot:
         """Return what to look at before rows of measured plants are used; empty: nothing."""
         if self.rows is None or not self.grid.in_rows:
             return ()
-        return (*self.rows.doubts, *doubts_of_numbers(self.grid))
+        return (*self.rows.doubts, *doubts_of_numbers(self.grid), *doubts_of_order(self.grid))
 
     @property
     def chosen(self) -> tuple[str, ...]:
@@ -164,7 +168,7 @@ class Plot:
         if field.plants is not None:
             names = PlantNames.of(field)
             grid, rows = _in_rows(field.plants, names, field, planting)
-            return replace(cls._with(field, grid), rows=rows)
+            return cls._measured(field, grid, rows)
         return cls._with(field, lay(field, planting or planting_of(field)))
 
     @classmethod
@@ -384,6 +388,16 @@ class Plot:
         return self._with(replace(self.field, gate=gate), self.grid)
 
     @classmethod
+    def _measured(cls, field: Field, grid: PlantGrid, rows: RowReport) -> Plot:
+        """Return measured plants in their rows; where no way leads to some, say what may be why."""
+        try:
+            return replace(cls._with(field, grid), rows=rows)
+        except CutOffError as error:
+            if not rows.strayed:
+                raise
+            raise CutOffError(joined(" ", [error.args[0], rows.strayed])) from None
+
+    @classmethod
     def _with(cls, field: Field, grid: PlantGrid) -> Plot:
         gate = None if field.gate is None else grid.frame.xy_m(field.gate)[0]
         gate_xy_m = None if gate is None else (float(gate[0]), float(gate[1]))
@@ -402,7 +416,7 @@ def plot_around(
     grid, rows = _in_rows(plants, names, None, planting)
     boundary = grid.frame.geometry_lonlat(grid.drivable_m)
     field = names.on(Field(name, boundary, gate=gate, plants=plants))
-    return replace(Plot._with(field, grid), rows=rows)  # noqa: SLF001 - its own module
+    return Plot._measured(field, grid, rows)  # noqa: SLF001 - its own module
 
 
 def _warn_of(doubts: Iterable[str]) -> None:

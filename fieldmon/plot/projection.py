@@ -45,6 +45,10 @@ def on_both_sides() -> str:
     )
 
 
+def _eastward(lonlat: Float) -> Float:
+    return np.stack([lonlat[:, 0] % 360.0, lonlat[:, 1]], axis=1)
+
+
 @lru_cache(maxsize=64)
 def _transformer(lon: float, lat: float) -> Transformer:
     # what PROJ makes of EPSG:4326 and this plane; found anew, it takes each thread 16 ms, and every
@@ -113,8 +117,8 @@ class Frame:
                 worded(
                     "Everything on a plot must lie within {value:.0f} km of "
                     "its centre ({lon:.5f}, {lat:.5f}), but some positions do "
-                    "not. Check the coordinate system and the order of "
-                    "longitude and latitude.",
+                    "not. Check the coordinate system, the order of longitude and latitude, and "
+                    "that all are of one zone.",
                     value=_FARTHEST_M / 1000,
                     lon=self.lon,
                     lat=self.lat,
@@ -138,8 +142,10 @@ class Frame:
         return shapely.transform(geometry, self.xy_m)
 
     def geometry_lonlat(self, geometry: G) -> G:
-        """Return a geometry in metres of this frame as lon/lat."""
-        return shapely.transform(geometry, self.lonlat)
+        """Return a geometry in metres of this frame as lon/lat: across 180, from 0 to 360."""
+        placed = shapely.transform(geometry, self.lonlat)
+        lon = shapely.get_coordinates(placed)[:, 0]
+        return shapely.transform(placed, _eastward) if len(lon) and goes_round(lon) else placed
 
     def _axes(self) -> tuple[tuple[float, float], tuple[float, float]]:
         turn = np.deg2rad(self.bearing_deg)

@@ -11,9 +11,11 @@ from shapely import MultiPolygon
 
 from fieldmon.compute.arrays import runs
 from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import runs as numbers_listed
 from fieldmon.plot.adjacency import delaunay_sides
 from fieldmon.plot.bent_ways import Bends, bends_of, row_end_places
 from fieldmon.plot.end_turns import lane_ends
+from fieldmon.plot.grid import row_label, rows_listed
 from fieldmon.plot.obstacles import SAME_M, Obstacles
 from fieldmon.plot.way_joining import (
     NEAREST,
@@ -27,6 +29,8 @@ from fieldmon.plot.way_joining import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.clearance import Clearance
@@ -117,7 +121,7 @@ def find_roads(
     if not narrow.one_sided:
         # where one may turn to one side only, what passes straight by must stay a way of its own
         net = without_repeats(net)
-    net = joined_outside(net, needed, obstacles)
+    net = joined_outside(net, needed, obstacles, _called(grid, narrow))
     return _sorted(net, beside, gate)
 
 
@@ -136,7 +140,8 @@ def _find_from_tree_to_tree(
         gate = n
         net = with_gate(net, np.array([gate_xy_m]), obstacles, grid)
     needed = np.append(np.repeat(np.arange(n), 2), gate)
-    net = joined_outside(joined_inside(net, needed, obstacles), needed, obstacles)
+    net = joined_inside(net, needed, obstacles)
+    net = joined_outside(net, needed, obstacles, _called(grid))
     return _sorted(net, np.repeat(np.arange(n), 2).reshape(-1, 2), gate)
 
 
@@ -145,24 +150,28 @@ class _Narrow(NamedTuple):
 
     Rows that cannot be inspected ``(r,)``, lane ends with no room to turn, and row ends that are
     passed clear of their plants, ``(r, 2)``; where there is room to turn right and left,
-    ``(r, 2, 2)``, as the lane runs.
+    ``(r, 2, 2)``, as the lane runs; and ends at which a lane is cut ``(r, 2)``: one comes back
+    from there.
     """
 
     rows: Mask
     tight: Mask
     passed: Mask
     room: Mask
+    cut: Mask
 
     @classmethod
     def of(cls, grid: PlantGrid, clearance: Clearance | None) -> _Narrow:
-        none = np.zeros((grid.n_rows, 2), np.bool_)
+        none, cut = np.zeros((grid.n_rows, 2), np.bool_), grid.cut_ends
         if clearance is None:
-            passed = grid.beyond_plants_m > 0.0
-            return cls(none[:, 0], none, passed, np.ones((grid.n_rows, 2, 2), np.bool_))
+            passed = (grid.beyond_plants_m > 0.0) & ~cut
+            room = np.repeat(~cut[..., None], 2, axis=2)
+            return cls(none[:, 0], none, passed, room, cut)
         room = clearance.turn_room(grid)
         to_row = room[np.arange(grid.n_rows), :, (grid.side > 0).astype(np.intp)]
         passed = (grid.beyond_plants_m >= clearance.way_m) & to_row
-        return cls(clearance.too_narrow(grid), clearance.tight_ends(grid), passed, room)
+        tight = clearance.tight_ends(grid) & ~cut
+        return cls(clearance.too_narrow(grid), tight, passed, room, cut)
 
     @property
     def one_sided(self) -> bool:
@@ -177,9 +186,10 @@ class _Narrow(NamedTuple):
         _, ahead = lane_ends(grid)
         lane = np.full((len(xy_m), 2), 0.0)
         blocked = np.zeros((len(xy_m), 2), np.bool_)
-        lane[beside.ravel()], blocked[beside.ravel()] = (
-            ahead.reshape(-1, 2), ~self.room.reshape(-1, 2)
-        )  # fmt: skip
+        lane[beside.ravel()] = ahead.reshape(-1, 2)
+        # where another row's lane ends there too, it is what counts
+        blocked[beside[self.cut]] = True
+        blocked[beside[~self.cut]] = ~self.room[~self.cut]
         for here, there in (pairs.T, pairs.T[::-1]):
             way, along = xy_m[there] - xy_m[here], lane[here]
             to_left = along[:, 0] * way[:, 1] - along[:, 1] * way[:, 0]
@@ -218,8 +228,17 @@ def _find_bent(
     if gate_xy_m is not None and lane is None:
         net = with_gate(net, np.array([gate_xy_m]), obstacles, grid)
     needed = np.append(beside[~narrow.rows].ravel(), gate)
-    net = joined_outside(joined_inside(net, needed, obstacles), needed, obstacles)
+    net = joined_inside(net, needed, obstacles)
+    net = joined_outside(net, needed, obstacles, _called(grid, narrow))
     return _sorted(net, beside, gate, bends)
+
+
+def _called(grid: PlantGrid, narrow: _Narrow | None = None) -> Callable[[Index], str]:
+    """Return what names rows by their places among those that must be reached."""
+    if not grid.in_rows:
+        return lambda trees: numbers_listed(row_label(grid, trees).number.tolist())
+    number = grid.row_number if narrow is None else grid.row_number[~narrow.rows]
+    return lambda rows: rows_listed(grid, number[rows])
 
 
 def _first_end(xy_m: Float, beside: Index, narrow: _Narrow, obstacles: Obstacles) -> int:
@@ -227,8 +246,8 @@ def _first_end(xy_m: Float, beside: Index, narrow: _Narrow, obstacles: Obstacles
 
     Its low end, or the first end in the rows' order that is on the plot.
     """
-    ends = beside[~narrow.rows]
-    ends = ends.ravel() if len(ends) else beside.ravel()
+    ends = beside[~narrow.rows[:, None] & ~narrow.cut]
+    ends = ends if len(ends) else beside.ravel()
     on_plot = obstacles.within(xy_m[ends], xy_m[ends])
     return int(ends[np.argmax(on_plot)])
 

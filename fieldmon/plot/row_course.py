@@ -23,7 +23,7 @@ _GAP = 1.5
 
 
 def row_courses(grid: PlantGrid) -> NDArray[np.object_]:
-    """Return each row that bends as a line, ``(r,)``; one of a single plant has no length.
+    """Return each unbroken row that bends as a line, ``(w,)``; one of a plant has no length.
 
     Straight from plant to plant; where plants are missing between, as the aisle bends.
     """
@@ -31,16 +31,19 @@ def row_courses(grid: PlantGrid) -> NDArray[np.object_]:
     if aisles is None or grid.aisle is None:
         raise TypeError("rows are straight")  # pragma: no cover - a mistake of ours
     after, corner_m = _in_gaps(grid, aisles, grid.aisle.astype(np.int64))
-    alone = grid.row_start[:-1][np.diff(grid.row_start) == 1]
+    start = grid.unbroken_start
+    alone = start[:-1][np.diff(start) == 1]
     at = np.concatenate([after + 1, alone + 1])
     xy_m = np.insert(grid.xy_m, at, np.concatenate([corner_m, grid.xy_m[alone]]), axis=0)
-    owner = np.insert(grid.row, at, grid.row[at - 1])
+    row = grid.unbroken_row
+    owner = np.insert(row, at, row[at - 1])
     return np.asarray(shapely.linestrings(xy_m, indices=owner), np.object_)
 
 
 def row_corners(grid: PlantGrid) -> list[NDArray[np.float64]]:
-    """Return each row as a line to draw, ``(k, 2)`` metres: its ends, and where it bends."""
-    ends = zip(grid.row_start[:-1].tolist(), (grid.row_start[1:] - 1).tolist(), strict=True)
+    """Return each unbroken row as a line to draw, ``(k, 2)`` metres: ends, and where it bends."""
+    start = grid.unbroken_start
+    ends = zip(start[:-1].tolist(), (start[1:] - 1).tolist(), strict=True)
     if grid.aisles_m is None:
         return [grid.xy_m[[a, b]] for a, b in ends]
     thin = shapely.simplify(row_courses(grid), 0.05, preserve_topology=False)
@@ -51,7 +54,7 @@ def _in_gaps(grid: PlantGrid, aisles: Polylines, aisle: Int) -> tuple[Int, Float
     """Return where rows bend between plants ``(k, 2)``, and the plant before each."""
     row, place_m = grid.row, grid.along_m
     wide = np.diff(place_m) > _GAP * grid.plant_spacing_m
-    before = np.flatnonzero(wide & (np.diff(row) == 0))
+    before = np.flatnonzero(wide & (np.diff(grid.unbroken_row) == 0))
     lane, from_m, to_m = aisle[row[before]], place_m[before], place_m[before + 1]
     first = aisles.corner_before(lane, from_m) + 1
     count = np.maximum(aisles.corner_before(lane, to_m) + 1 - first, 0)

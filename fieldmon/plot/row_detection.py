@@ -224,7 +224,7 @@ def frame_around(lonlat: Float) -> Frame:
             )
         )
     lon, lat = (np.min(lonlat, axis=0) + np.max(lonlat, axis=0)) / 2
-    return Frame(float(lon), float(lat))
+    return Frame(float(lon - 360.0 if lon > 180.0 else lon), float(lat))
 
 
 def split_lines(y_m: Float, row_spacing_m: float) -> NDArray[np.intp]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,8 @@ from fieldmon.plot.planting import Planting
 from fieldmon.plot.strands import row_deviations
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
@@ -42,6 +44,9 @@ _NARROW, _RARE = 0.5, 0.25
 _SQUARE = 0.58
 # plants of rows that have nothing to do with each other stand a quarter of a spacing off level
 _LEVEL = 0.15
+# so much nearer to a plant of another row than to those of its own, a plant may be of a row that
+# runs another way; where so many are, and not all, a part of the plot may be so
+_NEARER, _PART = 0.75, 0.15
 # so many plants are asked for the nearest one of another row, among so many about them
 _ASKED, _NEAR = 5000, 6
 
@@ -82,6 +87,10 @@ class RowReport:
     rows_said_m, plants_said_m
         How far apart rows, and plants in them, were said to be, and are; None: nobody said
         another distance.
+    strayed
+        Which plants stand amid another row than they name; empty: none.
+    nearer_share
+        Share of the plants that stand much nearer to one of another row than to those of their own.
     """
 
     how: str
@@ -99,6 +108,8 @@ class RowReport:
     nearly_square_m: tuple[float, float] | None = None
     rows_said_m: tuple[float, float] | None = None
     plants_said_m: tuple[float, float] | None = None
+    nearer_share: float = 0.0
+    strayed: str = ""
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -131,16 +142,18 @@ class RowReport:
 
     def _names(self) -> list[str]:
         """Return what to say of the rows that plants name."""
+        strayed = [self.strayed] if self.strayed else []
         if self.misnamed_share is None or self.misnamed_share < _WORTH_A_WORD:
-            return []
+            return strayed
         decided = worded("the names decided") if self.named else worded("rows were found instead")
         return [
+            *strayed,
             worded(
                 "{misnamed_share:.0%} of the plants seem to stand in another row than the file "
                 "names; {decided}. Look whether its rows are named rightly.",
                 misnamed_share=self.misnamed_share,
                 decided=decided,
-            )
+            ),
         ]
 
     def _double_plants(self) -> list[str]:
@@ -165,6 +178,15 @@ class RowReport:
                     "The blocks that the file names change within rows without a gap, as those of "
                     "a trial do; they were left aside. Part the plot by areas or lines if they are "
                     "not."
+                )
+            )
+        if _PART <= self.nearer_share <= 1.0 - _PART and self.in_rows and not self.named:
+            said.append(
+                worded(
+                    "{share:.0%} of the plants stand nearer to one of another row than to those of "
+                    "their own, and the others do not: in a part of the plot rows may run another "
+                    "way. Look at them, and give blocks or name each plant's row if they do.",
+                    share=self.nearer_share,
                 )
             )
         if self.nearly_square_m is not None and self.in_rows:
@@ -292,6 +314,7 @@ def row_report(
         _nearly_square(grid, found, said),
         _said_otherwise(grid, told, "row_spacing_m"),
         _said_otherwise(grid, told, "plant_spacing_m"),
+        _nearer_share(grid),
     )
 
 
@@ -299,10 +322,25 @@ def _said_otherwise(
     grid: PlantGrid, planting: Planting, spacing: str
 ) -> tuple[float, float] | None:
     """Return a spacing as it was said and as it is, by its name; None: nobody said another."""
-    said, measured = getattr(planting, spacing), getattr(grid, spacing)
+    said = getattr(planting, spacing)
     # the usual one may come of nobody's saying anything
-    usual = said == getattr(Planting(), spacing)
-    return None if usual or abs(said - measured) <= _AS_SAID * measured else (said, measured)
+    return None if said == getattr(Planting(), spacing) else _otherwise(grid, spacing, said)
+
+
+def _otherwise(grid: PlantGrid, spacing: str, said: float) -> tuple[float, float] | None:
+    """Return a spacing as it was said and as it is; None where these agree."""
+    measured = getattr(grid, spacing)
+    return None if abs(said - measured) <= _AS_SAID * measured else (said, measured)
+
+
+def told_by_hand(report: RowReport, grid: PlantGrid, given: Mapping[str, float]) -> RowReport:
+    """Return a report that knows which spacings somebody said, and be it the usual one."""
+    rows, plants = "row_spacing_m", "plant_spacing_m"
+    if rows in given:
+        report = replace(report, rows_said_m=_otherwise(grid, rows, given[rows]))
+    if plants in given:
+        report = replace(report, plants_said_m=_otherwise(grid, plants, given[plants]))
+    return report
 
 
 def _paired_share(xy_m: NDArray[np.float64]) -> float:
@@ -385,6 +423,20 @@ def _gaps_m(grid: PlantGrid) -> Float:
     half_m = np.hypot(*(grid.stop_m - grid.xy_m).T)
     middle = [np.median(half_m[a:b]) for a, b in pairwise(grid.row_start.tolist())]
     return 2 * np.array(middle)
+
+
+def _nearer_share(grid: PlantGrid) -> float:
+    """Return the share of plants that stand much nearer to another row's than to their own's."""
+    some = np.arange(0, len(grid), max(len(grid) // _ASKED, 1))
+    if (grid.twin >= 0).any() or len(grid) <= _NEAR:
+        return 0.0
+    far_m, near = grid.tree.query(grid.xy_m[some], k=_NEAR)
+    line = grid.row_line[grid.row]
+    other = line[near] != line[some][:, None]
+    own_m, other_m = (
+        np.where(among, far_m, np.inf)[:, 1:].min(axis=1) for among in (~other, other)
+    )
+    return float(np.mean(other_m < _NEARER * own_m))
 
 
 def _nearest_row_m(grid: PlantGrid) -> float:

@@ -28,6 +28,11 @@ _GAP = 3.3
 _REFITS = 2
 # the lines of so many of the nearest plants may be a plant's own
 _ASKED = 8
+# beside a block of rows that run another way, so many plants at an end may be seen in line with it
+_DEEP = 20
+# a plant continues a row if it stands a step beyond its end, so many steps off at most, and so many
+# times as far from those of the row in which it was seen
+_OFF_END, _FARTHER = 0.2, 1.6
 # blocks of fewer plants, or of fewer a row, may be scraps of others
 _SCRAP, _SHORT = 12, 6
 
@@ -98,6 +103,11 @@ def trace(xy_m: Float, label: Int | None = None) -> TracedRows | None:
         strands, rows = _absorbed(xy_m, strands, rows, _GAP * spacing_m)
     for _ in range(_REFITS if label is None else 0):
         strands = _nearest_lines(xy_m, strands)
+    for _ in range(_DEEP if label is None else 0):
+        before = strands
+        strands, rows = _ends_taken_back(xy_m, strands, rows)
+        if strands is before:
+            break
     return _traced(xy_m, strands, rows.block, rows.spacing_m)
 
 
@@ -241,6 +251,52 @@ def _nearest_lines(xy_m: Float, strands: Strands) -> Strands:
     if len(np.unique(row)) < len(strands.start) - 1:
         return strands
     return ordered(xy_m, row, along)
+
+
+def _ends_taken_back(xy_m: Float, strands: Strands, rows: StrandRows) -> tuple[Strands, StrandRows]:
+    """Return the rows with plants that continue them closely, but were seen in line another way.
+
+    As at a block whose rows run across: its neighbour's ends stand in line with its rows.
+    """
+    owner, n_plants = strands.owner, np.diff(strands.start)
+    long = np.flatnonzero(n_plants >= _SHORT)
+    if not len(long) or len(n_plants) < 2:
+        return strands, rows
+    step_m = np.hypot(*np.diff(xy_m[strands.plant], axis=0).T)
+    step_m[np.diff(owner) != 0] = np.inf
+    own_m = np.minimum(np.append(np.inf, step_m), np.append(step_m, np.inf))
+    wanted, claims = [], []
+    for last in (False, True):
+        end = strands.start[long + 1] - 1 if last else strands.start[long]
+        inner = np.stack([end - k if last else end + k for k in range(4)])
+        usual_m = np.median(np.hypot(*(np.diff(xy_m[strands.plant[inner]], axis=0).T)).T, axis=0)
+        away = strands.ahead[end] * (1.0 if last else -1.0)
+        wanted.append(xy_m[strands.plant[end]] + usual_m[:, None] * away)
+        claims.append(np.stack([long, np.full(len(long), 1 if last else -1)], axis=1))
+    of = np.concatenate(claims)
+    usual_m = np.hypot(*(np.concatenate(wanted) - xy_m[strands.plant[_ends(strands, of)]]).T)
+    off_m, at = cKDTree(xy_m[strands.plant]).query(np.concatenate(wanted))
+    takes = (off_m <= _OFF_END * usual_m) & (owner[at] != of[:, 0])
+    takes &= own_m[at] > _FARTHER * usual_m
+    if not takes.any():
+        return strands, rows
+    row, along = np.empty(len(xy_m), np.int64), np.empty(len(xy_m))
+    row[strands.plant] = owner
+    gone = np.append(0.0, np.cumsum(np.hypot(*np.diff(strands.line_m, axis=0).T)))
+    along[strands.plant] = gone - gone[strands.start[owner]]
+    best = np.flatnonzero(takes)[np.argsort(off_m[takes], kind="stable")[::-1]]
+    for k in best.tolist():  # the nearest one has the last word
+        plant, (line, side) = strands.plant[at[k]], of[k]
+        row[plant] = line
+        along[plant] = along[strands.plant[_ends(strands, of[k : k + 1])[0]]] + side * usual_m[k]
+    left_over, row = np.unique(row, return_inverse=True)
+    block = np.unique(rows.block[left_over], return_inverse=True)[1]
+    return ordered(xy_m, row, along), rows._replace(block=block)
+
+
+def _ends(strands: Strands, of: Int) -> Int:
+    """Return the places of ends: of rows ``(k, 2)``, and 1 for the last plant, -1 for the first."""
+    return np.where(of[:, 1] > 0, strands.start[of[:, 0] + 1] - 1, strands.start[of[:, 0]])
 
 
 def _traced(xy_m: Float, strands: Strands, block: Int, spacing_m: float) -> TracedRows:

@@ -117,7 +117,7 @@ class Aisles:
             grid.row_start,
             grid.lane_x_m,
             between_m,
-            grid.corridor,
+            grid.stretches,
             grid.side,
         )
         for values in travel:

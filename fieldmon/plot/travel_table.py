@@ -30,7 +30,8 @@ class TravelTable(NamedTuple):
         ``(2r + 1, 2r + 1)`` shortest ways between lane ends: 2k is the low-x end of lane k,
         2k + 1 its high-x end, 2r the gate.
     corridor
-        ``(r,)`` rows with the same number are inspected from the same stretch of aisle.
+        ``(r,)`` rows with the same number are inspected from the same stretch of aisle, see
+        `PlantGrid.stretches`.
     side
         ``(r,)`` on which side of its lane the row is: -1 lower y, +1 higher y.
     """

@@ -15,6 +15,8 @@ from fieldmon.errors import PlotError
 from fieldmon.plot.obstacles import MOST_CORNERS, ON_PLOT, SAME_M, Obstacles, Where
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.grid import PlantGrid
@@ -118,12 +120,15 @@ def joined_inside(net: Net, needed: Index, obstacles: Obstacles) -> Net:
     return net
 
 
-def joined_outside(net: Net, needed: Index, obstacles: Obstacles) -> Net:
+def joined_outside(
+    net: Net, needed: Index, obstacles: Obstacles, called: Callable[[Index], str]
+) -> Net:
     """Return the network with all needed nodes connected, where it must be by ways off the plot.
 
     Such a way leads from one part of the network to another and is whole: it may pass over nodes
     of its own part, and to stop there would be a short cut off the plot between two places that
-    can be reached on it. Raise `PlotError` if some node cannot be reached at all.
+    can be reached on it. Raise `PlotError` if some node cannot be reached at all: of the `needed`,
+    the two ends of each row and last the gate, `called` names the rows of these numbers.
     """
     for where in (Where.OUTSIDE, Where.ANYWHERE):
         if net.apart(needed):
@@ -136,11 +141,11 @@ def joined_outside(net: Net, needed: Index, obstacles: Obstacles) -> Net:
         raise CutOffError(
             worded(
                 "Every row must be reachable from the gate without crossing "
-                "rows or no-go areas, but {shut} of {n} rows are "
-                "not. Move the gate, or open the no-go areas that shut them "
-                "in.",
+                "rows or no-go areas, but {shut} of {n} rows are not: {rows}. Move the gate, or "
+                "open the no-go areas that shut them in.",
                 shut=np.count_nonzero(stranded),
                 n=len(stranded),
+                rows=called(np.flatnonzero(stranded)),
             )
         )
     return net

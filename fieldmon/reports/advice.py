@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import estimate, figure, share_figure, worded
+from fieldmon.compute.wording import chance_figure, estimate, figure, share_figure, worded
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.io.spray_rate import litres_figure
@@ -65,7 +65,7 @@ def _figures(advice: Advice, product: str, units: Units) -> KeyFigures:
             KeyFigure(words.LIQUID, worded(words.LITRES, value=litres_figure(advice.litres))),
             KeyFigure(words.INFESTED_INSIDE, estimate(zones.inside),
                       worded(words.AND_ELSEWHERE, n=estimate(zones.outside))),
-            KeyFigure(words.ENOUGH, figure(advice.said.enough, ".0%")),
+            KeyFigure(words.ENOUGH, chance_figure(advice.said.enough, drawn=True)),
         )
     )  # fmt: skip
 

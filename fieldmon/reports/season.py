@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, estimate, figure, joined, worded
+from fieldmon.compute.wording import chance_figure, counted, estimate, figure, joined, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
@@ -164,7 +164,7 @@ def _stands(facts: _Facts) -> Iterator[Block]:
     ]  # fmt: skip
     said += flagged_said(ahead, status.flagged)
     if ahead.chance_clean >= 0.005:
-        said.append(worded(words.STANDS_CLEAN, chance=ahead.chance_clean))
+        said.append(worded(words.STANDS_CLEAN, chance=chance_figure(ahead.chance_clean)))
     if len(status.hot_spots):
         said.append(worded(words.STANDS_HOT, n=counted(len(status.hot_spots), "hot spot")))
     yield Paragraph(joined(" ", said), lead=True)
@@ -189,7 +189,6 @@ def _left_out(all_of: Sized, most: int, rest: str) -> tuple[str, ...]:
 
 def _figures(facts: _Facts) -> KeyFigures:
     status, ahead, still = facts.status, facts.status.estimate, facts.status.infested
-    low, high = found_pct(status.found, ahead.high), found_pct(status.found, ahead.low)
     finds = sum(one.found for one in facts.days)
     twice = worded(words.FOUND_TWICE, n=finds) if finds != status.found else ""
     return KeyFigures(
@@ -197,15 +196,21 @@ def _figures(facts: _Facts) -> KeyFigures:
             KeyFigure(words.STILL, estimate(still.expected),
                       worded(words.INTERVAL, low=figure(still.low), high=figure(still.high))),
             KeyFigure(words.FOUND_SO_FAR, figure(status.found), twice),
-            KeyFigure(words.SHARE_FOUND, figure(status.detection_pct, ".0f", " %"),
-                      worded(words.INTERVAL, low=figure(low, ".0f"),
-                             high=figure(high, ".0f", " %"))),
+            _share_found(status),
             KeyFigure(words.INSPECTED, figure(status.inspected),
                       worded(words.OF_PLANTS, n=status.plants)),
-            KeyFigure(words.CLEAN, figure(ahead.chance_clean, ".1%"), words.CLEAN_NOTE),
+            KeyFigure(words.CLEAN, chance_figure(ahead.chance_clean, 1), words.CLEAN_NOTE),
             KeyFigure(words.HOT_SPOTS, figure(len(status.hot_spots)), words.HOT_NOTE),
         )
     )  # fmt: skip
+
+
+def _share_found(status: Status) -> KeyFigure:
+    if not status.inspected:
+        return KeyFigure(words.SHARE_FOUND, NO_ROW, words.NOTHING_INSPECTED)
+    low, high = status.detection_range_pct
+    interval = worded(words.INTERVAL, low=figure(low, ".0f"), high=figure(high, ".0f", " %"))
+    return KeyFigure(words.SHARE_FOUND, figure(status.detection_pct, ".0f", " %"), interval)
 
 
 def _rows_seen(facts: _Facts) -> Iterator[str]:
@@ -273,13 +278,14 @@ def _treated(facts: _Facts) -> tuple[tuple[date, str], ...]:
 
 
 def _days(facts: _Facts) -> Table:
+    so_far = np.cumsum([one.inspected for one in facts.days]).tolist()
     rows = [
         (
             facts.units.day(one.on), figure(one.inspected), figure(one.found),
             worded("{n} ({low:,}–{high:,})", n=estimate(one.expected), low=one.low, high=one.high),
-            figure(found_pct(found, one.expected), ".0f", " %"),
+            figure(found_pct(found, one.expected), ".0f", " %") if inspected else NO_ROW,
         )
-        for one, found in zip(facts.days, facts.found_by.tolist(), strict=True)
+        for one, found, inspected in zip(facts.days, facts.found_by.tolist(), so_far, strict=True)
     ]  # fmt: skip
     return Table(
         words.DAYS, words.DAY_COLUMNS, tuple(rows[::-1]), (0.22, 0.17, 0.12, 0.31, 0.18), flow=2,
@@ -297,6 +303,8 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     meanings = tuple(hot_spot_meanings(grid, facts.status.hot_spots, apart))
     yield Listing(words.HOT_LIST, meanings, numbered=bool(len(facts.status.hot_spots)))
     yield from map(Paragraph, _left_out(facts.status.hot_spots, len(meanings), words.REST))
+    if len(records := facts.season.records_known()):
+        yield Paragraph(records.sentence())
     plants = np.flatnonzero(facts.state == PRESENT)
     if not len(plants):
         yield Paragraph(words.FINDS_NONE)

@@ -76,11 +76,12 @@ STANDS = (
     "About {expected} plants are still infested ({low:,} to {high:,} with a chance of 90 %); "
     "{found} found so far."
 )
-STANDS_CLEAN = "The plot is clean with a chance of {chance:.0%}."
+STANDS_CLEAN = "The plot is clean with a chance of {chance}."
 STANDS_HOT = "Finds cluster in {n}."
 STILL, INTERVAL = "Still infested", "{low} to {high} (90 %)"
 FOUND_SO_FAR, FOUND_TWICE = "Plants found", "in {n:,} finds"
 SHARE_FOUND, INSPECTED = "Share found", "Plants inspected"
+NOTHING_INSPECTED = "not known: nothing was inspected yet"
 CLEAN, CLEAN_NOTE = "Chance it is clean", "as believed"
 HOT_SPOTS, HOT_NOTE = "Hot spots", "see page 3"
 ROWS_UNSEEN = "Never inspected: {rows}."

@@ -114,10 +114,19 @@ def clock(monkeypatch):
     monkeypatch.setattr(local_clock, "utc_now", now)
 
 
+@pytest.fixture(scope="session")
+def of_each_test(tmp_path_factory):
+    """Return the folder in which each test has folders of its own.
+
+    Beside the others pytest would look at thousands to number the next, for these and `tmp_path`.
+    """
+    return tmp_path_factory.mktemp("of_each_test")
+
+
 @pytest.fixture(autouse=True)
-def files_folder(tmp_path_factory, monkeypatch):
+def files_folder(of_each_test, monkeypatch):
     """Let each test keep files of its own."""
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path_factory.mktemp("files")))
+    monkeypatch.setattr(tempfile, "tempdir", tempfile.mkdtemp(prefix="files", dir=of_each_test))
     return tempfile.gettempdir()
 
 
@@ -243,9 +252,9 @@ def page(new_tab, request):
 
 
 @pytest.fixture(autouse=True)
-def seasons_folder(tmp_path_factory, monkeypatch):
+def seasons_folder(of_each_test, monkeypatch):
     """Let each test have a folder of seasons of its own."""
-    folder = tmp_path_factory.mktemp("seasons")
+    folder = Path(tempfile.mkdtemp(prefix="seasons", dir=of_each_test))
     monkeypatch.setenv("FIELDMON_SEASONS", str(folder))
     return folder
 

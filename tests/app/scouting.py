@@ -105,6 +105,18 @@ class BrokenLine:
         self.ear.close()
 
 
+class PhoneWindow:
+    """A phone's window in a browser that runs already, with what it keeps to itself."""
+
+    def __init__(self, browser, **more):
+        self.window = browser.new_context(**PHONE | more)
+        self.window.set_default_timeout(180_000)  # others may have the machine
+        self.page = self.window.new_page()
+
+    def close(self):
+        self.window.close()
+
+
 class PhoneBrowser:
     """A browser with a disk of its own, which outlives it."""
 

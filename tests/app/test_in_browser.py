@@ -40,6 +40,7 @@ from tests.app.map_in_browser import (
     DRAWN,
     IDLE,
     MAP,
+    awake,
     becomes,
     card,
     click,
@@ -96,15 +97,15 @@ def first_screen(new_tab, address):
 @pytest.fixture
 def screen(first_screen):
     """Return the first screen as it came: all layers, every plant by its chance, the whole plot."""
-    page = first_screen
-    page.mouse.move(2, 2)
-    for name in (ROUTE, HOT):
-        switch(page, name, on=True)
-    shade(page, BY_CHANCE)
-    opacity(page, page.opaque)
-    page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
-    still(page)
-    return page
+    with awake(first_screen) as page:
+        page.mouse.move(2, 2)
+        for name in (ROUTE, HOT):
+            switch(page, name, on=True)
+        shade(page, BY_CHANCE)
+        opacity(page, page.opaque)
+        page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
+        still(page)
+        yield page
 
 
 @cache
@@ -471,7 +472,7 @@ def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
 
 
 @pytest.fixture(scope="module")
-def asked_screen(new_tab, address):
+def asked_tab(new_tab, address):
     """Load the first screen once for all who ask it about plants, which alone are pointed at."""
     page = new_tab()
     shown(page, address)
@@ -479,6 +480,13 @@ def asked_screen(new_tab, address):
         switch(page, name, on=False)
     yield page
     page.close()
+
+
+@pytest.fixture
+def asked_screen(asked_tab):
+    """Return that screen as the test before left it."""
+    with awake(asked_tab) as page:
+        yield page
 
 
 def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(asked_screen):
@@ -1005,12 +1013,6 @@ def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_m
     page, address, served_seasons
 ):
     states_season(served_seasons, "Right")
-    page.goto(f"{address}/?season=Right&lang=he&part=record")
-    rest(page)
-    batch = page.locator("[class*=st-key-batch_]").first
-    undo = batch.get_by_role("button").bounding_box()
-    line = batch.locator("p").first.bounding_box()
-    assert undo["x"] + undo["width"] <= line["x"], "the button is under its line"
     page.goto(f"{address}/?season=Right&lang=he&part=today")
     rest(page)
     gaps = page.evaluate("""() => [...document.querySelectorAll(
@@ -1034,6 +1036,10 @@ def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_m
     assert (np.abs(above() - before).max(axis=2) > 30).mean() < 0.01, "the report hides the map"
     page.goto(f"{address}/?season=Right&lang=he&part=record")
     rest(page)
+    batch = page.locator("[class*=st-key-batch_]").first
+    undo = batch.get_by_role("button").bounding_box()
+    line = batch.locator("p").first.bounding_box()
+    assert undo["x"] + undo["width"] <= line["x"], "the button is under its line"
     batch.get_by_role("button").scroll_into_view_if_needed()
     batch.get_by_role("button").click()
     page.locator("[class*=st-key-undo_yes] button").click()  # it is of another day
@@ -1102,12 +1108,19 @@ def test_plots_under_one_dot_are_counted_on_it_and_each_can_be_opened(
 
 
 @pytest.fixture(scope="module")
-def on_a_phone(new_tab, address):
+def phone_tab(new_tab, address):
     """Load the app's first screen once on a phone, for all who leave it as it was."""
     page = new_tab(*PHONE)
     shown(page, address)
     yield page
     page.close()
+
+
+@pytest.fixture
+def on_a_phone(phone_tab):
+    """Return that screen."""
+    with awake(phone_tab) as page:
+        yield page
 
 
 def test_a_phone_shows_the_whole_plot_above_the_days_work(on_a_phone):

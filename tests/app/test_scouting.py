@@ -24,7 +24,7 @@ from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.local_clock import utc_now
 from tests.app.driving import until
-from tests.app.scouting import BrokenLine, Line, PhoneBrowser, a_picture, kept
+from tests.app.scouting import BrokenLine, Line, PhoneBrowser, PhoneWindow, a_picture, kept
 from tests.app.test_hostile_texts import EVIL, NAMES, hostile_season
 from tests.monitoring.phone import a_finding, told
 from tests.monitoring.rules import keeps_the_rules
@@ -64,7 +64,16 @@ def line(season, monkeypatch):
 
 
 @pytest.fixture
-def phone(browser, tmp_path):
+def phone(browser):
+    """Return a phone that lasts: a window that shares nothing but the browser's processes."""
+    phone = PhoneWindow(browser)
+    yield phone
+    phone.close()
+
+
+@pytest.fixture
+def mortal_phone(browser, tmp_path):
+    """Return a phone whose browser can be killed: started for it, a disk of its own."""
     phone = PhoneBrowser(browser, tmp_path / "phone")
     yield phone
     phone.close()
@@ -101,7 +110,8 @@ def told_now(page, result, count=None):
 
 
 @pytest.mark.timeout(1800)
-def test_a_day_without_a_network_among_kills_loses_and_doubles_nothing(season, line, phone):
+def test_a_day_without_a_network_among_kills_loses_and_doubles_nothing(season, line, mortal_phone):
+    phone = mortal_phone
     invited(phone, line, season)
     line.go()
     rng, said = random.Random(4), []
@@ -167,7 +177,8 @@ def test_a_scout_says_that_a_plant_is_gone_and_takes_it_back(season, line, phone
     assert np.flatnonzero(history.gone(0)).tolist() == [kept_one]
 
 
-def test_killed_in_the_moment_of_a_tap_it_is_whole_or_asked_for_again(season, line, phone):
+def test_killed_in_the_moment_of_a_tap_it_is_whole_or_asked_for_again(season, line, mortal_phone):
+    phone = mortal_phone
     invited(phone, line, season, "Dan")
     line.go()
     said = []
@@ -476,11 +487,11 @@ def test_by_keyboard_alone(season, line, phone):
     assert len(records) == 2
 
 
-def test_what_a_scout_does_in_the_field(season, line, browser, tmp_path):
+def test_what_a_scout_does_in_the_field(season, line, browser):
     start = route_ahead(season, BEGINS).plant[0]
     lon, lat = season.plot.grid.lonlat([start])[0]
     here = {"longitude": lon, "latitude": lat, "accuracy": 4}
-    phone = PhoneBrowser(browser, tmp_path / "other", geolocation=here)
+    phone = PhoneWindow(browser, geolocation=here)
     try:
         _in_the_field(phone, line, season)
     finally:

@@ -22,7 +22,7 @@ import numpy as np
 from app.show.maps import colours, deck, plant_layers, route_layers
 from app.show.maps.plant_layers import PlantNotes
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.independent import IndependentPlants, overnight
+from fieldmon.infestation.independent_plants import IndependentPlants, overnight
 from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.prior import prior_chance, start_infested

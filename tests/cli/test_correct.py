@@ -2,11 +2,13 @@
 
 import sqlite3
 from contextlib import closing
+from datetime import UTC, date, datetime, timedelta
 
 import numpy as np
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
+from fieldmon.plot import local_clock
 from tests.cli.estate import BEGINS
 
 
@@ -34,8 +36,9 @@ def test_the_time_alone_of_an_inspection_is_corrected(run, season):
     kept = Season(season)
     told = Inspections.of(np.arange(2), np.array([0, 1]), BEGINS, second=[22_000, 80_000])
     kept.record(told, "taps")
-    for words in (["--inspection", "2"], ["--time", "07:00"]):
-        assert "must both be given" in run("correct", season, "--who", "Ann", *words)[2]
+    for words in (["--inspection", "2"], ["--time", "07:00"], ["--date", BEGINS]):
+        said = run("correct", season, "--who", "Ann", *words)[2]
+        assert "--inspection must be given with --date or --time" in said
     words = ["correct", season, "--who", "Ann", "--time", "07:00", "--inspection"]
     assert "an inspection 9 that still counts" in run(*words, "9")[2]
     code, out, _, _ = run(*words, "2")
@@ -46,3 +49,32 @@ def test_the_time_alone_of_an_inspection_is_corrected(run, season):
     assert Season(season).verify() == ()
     run("undo", season)
     assert Season(season).history.inspections.second.tolist() == [22_000, 80_000]
+
+
+def test_the_day_of_an_inspection_is_corrected_and_days_stay_in_order(run, season, monkeypatch):
+    kept, begins = Season(season), date.fromisoformat(str(BEGINS))
+    monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2026, 11, 5, 12, tzinfo=UTC))
+    at = [np.datetime64(begins + timedelta(days=k)) for k in (0, 1, 1)]
+    told = Inspections.of(np.arange(3), np.array([0, 1, 0]), np.array(at), second=[22_000] * 3)
+    kept.record(told, "taps")
+    words = ["correct", season, "--who", "Ann", "--inspection", "3", "--date"]
+    for wrong, says in (
+        (["2026-11-01"], "must be of this season, which began on 2026-11-02"),
+        (["2026-11-06"], "must be of a moment that has come, but 2026-11-06 has not: on the plot"),
+        (["2026-11-05", "--time", "23:59"], "but 2026-11-05 23:59 has not"),
+        (["2.11."], "--date must be a day as YYYY-MM-DD"),
+    ):
+        code, _, err, _ = run(*words, *wrong)
+        assert (code, says in err) == (2, True), err
+    before = Season(season).history.inspections
+    assert before.plant.tolist() == [0, 1, 2]
+    code, out, err, _ = run(*words, "2026-11-02", "--time", "05:00")
+    assert code == 0, err
+    assert "2026-11-02" in out
+    held = Season(season).history
+    assert held.inspections.plant.tolist() == [2, 0, 1]
+    assert held.days.tolist() == [0, 0, 1]
+    assert held.inspections.second.tolist() == [5 * 3600, 22_000, 22_000]
+    assert Season(season).verify() == ()
+    run("undo", season)
+    assert Season(season).history.inspections.date.tolist() == before.date.tolist()

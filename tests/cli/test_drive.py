@@ -4,7 +4,7 @@ from datetime import date
 
 import pytest
 
-from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import DrivenDay, DrivenStop
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.one_drive import one_drive

@@ -124,6 +124,9 @@ def test_records_that_say_nothing_about_a_day_are_named(capsys):
     tell_unusable(records, day, PriorSettings())
     assert "1 of the records are of a later day" in capsys.readouterr().err
     tell_unusable(records.take(np.array([1])), day, PriorSettings())
+    said = "seen: Chances and hot spots begin with 1 record of 2026-11-01.\n"
+    assert capsys.readouterr().err == said
+    tell_unusable(Observations.none(), day, PriorSettings())
     assert capsys.readouterr().err == ""
 
 

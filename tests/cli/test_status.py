@@ -24,12 +24,14 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
     now = kept.status(kept.last_date())
     ahead = f"  forecast               {kept.forecast(now.on).sentence()}"
     assert out.splitlines() == [*lines(kept, now), ahead]
-    assert "share found                 0 % (0 to 0 %) of found and not found yet" in out
+    assert "share found            not known: nothing was inspected yet" in out
     assert f"{now.plants:,} plants (0 %), 0 found infested" in out
     assert all(one.sentence() in out for one in now.learnt)
     assert "believed at first      An inspection finds 84 % of what is there" in out
     kept.record(Inspections.of(np.array([1]), np.array([0]), np.datetime64(BEGINS)), "x")
-    assert "learnt so far          An inspection finds " in run("status", season)[1]
+    later = run("status", season)[1]
+    assert "learnt so far          An inspection finds " in later
+    assert "share found                 0 % (0 to 0 %) of found and not found yet" in later
     assert out.startswith(f"Nursery, {BEGINS} (day 1 of the season)")
 
 
@@ -40,6 +42,9 @@ def test_thousands_are_parted_in_every_number_of_a_status(season):
     estimate = PlotEstimate(1207.6, 237, 3688, 0.0)
     said = "\n".join(lines(kept, replace(now, **many, infested=estimate)))
     assert "    1,208 (237 to 3,688 with" in said
+    for clean, words in ((1e-5, "under 0.1 %"), (0.9999, "over 99.9 %"), (0.0, "   0.0 %")):
+        each = replace(now, estimate=replace(now.estimate, chance_clean=clean))
+        assert f"  chance it is clean     {words}" in lines(kept, each)
     assert " 6,543 of 12,345 plants (53 %), 2,345 found infested (3,456 finds: some again)" in said
 
 
@@ -122,6 +127,14 @@ def test_a_day_ahead_that_was_only_planned_is_not_to_be_undone(run, season):
     assert "fieldmon undo" not in err
     assert run("undo", season)[0] == 2
     assert "give --date" not in run("status", season, "--date", on)[2]
+
+
+def test_records_of_before_are_said_with_their_days(tmp_path):
+    kept = a_season(tmp_path / "s.gpkg")
+    *_, spots, records = lines(kept, kept.status(kept.last_date()))
+    assert spots.startswith("  hot spots ")
+    assert records.strip() == kept.records_known().sentence()
+    assert " 3 records of 2026-03-30 to 2026-04-02, 1 of them without a date." in records
 
 
 def test_what_inspections_find_is_told_of_who_inspects_too(run, season):

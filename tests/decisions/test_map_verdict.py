@@ -61,7 +61,7 @@ def test_a_part_of_the_plot_is_asked_about_by_itself():
 def test_the_sentence_answers_the_question():
     said = map_verdict(GRID, np.full(len(GRID), 0.3), AskedVerdict(0.05)).sentence()
     assert said.startswith("Treat: 30.0 % of the plants are believed infested. ")
-    assert "Treating pays if it is 5.0 % or more; the chance of that is 100 %." in said
+    assert "Treating pays if it is 5.0 % or more; the chance of that is over 99 %." in said
 
 
 def test_the_same_question_has_the_same_answer():

@@ -10,7 +10,7 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
 from fieldmon.drive.bag import write_bag
-from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.recording import Recording
 from fieldmon.errors import SettingError

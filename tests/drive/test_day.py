@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.errand import Visit
 

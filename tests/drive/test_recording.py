@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.recording import Recording
 

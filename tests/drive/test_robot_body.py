@@ -5,8 +5,8 @@ import math
 import mujoco
 import pytest
 
+from fieldmon.drive.mujoco_plot import world_xml
 from fieldmon.drive.robot_body import RobotBody, sharpest_of
-from fieldmon.drive.world import world_xml
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot

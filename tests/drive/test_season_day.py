@@ -8,7 +8,7 @@ from datetime import date, time, timedelta
 import numpy as np
 import pytest
 
-from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.season_day import SeasonDay, as_inspection
 from fieldmon.errors import ObservationError, SettingError

@@ -8,7 +8,7 @@ import pytest
 
 from fieldmon.drive.account import stop_table
 from fieldmon.drive.bag import write_bag
-from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.recording import Recording
 from fieldmon.drive.trace import (

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fieldmon.infestation.landing import landing_of
+from fieldmon.infestation.jump_landing import landing_of
 from fieldmon.plot.layout import rectangle
 
 PLOT = rectangle(9, 8)

@@ -8,9 +8,9 @@ import pytest
 from fieldmon.infestation import ancestry as module
 from fieldmon.infestation.ancestry import Ancestry, ToldNight
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.course import BEFORE, Course
+from fieldmon.infestation.cell_squares import NOBODY
+from fieldmon.infestation.infestation_course import BEFORE, Course
 from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.squares import NOBODY
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.infestation.unseen_offspring import Unseen
 from fieldmon.pests.pest import Pest

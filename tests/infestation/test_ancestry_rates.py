@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.ancestry_rates import DrawnEvidence, Rates
-from fieldmon.infestation.course import BEFORE
 from fieldmon.infestation.drawn_ancestry import DrawnSums
-from fieldmon.infestation.landing import SHARES, landing_of
+from fieldmon.infestation.infestation_course import BEFORE
+from fieldmon.infestation.jump_landing import SHARES, landing_of
 from fieldmon.infestation.origins import ARRIVE, ARRIVE_BY_EDGE
 from fieldmon.plot.layout import rectangle
 

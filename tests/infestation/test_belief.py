@@ -6,7 +6,7 @@ import pytest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.ensemble import Ensemble
-from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.independent_plants import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.layout import rectangle

@@ -10,7 +10,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.clustering import leaning
 from fieldmon.infestation.ensemble import Ensemble
-from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.independent_plants import IndependentPlants
 from fieldmon.infestation.origins import JUMPED
 from fieldmon.infestation.pairs import (
     Neighbourhood,

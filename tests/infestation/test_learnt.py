@@ -7,11 +7,18 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.learnt import Learnt, _length, learnt_from, worth_saying
-from fieldmon.infestation.origins import ANYWHERE, AT_START, AT_START_ELSEWHERE, BY_EDGE, JUMPED
+from fieldmon.infestation.jump_reach import kernel_means
+from fieldmon.infestation.learnt import Learnt, _length, learnt_from, with_start, worth_saying
+from fieldmon.infestation.origins import (
+    ANYWHERE,
+    AT_START,
+    AT_START_ELSEWHERE,
+    BY_EDGE,
+    JUMPED,
+    Estimate,
+)
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_plot
-from fieldmon.infestation.reach import kernel_means
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Movement, Pest
@@ -38,6 +45,20 @@ def test_infested_at_the_start_are_those_suspected_and_the_others():
     chance = np.where(np.arange(81) < 27, 0.1, 0.01)
     told = {one.name: one for one in learnt_from(TracedPairs.of(GRID, chance), 0.84)}
     assert told["infested at the start"].value == pytest.approx(chance.sum())
+
+
+def test_no_more_were_at_the_start_than_ever_and_before_a_night_just_as_many():
+    learnt = Learnt("detection", 0.8, 0.7, 0.9), Learnt("infested at the start", 73, 18, 129)
+    fewer, more = Estimate(53, 20, 110), Estimate(80, 30, 200)
+
+    def start(ever, *, nights_passed):
+        kept, one = with_start(learnt, ever, nights_passed=nights_passed)
+        assert kept == learnt[0]
+        return one.value, one.low, one.high
+
+    for ever, later in ((fewer, (53, 18, 110)), (more, (73, 18, 129))):
+        assert start(ever, nights_passed=False) == (ever.value, ever.low, ever.high)
+        assert start(ever, nights_passed=True) == later
 
 
 def test_a_belief_that_traces_nothing_has_learnt_nothing():

@@ -106,3 +106,20 @@ def test_numbers_that_cannot_be_are_refused(present, columns, said):
     given = {name: np.array([value]) for name, value in columns.items()}
     with pytest.raises(ObservationError, match=said):
         Observations.of(np.array([[35.15, 30.36]]), np.array([present]), **given)
+
+
+@pytest.mark.parametrize(
+    ("days", "said"),
+    [
+        (["2024-08-11", "2024-06-03"], "2 records of 2024-06-03 to 2024-08-11"),
+        (["2024-06-03"], "1 record of 2024-06-03"),
+        (["NaT", "NaT"], "2 records without a date"),
+        (["2024-06-03", "NaT"], "2 records of 2024-06-03, 1 of them without a date"),
+    ],
+)
+def test_records_are_said_with_their_days(days, said):
+    records = Observations.of(
+        [[35.0, 30.0]] * len(days), [1] * len(days), np.array(days, "datetime64[D]")
+    )
+    assert records.in_words() == said
+    assert records.sentence() == f"Chances and hot spots begin with {said}."

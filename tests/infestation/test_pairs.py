@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.independent_plants import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.plot.layout import rectangle

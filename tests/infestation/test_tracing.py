@@ -7,8 +7,8 @@ import pytest
 
 from fieldmon.infestation.cells import Cells
 from fieldmon.infestation.clustering import no_evidence
+from fieldmon.infestation.jump_reach import RADIUS
 from fieldmon.infestation.pairs import pair_chances
-from fieldmon.infestation.reach import RADIUS
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced, trace
 from fieldmon.plot.layout import rectangle

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.infestation.course import Course
+from fieldmon.infestation.infestation_course import Course
 from fieldmon.infestation.unseen_offspring import stays_unseen, unseen_now
 from tests.infestation.landing_by_hand import LANDING, SHARES, N, by_hand
 

@@ -44,6 +44,7 @@ TEXT_OF = {
     "degrees": ("dms", "dms"),
     "doubles": ("one", "one"),
     "far": ("keep", "keep"),
+    "place": ("plant", "plant"),
 }
 
 

@@ -14,6 +14,7 @@ from fieldmon.io.sources import (
     RecordSource,
 )
 from fieldmon.plot.field import Field
+from fieldmon.plot.grid import nearest_plants, row_label
 from fieldmon.plot.plot import Plot
 from tests.io.three_parcels import (
     DAY,
@@ -197,3 +198,49 @@ def test_corners_of_plots_among_the_records_of_an_estate_are_left_out(parcels):
     estate = prepare_estate(one(parcels, records=csv(f"lon,lat,date,found\n{rows}")))
     assert len(estate.records.on(fields[1])) == len(inside)
     assert any("corners of plots" in line for line in said(estate, "records"))
+
+
+def placed_twice(plot, column="", cell=""):
+    """Return records at plants of a plot that name them, but for the sixth: it names another."""
+    some = np.arange(40)
+    label, lonlat = row_label(plot.grid, some), plot.grid.lonlat(some)
+    row = np.where(some == 5, plot.grid.line_number.max(), label.line)
+    lines = [
+        f"{DAY},{lon:.8f},{lat:.8f},{line},{number},1{cell}"
+        for (lon, lat), line, number in zip(lonlat, row, label.number, strict=True)
+    ]
+    return csv(f"date,lon,lat,row,plant,count{column}\n" + "\n".join(lines))
+
+
+@pytest.mark.parametrize("column", [("", ""), (",plot", ",Plot 1")])
+def test_records_elsewhere_than_the_plants_they_name_are_doubted_and_the_answer_is_taken(
+    parcels, column
+):
+    plot = prepare(one(parcels, "Plot 1")).plot
+    records = placed_twice(plot, *column)
+    doubt = "doubtful: {}1 of 40 records that give a position and name a plant lies elsewhere"
+    made = prepare(one(parcels, "Plot 1", records))
+    (told,) = [line for line in said(made, "records") if "elsewhere" in line]
+    assert told.startswith(doubt.format(""))
+    assert told.endswith("(Take the plants that they name: place=plant)")
+    estate = prepare_estate(one(parcels, records=records))
+    (told,) = [line for line in said(estate, "records") if "elsewhere" in line]
+    assert told.startswith(doubt.format("" if column[0] else "Plot 1: "))
+    for answer in ("plant", "position"):
+        options = RecordOptions(place=answer)
+        made = prepare(one(parcels, "Plot 1", records, options))
+        assert not any("elsewhere" in line for line in said(made))
+        plants = nearest_plants(plot.grid, made.records.lonlat, 1.0)[0]
+        assert (plants[5] == 5) is np.bool_(answer == "position")
+        assert np.delete(plants, 5).tolist() == [*range(5), *range(6, 40)]
+
+
+def test_records_placed_twice_on_a_plot_without_room_are_taken_by_their_positions(tmp_path):
+    tiny = FRAME.geometry_lonlat(shapely.box(500, 0, 502, 2))
+    write_geojson(tmp_path / "two.geojson", [area(0, 0), tiny])
+    lon, lat = FRAME.lonlat(np.array([[501.0, 1.0]]))[0]
+    for column, cell in (("", ""), (",plot", ",Plot 2")):
+        text = f"date,lon,lat,row,plant,count{column}\n{DAY},{lon:.8f},{lat:.8f},1,1,4{cell}\n"
+        estate = prepare_estate(one(tmp_path / "two.geojson", records=csv(text)))
+        assert [len(estate.records.on(field)) for field in estate.fields] == [0, 1]
+        assert any("gives a position and names a plant, too" in line for line in said(estate))

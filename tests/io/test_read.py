@@ -89,6 +89,11 @@ def test_several_layers_are_asked_for_and_listed(tmp_path):
     assert (asked.value.option, asked.value.choices) == ("layer", ("peppers", "vines"))
     assert_two_plots(read_plots(path, PlotOptions().choose("layer", "vines")))
     assert [info.layer for info in list_layers(path)] == ["peppers", "vines"]
+    assert "season" not in str(asked.value)
+    for name in ("fieldmon", "batches", "inspections"):
+        two_plots().to_file(path, layer=name)
+    with pytest.raises(ChoiceNeeded, match="as the file of a season"):
+        read_plots(path)
 
 
 RECORDS = "longitude,latitude,date,count,species\n" + "\n".join(

@@ -232,7 +232,7 @@ def test_one_spraying_that_may_be_recorded_twice_is_said_on_its_day(second, warn
     assert [one.batch for one in said] == [9] * warned
     if warned:
         assert said[0].sentence == (
-            "Two sprayings of 12 plants with Acarol on 2026-04-09: batches 4 and 9. Both count; "
+            "Two treatments of 12 plants with Acarol on 2026-04-09: batches 4 and 9. Both count; "
             "undo one if it was the same."
         )
     assert not [one for one in found(done, on=4) if one.kind == "twice"]

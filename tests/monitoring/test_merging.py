@@ -814,7 +814,7 @@ def counting(db):
 
 @pytest.mark.parametrize("said", [None, 3])
 @pytest.mark.parametrize("noted", [True, False])
-def test_sprayings_of_which_nobody_knows_whether_they_are_one_both_count_and_are_listed(
+def test_treatments_of_which_nobody_knows_whether_they_are_one_both_count_and_are_listed(
     said, noted
 ):
     one, other = copies_of(2)
@@ -848,7 +848,7 @@ def test_sprayings_of_which_nobody_knows_whether_they_are_one_both_count_and_are
         (0.5, Application("acarol ")),
     ],
 )
-def test_two_sprayings_of_one_day_and_product_of_the_same_plants_are_named(
+def test_two_treatments_of_one_day_and_product_of_the_same_plants_are_named(
     path, other, efficacy, said
 ):
     here, there = Season(path), Season(other)
@@ -859,21 +859,21 @@ def test_two_sprayings_of_one_day_and_product_of_the_same_plants_are_named(
     done = here.merge(there)
     n = len(here.plot.grid)
     twice = (
-        f"Two sprayings of {n} plants with Acarol on {BEGINS}: batches 2 and 3. Both count; undo "
+        f"Two treatments of {n} plants with Acarol on {BEGINS}: batches 2 and 3. Both count; undo "
         "one if it was the same."
     )
     assert done.contradictions[-1] == twice
-    assert [one for one in done.contradictions if one.startswith("Two sprayings")] == [twice]
+    assert [one for one in done.contradictions if one.startswith("Two treatments")] == [twice]
     assert len(here.treatments()) == 4
     assert here.merge(there).contradictions == ()
 
 
-def test_two_sprayings_of_other_plants_are_not_named(path, other):
+def test_two_treatments_of_other_plants_are_not_named(path, other):
     here, there = Season(path), Season(other)
     n = len(here.plot.grid)
     here.treat(BEGINS, 0.5, application=SPRAYED, plants=np.arange(n) < 5)
     there.treat(BEGINS, 0.7, application=SPRAYED, plants=np.arange(n) > 4)
-    assert not [one for one in here.merge(there).contradictions if "Two sprayings" in one]
+    assert not [one for one in here.merge(there).contradictions if "Two treatments" in one]
 
 
 def test_what_an_earlier_version_recorded_is_known_by_all_its_values():

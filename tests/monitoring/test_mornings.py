@@ -23,7 +23,7 @@ from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.layout import rectangle
 from tests.monitoring.seasons import BEGINS, a_season
 
-LAST = 21
+LAST = 19
 
 
 def found_on(day, season):
@@ -34,7 +34,7 @@ def found_on(day, season):
 
 @pytest.fixture(scope="module")
 def long_season(recorded, tmp_path_factory):
-    """Give a season of three weeks, recorded day by day by one who never left."""
+    """Give a season of two stretches and a third begun, recorded day by day by one at work."""
     path = shutil.copy(recorded, tmp_path_factory.mktemp("long") / "season.gpkg")
     season = Season(path)
     for day in range(2, LAST + 1):

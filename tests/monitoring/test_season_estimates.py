@@ -50,9 +50,39 @@ def test_the_evening_and_the_next_morning_tell_the_same_of_many_finds(season):
         {one.name: one for one in told.learnt}["infested at the start"]
         for told in (evening, next_evening)
     ]
-    assert start[0].value == pytest.approx(start[1].value)
+    assert start[0].value == pytest.approx(start[1].value, rel=0.1)
     # what was found on the first day was there
     assert start[0].low >= 30
+
+
+def _infested_at_start(season, day):
+    return {one.name: one for one in season.learnt(on(day))}["infested at the start"]
+
+
+def _ever_infested(season, day):
+    now = season.status(on(day))
+    return [now.found + n for n in (now.estimate.expected, now.estimate.low, now.estimate.high)]
+
+
+@pytest.mark.parametrize("treated", [True, False], ids=["treated", "flagged"])
+def test_on_the_first_day_those_at_the_start_are_those_found_and_those_left(tmp_path, treated):
+    season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=treated))
+    season.record(some_results(season, n=100, found=range(0, 90, 10)), "x")
+    start = _infested_at_start(season, 0)
+    assert (start.value, start.low, start.high) == tuple(_ever_infested(season, 0))
+    assert ("infested at the start", *_ever_infested(season, 0)) in _learnt_in_the_file(season)
+
+
+def _learnt_in_the_file(season):
+    with season.store.reading() as db:
+        return db.execute("SELECT name, value, low, high FROM learnt").fetchall()
+
+
+def test_what_a_treatment_ended_was_infested_at_the_start_all_the_same(season):
+    season.record(some_results(season, n=100, found=range(9)), "x")
+    before = _infested_at_start(season, 0)
+    season.treat(on(0), 1.0)
+    assert _infested_at_start(season, 0).value > 0.9 * before.value > _ever_infested(season, 0)[0]
 
 
 def test_days_on_which_nobody_inspects_come_as_the_forecast_had_them(season):

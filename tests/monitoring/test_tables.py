@@ -23,6 +23,7 @@ from fieldmon.io.import_report import Remedy, guessed, seen
 from fieldmon.monitoring import Season, tables
 from fieldmon.monitoring.tables import KeptMessage
 from fieldmon.plot.block import Block
+from fieldmon.plot.clear_lanes import clear_lanes
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import row_label
 from fieldmon.plot.planting import Planting
@@ -120,6 +121,15 @@ def test_a_plot_comes_back_with_where_one_may_drive_beyond_its_boundary(db):
     beyond_m = MultiPolygon([box(-9, -9, -5, 9)])
     grid = replace(plot.grid, beyond_m=beyond_m)
     check_comes_back(db, replace(plot, aisles=replace(plot.aisles, grid=grid)))
+
+
+def test_a_plot_comes_back_with_the_pieces_of_rows_whose_lanes_are_cut(db):
+    shed = box(35.1504, 30.36032, 35.15045, 30.36034)
+    cut = clear_lanes(a_plot().grid, a_plot().grid.frame.geometry_m(shed)).grid
+    assert cut.cut_ends.any()
+    check_comes_back(db, replace(a_plot(), aisles=replace(a_plot().aisles, grid=cut)))
+    (rows,) = db.execute("SELECT count(*) FROM rows").fetchone()
+    assert rows == a_plot().grid.n_rows
 
 
 def test_a_plot_comes_back_with_its_blocks_and_the_names_of_its_rows(db):

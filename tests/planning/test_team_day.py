@@ -29,6 +29,7 @@ from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import NEVER, Scene, Stops
 from tests.crooked import crooked_fields
+from tests.cut_lanes import WIDE, cut_plot
 from tests.second_by_second import nobody_head_on, nobody_together
 
 EVEN = Aisles.of(rectangle(16, 16))
@@ -44,11 +45,12 @@ class Day:
         self.would_find = np.random.default_rng(seed).random(count) < infested
         self.belief = PairApproximation.of(aisles.grid, np.full(count, 0.05))
         self.starts_s = [0.0] * n
+        self.last = np.where(aisles.too_narrow, 0, NEVER).astype(np.int32)
 
     def scene(self):
         return Scene(
             self.aisles, self.robot, self.belief.chance,
-            np.full(len(self.aisles.grid), NEVER, np.int32),
+            self.last,
             seconds_left=self.robot.day_s, pair_chance=self.belief.pair_chance,
         )  # fmt: skip
 
@@ -108,6 +110,30 @@ def test_on_crooked_plots_nobody_meets_either(field, n, returns, hours, name, te
     robot = Robot(hours=hours, returns=returns, detection=1.0)
     day = Day(plot.aisles, n, robot, infested=0.2)
     day.check(day.work(teamwork, name), teamwork.passing_m)
+
+
+@pytest.mark.parametrize("name", ["adaptive", "naive"])
+@pytest.mark.parametrize("seed", range(6))
+def test_where_lanes_are_cut_who_drives_round_from_stretch_to_stretch_meets_nobody(seed, name):
+    aisles, _, _ = cut_plot(seed, n_rows=3, n_plants=12, faces=1 + seed % 2)
+    assert aisles.grid.cut_ends.any()
+    robot = replace(WIDE, hours=0.7, detection=1.0, returns=bool(seed % 3))
+    day = Day(aisles, 3, robot, infested=0.2, seed=seed)
+    for teamwork in (AT_ONCE, Teamwork(together=False, passing_m=6.0)):
+        works = day.work(teamwork, name)
+        day.check(works, teamwork.passing_m)
+        assert not aisles.too_narrow[np.concatenate([work.plant for work in works])].any()
+
+
+def test_one_with_a_width_and_one_without_are_not_together_in_an_aisle_of_which_one_is_cut():
+    wide, free, _ = cut_plot(4, n_plants=12)
+    days = [Day(aisles, 1, Robot(hours=0.7, detection=1.0), 0.2) for aisles in (wide, free)]
+    team = [Posted(day.scene(), 0.0, day.would_find) for day in days]
+    works = team_day(team, sampler("naive"), AT_ONCE, days[0].learn)
+    routes = [route_of(day.scene(), work) for day, work in zip(days, works, strict=True)]
+    aisles = [set(free.grid.corridor[free.grid.row[work.plant]].tolist()) for work in works]
+    assert all(len(one) > 1 for one in aisles)
+    assert nobody_together(routes, [0.0, 0.0])
 
 
 def test_nobody_inspects_a_plant_twice_though_a_find_is_heard_of_as_a_stop_ends():

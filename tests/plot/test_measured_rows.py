@@ -79,7 +79,7 @@ def test_names_of_rows_decide_where_they_tell_of_rows():
     names = np.array([f"R{k}" for k in named])
     plot = plot_around("named", FRAME.lonlat(xy_m), names=PlantNames(names))
     assert right_share(rows_of(plot.grid, xy_m), named) == 1.0
-    (doubt,) = [said for said in plot.rows.doubts if "names" in said]
+    (doubt,) = [said for said in plot.rows.doubts if "seem to stand" in said]
     assert "in another row than the file names; the names decided" in doubt
 
 

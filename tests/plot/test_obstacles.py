@@ -5,7 +5,7 @@ import pytest
 import shapely
 from shapely import MultiPolygon, Polygon, box
 
-from fieldmon.plot.obstacles import Obstacles, Where
+from fieldmon.plot.obstacles import Obstacles, Where, filled
 from tests.plot.test_road_network import in_grid, laid
 
 
@@ -35,3 +35,8 @@ def test_corners_to_drive_round_are_those_that_stand_in_the_way():
     expected = in_grid(grid, shapely.Point(0, 0))
     assert notch == pytest.approx([expected.x, expected.y], abs=0.03)
     assert len(obstacles.corners(Where.OUTSIDE)) == 0
+
+
+def test_a_line_along_which_areas_touch_is_no_ground():
+    both = shapely.union_all([box(0, 0, 4, 4), shapely.LineString([(4, 4), (9, 4)])])
+    assert filled(both).equals(box(0, 0, 4, 4))

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from shapely import MultiPolygon, box
+from shapely import MultiLineString, MultiPolygon, box
 
 import fieldmon as fm
 from fieldmon.errors import ImportDoubt, PlotError, SettingError
@@ -133,3 +133,13 @@ def test_plants_alone_or_a_file_are_refused_where_a_plot_is_asked_for(use, tmp_p
         with pytest.raises(SettingError, match=f"but it is {kind}. Give the plot itself"):
             use(given)
     assert not list(tmp_path.iterdir())
+
+
+def test_plants_and_rows_across_longitude_180_make_a_plot_if_written_from_0_to_360():
+    lon, lat = np.meshgrid(180.0 + 1.5e-5 * np.arange(-5, 9), -16.5 + 4e-5 * np.arange(5))
+    plants = np.stack([lon.ravel(), lat.ravel()], axis=1)
+    rows = MultiLineString([np.stack([lon[k, [0, -1]], lat[k, [0, -1]]], 1) for k in range(5)])
+    for plot in (Plot.around("measured", plants), Plot.along("drawn", rows)):
+        west, _, east, _ = plot.field.boundary.bounds
+        assert 179.999 < west < 180.0 < east < 180.001
+        assert plot.grid.n_rows == 5

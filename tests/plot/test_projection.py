@@ -97,3 +97,12 @@ def test_a_plot_on_both_sides_of_longitude_180_is_to_be_brought_as_two():
         Frame(0.0, -16.8).xy_m(both)
     # one side of it is as good as any
     assert np.abs(Frame(-179.9998, -16.8).xy_m(both[1:])).max() < 200.0
+
+
+def test_what_is_drawn_across_longitude_180_does_not_jump_there():
+    frame = Frame(-179.9999, -16.8)
+    across = frame.geometry_lonlat(shapely.box(-30.0, 0.0, 30.0, 20.0))
+    assert 179.999 < across.bounds[0] < 180.0 < across.bounds[2] < 180.001
+    assert frame.geometry_m(across).area == pytest.approx(1200.0, rel=1e-6)
+    beside = frame.geometry_lonlat(shapely.box(20.0, 0.0, 30.0, 20.0))
+    assert beside.bounds[2] < -179.999

@@ -55,3 +55,12 @@ def test_the_share_beside_a_row_is_that_of_the_plants_moved_out_of_it():
     assert found.in_rows
     assert found.off_share == pytest.approx(30 / 600, abs=0.01)
     assert any("beside their row" in doubt for doubt in found.doubts)
+
+
+def test_blocks_of_which_one_is_taken_along_the_others_rows_are_doubted():
+    x, y = np.meshgrid(1.5 * np.arange(20), 2.5 * np.arange(20))
+    one = np.stack([x.ravel(), y.ravel()], axis=1)
+    both = np.concatenate([one, one[:, ::-1] + (x.max() + 3.0, 0.0)])
+    two, alone = (plot_around("a", Frame(8.0, 47.0).lonlat(xy)) for xy in (both, one))
+    assert any("50 % of the plants stand nearer to one of another" in one for one in two.doubts)
+    assert alone.rows.nearer_share == 0.0

@@ -91,3 +91,24 @@ def test_names_decide_where_a_row_is_even_against_what_is_seen():
 
 def test_two_plants_are_too_few_to_tell():
     assert trace(np.array([[0.0, 0.0], [1.0, 0.0]])) is None
+
+
+def two_exact_blocks(n_rows, n_plants, row_m, plant_m, gap_m):
+    """Return plants of a block of rows along x and one along y, and the row of each."""
+    x, y = np.meshgrid(plant_m * np.arange(n_plants), row_m * np.arange(n_rows))
+    one, row = np.stack([x.ravel(), y.ravel()], axis=1), np.repeat(np.arange(n_rows), n_plants)
+    other = one[:, ::-1] + (x.max() + gap_m, 0.0)
+    return np.concatenate([one, other]), np.concatenate([row, n_rows + row])
+
+
+@pytest.mark.parametrize(
+    ("row_m", "plant_m", "gap_m"), [(2.0, 0.8, 3.0), (2.5, 1.0, 2.5), (2.5, 1.0, 8.0)]
+)
+def test_rows_that_end_at_a_block_turned_across_keep_their_ends(row_m, plant_m, gap_m):
+    xy_m, row = two_exact_blocks(26, 30, row_m, plant_m, gap_m)
+    found = trace(xy_m)
+    named = row[found.plant]
+    assert len(found.row_start) == 53
+    parts = np.split(named, found.row_start[1:-1])
+    assert all(len(part) == 30 and len(set(part.tolist())) == 1 for part in parts)
+    assert len(set(found.block.tolist())) == 2

@@ -43,9 +43,9 @@ def test_metres_outside_the_boundary_are_said_but_not_those_to_a_gate_outside():
 
 
 def test_where_only_a_way_too_near_to_holes_leads_it_is_said():
-    # a piece of a row between two walls across its lane
-    walls = box(9.4, 5.5, 9.8, 6.5), box(20.4, 5.5, 20.8, 6.5)
-    grid, _, _ = measured(0.0, *walls, box(9.4, 2.5, 20.8, 2.9))
+    # a row between a wall across its lane at either end of it
+    walls = box(-1.4, 4.2, -1.0, 7.8), box(29.0, 4.2, 29.4, 7.8)
+    grid, _, _ = measured(0.0, *walls)
     aisles = Aisles.of(grid).for_robot(WIDE)
     told = " ".join(aisles.said_of(shapely.get_coordinates(driven(aisles))))
     assert "of the way the robot comes nearer than 0.65 m to a hole" in told

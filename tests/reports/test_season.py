@@ -89,6 +89,8 @@ def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(worke
         worked.plot.grid, status.hot_spots, finds_apart(worked.history, status.day)
     )
     assert any("known from the records brought only" in one for one in said)
+    told = "Chances and hot spots begin with 3 records of 2026-03-30 to 2026-04-02, 1 of them"
+    assert any(one.text.startswith(told) for one in on_sheet(of_season, 2, Paragraph))
     found = np.flatnonzero(worked.history.states(status.day) == PRESENT)
     rows = table(of_season, "Plants found infested, by row").rows
     assert sum(int(row[1]) for row in rows) == len(found) == status.found

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import psutil
 import pytest
@@ -19,8 +20,9 @@ from fieldmon.simulation.results import StudyFolder
 from tests.parcels import write_geojson
 from tests.simulation.study_plots import SMALL, area, plot
 
-# a short study has many chunks to lose
-CHUNK_S = 0.02
+# a short study has many chunks to lose: twelve of a few seasons each
+CHUNK_S = 0.006
+SHORT = replace(SMALL, n_seeds=8)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -47,7 +49,7 @@ def two_workers():
 def undisturbed(tmp_path_factory):
     """Return the folder of the small study, simulated in this thread."""
     folder = tmp_path_factory.mktemp("undisturbed")
-    simulated(folder, [plot()], SMALL, executor.here())
+    simulated(folder, [plot()], SHORT, executor.here())
     return folder
 
 
@@ -61,7 +63,7 @@ def same_files(one, other):
 
 
 def test_the_seasons_do_not_depend_on_the_number_of_workers(undisturbed, two_workers, tmp_path):
-    assert simulated(tmp_path, [plot()], SMALL, two_workers).refused == {}
+    assert simulated(tmp_path, [plot()], SHORT, two_workers).refused == {}
     same_files(tmp_path, undisturbed)
 
 
@@ -100,7 +102,7 @@ def test_workers_say_nothing_of_their_own_at_the_terminal(two_workers):
 
 def test_threads_make_the_same_files(undisturbed, tmp_path):
     with executor.threads(2) as workers:
-        simulated(tmp_path, [plot()], SMALL, workers)
+        simulated(tmp_path, [plot()], SHORT, workers)
     same_files(tmp_path, undisturbed)
 
 
@@ -118,7 +120,7 @@ def test_a_killed_worker_costs_only_what_it_had_in_hand(undisturbed, two_workers
             os.kill(pid, signal.SIGKILL)
             killed.append(pid)
 
-    simulated(tmp_path, [plot()], SMALL, two_workers, kill_one)
+    simulated(tmp_path, [plot()], SHORT, two_workers, kill_one)
     assert killed
     same_files(tmp_path, undisturbed)
 
@@ -127,7 +129,7 @@ def test_a_killed_client_costs_only_unfinished_chunks(two_workers, tmp_path):
     write_geojson(tmp_path / "plot.geojson", [area(60.0)])
     command = f"from fieldmon.simulation import design; design._CHUNK_S = {CHUNK_S}; "
     command += "from fieldmon.cli.main import main; main()"
-    words = [sys.executable, "-c", command, "study", "run", "plot.geojson", "--seeds", "24"]
+    words = [sys.executable, "-c", command, "study", "run", "plot.geojson", "--seeds", "12"]
     words += ["--days", "10", "--workers", "2", "--date", "2026-11-02"]
     command = subprocess.Popen([*words, "-o", "killed"], cwd=tmp_path, stderr=subprocess.DEVNULL)
     until = time.monotonic() + 200
@@ -140,7 +142,7 @@ def test_a_killed_client_costs_only_unfinished_chunks(two_workers, tmp_path):
     assert not alive, "workers outlive the client that started them"
     half = {path: path.stat().st_mtime_ns for path in tmp_path.glob("killed/*/*.parquet")}
     plots = study_run.StudyOptions(tmp_path / "plot.geojson", on="2026-11-02").plots()
-    asked = Design(n_days=10, n_seeds=24)
+    asked = Design(n_days=10, n_seeds=12)
     simulated(tmp_path / "killed", plots, asked, two_workers)
     simulated(tmp_path / "whole", plots, asked, executor.here())
     assert 0 < len(half) < len(list(study_of(plots, asked).chunks()))

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.independent_plants import IndependentPlants
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.layout import rectangle
 from fieldmon.simulation.mornings import MorningBeliefs

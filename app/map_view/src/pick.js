@@ -74,9 +74,11 @@ export function tipOf({ places, ranks, values, notes, tips }, k) {
 
 // Return a chance in words, with its interval where the level of all chances may be off: `tips.odds`
 // is what every plant's odds are multiplied by at the ends of it.
-function chanceOf({ values, between, odds }, chance) {
+function chanceOf({ values, between, odds, least, most }, chance) {
   const said = (share) => (100 * share).toFixed(1);
   const [low, high] = (odds ?? [1, 1]).map((by) => said((chance * by) / (1 - chance + chance * by)));
+  // none is said to be nothing or all
+  const one = chance < 0.0005 ? least : chance < 0.9995 ? `${said(chance)} %` : most;
   const text = between && low !== high ? between : values;
-  return text.replace("{chance}", `${said(chance)} %`).replace("{low}", low).replace("{high}", `${high} %`);
+  return text.replace("{chance}", one).replace("{low}", low).replace("{high}", `${high} %`);
 }

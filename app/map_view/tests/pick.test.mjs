@@ -94,10 +94,11 @@ test("what is said of a plant is where it stands, what is believed, and what is 
 
 test("a chance is said with what it would be at both ends of the plot's level, on its odds", () => {
   const places = { row: [3, 3, 3], number: [7, 8, 9] };
-  const tips = { text: "row {row}, plant {plant}{note}", values: ": {chance} chance", between: ": {chance} chance ({low} to {high})", odds: [0.5, 2] };
+  const tips = { text: "row {row}, plant {plant}{note}", values: ": {chance} chance", between: ": {chance} chance ({low} to {high})", odds: [0.5, 2], least: "next to none", most: "all but all" };
   const json = { places, values: [0.12, 0.5, 1e-6], tips };
   // 0.12 : 0.88 is 0.06 : 0.88 at the low end, 0.24 : 0.88 at the high one
   assert.equal(tipOf(json, 0), "row 3, plant 7: 12.0 % chance (6.4 to 21.4 %)");
   assert.equal(tipOf(json, 1), "row 3, plant 8: 50.0 % chance (33.3 to 66.7 %)");
-  assert.equal(tipOf(json, 2), "row 3, plant 9: 0.0 % chance", "no interval of nothing");
+  assert.equal(tipOf(json, 2), "row 3, plant 9: next to none chance", "no interval of nothing");
+  assert.equal(tipOf({ places, values: [0.99999], tips }, 0), "row 3, plant 7: all but all chance");
 });

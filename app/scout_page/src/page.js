@@ -4,7 +4,7 @@ import { hasNames, plantAt, rowsCalled, shownEnds, signOf } from "./geo.js";
 import { PlotMap } from "./map.js";
 import { scaled } from "./photo.js";
 import { Held, KeyEnded, NotNow } from "./sync.js";
-import { LANGUAGES, dayOf, own, say, speak } from "./words.js";
+import { LANGUAGES, chanceSaid, dayOf, own, say, speak } from "./words.js";
 
 // a glove that bounces must say nothing of the next plant
 const REST_MS = 250;
@@ -282,7 +282,7 @@ export class Page {
       h("h1", {}, say("place", values)),
       h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where),
         // what was seen today is no chance
-        !field.done.has(plant) && !field.back.has(plant) && h("span", {}, say("chance", { n: (field.day.chance[plant] / 10).toFixed(field.day.chance[plant] < 100 ? 1 : 0) })),
+        !field.done.has(plant) && !field.back.has(plant) && h("span", {}, chanceSaid(field.day.chance[plant])),
         field.offRoute && h("span", { class: "tag" }, say("off_route"))),
     );
     const closed = field.closedUntil(plant);

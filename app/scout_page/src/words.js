@@ -20,6 +20,12 @@ export function say(name, values = {}) {
   return (words[name] ?? name).replace(/\{(\w+)\}/g, (_, blank) => own(values[blank] ?? ""));
 }
 
+/** A chance in thousandths, in words: none is said to be nothing or all. */
+export function chanceSaid(n) {
+  if (n < 1) return say("chance_least");
+  return n < 995 ? say("chance", { n: (n / 10).toFixed(n < 100 ? 1 : 0) }) : say("chance_most");
+}
+
 /** What is put into a text, so that its script changes no other's order. */
 export const own = (value) => (typeof value === "string" && /\p{L}/u.test(value) ? `\u2068${value}\u2069` : value);
 

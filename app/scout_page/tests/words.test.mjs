@@ -1,9 +1,9 @@
-// Days are said as the app says them.
+// Days and chances are said as the app says them.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { dayOf } from "../src/words.js";
+import { chanceSaid, dayOf, speak } from "../src/words.js";
 
 const SAID = {
   en: ["Mon 16 Nov", "Sat 21 Nov", "Mon 21 Sep"],
@@ -17,3 +17,13 @@ for (const [language, said] of Object.entries(SAID)) {
     assert.deepEqual(["2026-11-16", "2026-11-21", "2026-09-21"].map((day) => dayOf(day, language)), said);
   });
 }
+
+test("no chance is said to be nothing or all", async (t) => {
+  const words = { chance: "Chance {n} %", chance_least: "least", chance_most: "most" };
+  t.mock.method(globalThis, "fetch", async () => ({ json: async () => words }));
+  globalThis.document = { documentElement: {} };
+  t.after(() => { delete globalThis.document; });
+  await speak("en");
+  const said = [0, 1, 99, 994, 995, 1000].map(chanceSaid);
+  assert.deepEqual(said, ["least", "Chance 0.1 %", "Chance 9.9 %", "Chance 99 %", "most", "most"]);
+});

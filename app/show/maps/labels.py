@@ -46,15 +46,15 @@ _EARTH_M, _TILE_PX = 40_075_016.686, 512
 def stops(route: Route) -> list[Label]:
     """Return the numbers of legs from far, of stops from near.
 
-    A leg is what is inspected without leaving an aisle.
+    A leg is what is inspected without leaving an aisle, or a stretch of one.
     """
     if not len(route):
         return []
     grid = route.aisles.grid
     lonlat = np.round(route.stops_lonlat(), 7)
     near = _zoom(grid, float(lonlat[0, 1]))
-    aisle = grid.corridor[grid.row[route.plant]]
-    first = np.flatnonzero(np.append(True, np.diff(aisle) != 0))
+    stretch = grid.stretches[grid.row[route.plant]]
+    first = np.flatnonzero(np.append(True, np.diff(stretch) != 0))
     middle = (first + np.append(first[1:], len(route))) // 2
     legs: list[Label] = [
         {"p": lonlat[k].tolist(), "t": f"{number}", "k": "leg", "to": near}

@@ -62,11 +62,11 @@ def plan(grid: PlantGrid, field: Field, *, dark: bool = False) -> list[Layer]:
 def rows_m(grid: PlantGrid) -> Iterator[Float]:
     """Yield the middle of each row in metres, half a plant longer on both ends."""
     if grid.aisles_m is not None:
-        long = shapely.simplify(row_courses(grid)[np.diff(grid.row_start) > 1], _SMOOTH_M)
+        long = shapely.simplify(row_courses(grid)[np.diff(grid.unbroken_start) > 1], _SMOOTH_M)
         yield from (shapely.get_coordinates(line) for line in long)
         return
     half = grid.plant_spacing_m / 2
-    for first, after in zip(grid.row_start[:-1], grid.row_start[1:], strict=True):
+    for first, after in pairwise(grid.unbroken_start):
         own = grid.xy_m[first:after]
         y = own[:, 1].mean()
         yield np.array([[own[0, 0] - half, y], [own[-1, 0] + half, y]])
@@ -78,11 +78,12 @@ def aisles_m(grid: PlantGrid) -> Iterator[Float]:
     As far as its lane: where rows bend, the line itself goes on beyond the headland.
     """
     if grid.aisles_m is not None and grid.aisle is not None:
-        low, first = np.full((2, int(grid.corridor.max()) + 1), np.inf)
+        stretch = grid.stretches
+        low, first = np.full((2, int(stretch.max()) + 1), np.inf)
         high = -low
-        np.minimum.at(low, grid.corridor, grid.lane_x_m[:, 0])
-        np.maximum.at(high, grid.corridor, grid.lane_x_m[:, 1])
-        first[grid.corridor] = grid.aisle
+        np.minimum.at(low, stretch, grid.lane_x_m[:, 0])
+        np.maximum.at(high, stretch, grid.lane_x_m[:, 1])
+        first[stretch] = grid.aisle
         for aisle, ends in zip(first.astype(int), np.stack([low, high], axis=1), strict=True):
             one, other = grid.aisles_m.points(np.full(2, aisle), ends)[:, None]
             inner = grid.aisles_m.corners_between(aisle, *ends)

@@ -66,6 +66,7 @@ def plants(
     if notes.chance is not None:
         arrays["values"] = notes.chance.astype("<f4").tobytes()
         tips["values"] = texts.TIP_CHANCE
+        tips |= {"least": texts.TIP_LEAST, "most": texts.TIP_MOST}
         if notes.level is not None and notes.level.low < notes.level.high:
             tips["between"] = texts.TIP_CHANCE_BETWEEN
             tips["odds"] = [float(f"{end:.5g}") for end in (notes.level.low, notes.level.high)]

@@ -35,6 +35,7 @@ class Crossing:
     def __init__(self, keeper: AisleKeeper, name: str, aisles: Aisles, at_m: Float) -> None:
         self._keeper, self._name, self._aisles = keeper, name, aisles
         self._aisle = aisles.grid.corridor[aisles.grid.row]
+        self._stretch = aisles.grid.stretches[aisles.grid.row]
         away_m = np.hypot(*(aisles.stop_m - at_m).T)
         here = int(np.argmin(away_m))
         self._at = here if away_m[here] < _HERE_M else GATE
@@ -78,7 +79,7 @@ class Crossing:
         return [] if plant == GATE else [int(self._aisle[plant])]
 
     def _needed(self, plant: int) -> list[int]:
-        if GATE not in {plant, self._at} and self._aisle[plant] == self._aisle[self._at]:
+        if GATE not in {plant, self._at} and self._stretch[plant] == self._stretch[self._at]:
             return self._own(plant)
         if plant == self._at == GATE:
             return []

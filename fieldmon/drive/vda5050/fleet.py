@@ -25,7 +25,7 @@ from fieldmon.drive.vda5050.messages import (
     result_of,
     sent_at,
 )
-from fieldmon.drive.vda5050.wire import Wire
+from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.errors import FieldmonError, ObservationError, SettingError
 from fieldmon.plot.clearance import STRAY_M
 from fieldmon.plot.grid import row_label
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from fieldmon.drive.aisle_keeper import AisleKeeper
     from fieldmon.drive.errand import Errand, Float
-    from fieldmon.drive.vda5050.wire import Broker, RobotName
+    from fieldmon.drive.vda5050.mqtt import Broker, RobotName
     from fieldmon.plot.travel import Aisles
 
 # an order that nobody acknowledged is sent again; robots take the same one once

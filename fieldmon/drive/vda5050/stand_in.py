@@ -11,14 +11,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.drive.vda5050.messages import MAP, decoded, encoded, header_of
+from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.drive.vda5050.versions import AT_ONCE
-from fieldmon.drive.vda5050.wire import Wire
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fieldmon.drive.vda5050.wire import Broker, RobotName
+    from fieldmon.drive.vda5050.mqtt import Broker, RobotName
 
 # the standard wants a state every 30 s at least
 _STATE_EVERY_S = 5.0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.drive.day import DrivenDay, drive_day
 from fieldmon.drive.vda5050.fleet import live_robot
-from fieldmon.drive.vda5050.wire import RobotName
+from fieldmon.drive.vda5050.mqtt import RobotName
 from fieldmon.errors import FieldmonError
 from fieldmon.plot.travel import GATE
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.team_season import TeamSeason
-    from fieldmon.drive.vda5050.wire import Broker
+    from fieldmon.drive.vda5050.mqtt import Broker
     from fieldmon.planning.members import TeamMember
 
 #: said at the first and the second Ctrl-C

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from datetime import datetime
 
     from fieldmon.drive.errand import Float
-    from fieldmon.drive.vda5050.wire import Wire
+    from fieldmon.drive.vda5050.mqtt import Wire
     from fieldmon.plot.grid import PlantGrid
 
 #: what is listened to

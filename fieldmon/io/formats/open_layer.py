@@ -99,7 +99,8 @@ def _read(staged: StagedMember, options: ReadOptions) -> Layer:
     names = tuple(one.name for one in listed)
     spatial = tuple(one.name for one in listed if one.geometry_type is not None)
     # a plain table beside maps is read only when it is asked for by name
-    return _only_layer(staged, options, names if options.layer in names else spatial or names)
+    asked = names if options.layer in names else spatial or names
+    return _only_layer(staged, options, asked, _OF_SEASON if {*names} >= _SEASONS else "")
 
 
 def _parquet(path: Path, name: str, _: ReadOptions) -> Layer:
@@ -120,6 +121,10 @@ def _mapinfo(path: Path, name: str, _: ReadOptions) -> Layer:
     return read_mapinfo(path, name)
 
 
+# layers of a season's file, and what is said of one that is read as a plot or as records
+_SEASONS = {"fieldmon", "batches", "inspections"}
+_OF_SEASON = ", as the file of a season (fieldmon status opens it as one)"
+
 _READERS: dict[FileKind, Callable[[Path, str, ReadOptions], Layer]] = {
     FileKind.GEOJSON: lambda path, name, options: read_geojson(path, name, options.encoding),
     FileKind.PARQUET: _parquet,
@@ -137,15 +142,17 @@ def _gdal_layers(staged: StagedMember) -> list[GdalLayer]:
     return list_layers(staged.path, staged.name)
 
 
-def _only_layer(staged: StagedMember, options: ReadOptions, names: tuple[str, ...]) -> Layer:
-    """Return the layer named, or the only one that holds anything."""
+def _only_layer(
+    staged: StagedMember, options: ReadOptions, names: tuple[str, ...], more: str = ""
+) -> Layer:
+    """Return the layer named, or the only one that holds anything; `more` is of the question."""
     if options.layer is not None:
         if options.layer in names:
             return _layer(staged, options.layer, options)
         raise _which_layer(staged, names, f", but none is called {options.layer!r}")
     full = _full_layers(staged, options, names)
     if len(full) > 1:
-        raise _which_layer(staged, tuple(full), " with something in them")
+        raise _which_layer(staged, tuple(full), f" with something in them{more}")
     if not full:
         raise FileProblem(
             worded(

@@ -14,6 +14,7 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.formats.split_degrees import names_degrees, with_degrees
 from fieldmon.io.formats.wkt import with_shapes
 from fieldmon.io.formats.workbooks import sheet_rows
 from fieldmon.io.import_report import ImportMessage, doubtful, dropped, seen
@@ -54,7 +55,7 @@ def read_text_table(path: Path, name: str, options: ReadOptions) -> Layer:
         raise FileProblem(
             worded("{name} must be a text table, but it cannot be read: {bad}.", name=name, bad=bad)
         ) from bad
-    layer = _table(rows, name, options.header)
+    layer = _with_degrees(_table(rows, name, options.header), options)
     return with_shapes(replace(layer, messages=(*messages, *layer.messages)), _system_of_prj(path))
 
 
@@ -67,7 +68,13 @@ def _system_of_prj(path: Path) -> str | None:
 def read_sheet(path: Path, name: str, sheet: str, options: ReadOptions) -> Layer:
     """Return one sheet of a workbook as a layer; its shapes where a column holds such."""
     layer = _table(sheet_rows(path, name, sheet), f"{name}, sheet {sheet}", options.header)
-    return with_shapes(layer, None)
+    return with_shapes(_with_degrees(layer, options), None)
+
+
+def _with_degrees(layer: Layer, options: ReadOptions) -> Layer:
+    """Return a table with degrees and minutes put together, unless their columns are named."""
+    by_hand = {role for role, _ in options.columns}
+    return layer if by_hand & {"lat", "lon", "position", "x", "y"} else with_degrees(layer)
 
 
 def _told_delimiter(content: str) -> tuple[str, str | None]:
@@ -101,55 +108,76 @@ def _delimiter(content: str) -> str:
 
 
 def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer:
+    """Return rows of cells as a layer, its columns named by the line above the records."""
     limits.check("records", len(rows), limits.RECORDS, name)
     rows, head = _headed(rows, name, header)
-    messages: list[ImportMessage] = []
-    if header == "no":
-        said = worded(
-            "{name} has no line of names: its columns are called column 1 to {n}.",
-            name=name,
-            n=len(rows[0]),
-        )
-        messages.append(seen(said))
-    elif head:
-        messages.append(
-            seen(
-                worded(
-                    "{head} {head:line|lines} above the column names {head:was|were} passed over.",
-                    head=head,
-                )
-            )
-        )
     limits.check("columns", len(rows[head]), limits.COLUMNS, name)
     names = _names(rows[head])
-    twice = [name for name, n in Counter(map(text, rows[head])).items() if name and n > 1]
-    if twice:
-        said = worded(
-            "Several columns are called {names}: the first keeps its name, the next is {other}.",
-            names=", ".join(twice),
-            other=f"{twice[0]}_2",
-        )
-        messages.append(doubtful(said))
-    body = [row for row in rows[head + 1 :] if any(map(_is_filled, row))]
-    if _is_remark(rows[head]):
-        body = [row for row in body if text(row[0]) != "#" or any(map(_is_filled, row[1:]))]
+    body = _body(rows, head)
     if not body:
         raise FileProblem(
             worded("{name} must hold records below its column names, but holds none.", name=name)
         )
-    longer = sum(len(row) > len(names) and any(text(v) for v in row[len(names) :]) for row in body)
-    if longer:
-        messages.append(
-            dropped(
-                worded(
-                    "{longer} {longer:line has|lines have} more cells than there are columns; "
-                    "those were left out.",
-                    longer=longer,
-                )
-            )
-        )
+    messages = (
+        *_about_header(name, len(rows[0]), head, header),
+        *_about_repeated_names(rows[head]),
+        *_about_longer(body, len(names)),
+    )
     above = "\n".join(", ".join(text(v) for v in row) for row in rows[:head])
-    return Layer(name, _columns(names, body), messages=tuple(messages), above=above)
+    return Layer(name, _columns(names, body), messages=messages, above=above)
+
+
+def _body(rows: list[list[Any]], head: int) -> list[list[Any]]:
+    """Return the records below the column names: neither empty lines nor bare ``#``."""
+    body = [row for row in rows[head + 1 :] if any(map(_is_filled, row))]
+    if _is_remark(rows[head]):
+        body = [row for row in body if text(row[0]) != "#" or any(map(_is_filled, row[1:]))]
+    return body
+
+
+def _about_header(
+    name: str, n_columns: int, head: int, header: str | None
+) -> tuple[ImportMessage, ...]:
+    """Return what to say of which line names the columns."""
+    if header == "no":
+        said = worded(
+            "{name} has no line of names: its columns are called column 1 to {n}.",
+            name=name,
+            n=n_columns,
+        )
+        return (seen(said),)
+    if not head:
+        return ()
+    said = worded(
+        "{head} {head:line|lines} above the column names {head:was|were} passed over.", head=head
+    )
+    return (seen(said),)
+
+
+def _about_repeated_names(cells: list[Any]) -> tuple[ImportMessage, ...]:
+    """Return a doubt about columns of one name."""
+    twice = [name for name, n in Counter(map(text, cells)).items() if name and n > 1]
+    if not twice:
+        return ()
+    said = worded(
+        "Several columns are called {names}: the first keeps its name, the next is {other}.",
+        names=", ".join(twice),
+        other=f"{twice[0]}_2",
+    )
+    return (doubtful(said),)
+
+
+def _about_longer(body: list[list[Any]], n_columns: int) -> tuple[ImportMessage, ...]:
+    """Return what was left out of lines with more cells than there are columns."""
+    longer = sum(len(row) > n_columns and any(map(text, row[n_columns:])) for row in body)
+    if not longer:
+        return ()
+    said = worded(
+        "{longer} {longer:line has|lines have} more cells than there are columns; "
+        "those were left out.",
+        longer=longer,
+    )
+    return (dropped(said),)
 
 
 def _headed(rows: list[list[Any]], name: str, header: str | None) -> tuple[list[list[Any]], int]:
@@ -246,7 +274,10 @@ def _head_row(rows: list[list[Any]]) -> int | None:
     filled = [sum(bool(text(v)) for v in row) for row in looked_at]
     if not any(filled):
         return None
-    known = [len(recognised(text(v) for v in row)) for row in looked_at]
+    known = [
+        len({*recognised(map(text, row)), *filter(names_degrees, map(text, row))})
+        for row in looked_at
+    ]
     if max(known) >= 2:
         return start + known.index(max(known))
     widest = max(filled)

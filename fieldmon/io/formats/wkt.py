@@ -1,21 +1,25 @@
-"""Shapes that stand as text in a column of a table (WKT), as QGIS and databases export them."""
+"""Shapes that stand in a column of a table (WKT, WKB in hex), as QGIS and databases export them."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 import shapely
+from shapely.errors import GEOSException
 
 from fieldmon.compute.wording import worded
+from fieldmon.errors import FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.wkb import closed
 from fieldmon.io.import_report import ImportMessage, dropped, guessed, seen
 from fieldmon.io.sandbox import limits
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
 _WKT = re.compile(
@@ -23,8 +27,27 @@ _WKT = re.compile(
     r"\s*(?:ZM|Z|M)?\s*(?:\(.*\)|EMPTY))\s*",
     re.IGNORECASE | re.DOTALL,
 )
+_CURVES = re.compile(
+    r"\s*(?:SRID\s*=\s*\d+\s*;)?\s*(CIRCULARSTRING|COMPOUNDCURVE|CURVEPOLYGON|MULTICURVE|MULTISURFACE"
+    r"|POLYHEDRALSURFACE|TIN|TRIANGLE)\s*(?:ZM|Z|M)?\s*(?:\(|EMPTY)",
+    re.IGNORECASE,
+)
+_HEX = re.compile(r"\s*(?:\\x|0x)?((?:[\dA-F]{2}){9,})\s*", re.IGNORECASE)
+_ORDERS: dict[int, Literal["big", "little"]] = {0: "big", 1: "little"}
+#: kinds of shapes in WKB: points, lines, areas and collections of them; then curves and surfaces
+_KINDS, _COLLECTION, _CURVED = range(1, 18), 7, range(8, 18)
+#: what stands with the kind: that a system follows, and, as some write it, heights and measures
+_WITH_SYSTEM, _KIND = 0x20000000, 0x0FFFFFFF
 _LOOKED_AT = 50
 _WGS84 = "OGC:CRS84"
+
+
+class _Cell(NamedTuple):
+    """A shape as it stands in a cell: as text or as bytes; neither where it is a curve."""
+
+    wkt: str | None
+    wkb: bytes | None
+    srid: int
 
 
 def with_shapes(layer: Layer, stated: str | None) -> Layer:
@@ -36,16 +59,28 @@ def with_shapes(layer: Layer, stated: str | None) -> Layer:
         The table.
     stated
         The coordinate system that a file beside it states, or None.
+
+    Raises
+    ------
+    FileProblem
+        Where shapes are curves.
     """
     name = _column(layer)
     if name is None:
         return layer
-    cells = [_WKT.fullmatch(text(v)) for v in layer.columns[name]]
-    bare = np.array([m.group(2) if m else None for m in cells], dtype=object)
-    geometry = shapely.from_wkt(bare, on_invalid="ignore")
-    there = np.array([m is not None for m in cells], dtype=bool)
-    lost = shapely.is_missing(geometry) & there
-    geometry[lost] = shapely.from_wkt(bare[lost], on_invalid="fix")
+    cells = [_read(text(v)) for v in layer.columns[name]]
+    curved = [k for k, cell in enumerate(cells) if cell and cell.wkt is None is cell.wkb]
+    if curved:
+        raise _about_curves(layer.name, name, curved[0])
+    there = np.array([cell is not None for cell in cells], dtype=bool)
+    try:
+        geometry = _geometry(cells, "ignore")
+        lost = shapely.is_missing(geometry) & there
+        geometry[lost] = _geometry([cell for cell, is_lost in zip(cells, lost, strict=True)
+                                    if is_lost], "fix")  # fmt: skip
+        shapely.get_coordinates(geometry[shapely.get_type_id(geometry) == _COLLECTION])
+    except (NotImplementedError, GEOSException):  # curves in a collection
+        raise _about_curves(layer.name, name, int(np.flatnonzero(there)[0])) from None
     limits.check(
         "vertices", int(shapely.get_num_coordinates(geometry).sum()), limits.VERTICES, layer.name
     )
@@ -53,7 +88,7 @@ def with_shapes(layer: Layer, stated: str | None) -> Layer:
         seen(worded("Shapes are in column {name!r}.", name=name)),
         *_about(layer, name, geometry, lost),
     ]
-    systems = {m.group(1) for m in cells if m and m.group(1) not in {None, "0"}}
+    systems = {cell.srid for cell in cells if cell and cell.srid}
     crs = f"EPSG:{systems.pop()}" if len(systems) == 1 else stated
     if crs is None and _could_be_degrees(geometry):
         crs = _WGS84
@@ -70,9 +105,51 @@ def _column(layer: Layer) -> str | None:
     """Return the first column all of whose cells are shapes, or empty."""
     for name, values in layer.columns.items():
         some = [cell for v in values[:_LOOKED_AT] if (cell := text(v))]
-        if some and all(map(_WKT.fullmatch, some)):
+        if some and all(_read(cell) is not None for cell in some):
             return name
     return None
+
+
+def _read(cell: str) -> _Cell | None:
+    """Return the shape that a cell holds, not understood yet; None where it holds none."""
+    if found := _WKT.fullmatch(cell):
+        return _Cell(found[2], None, int(found[1] or 0))
+    if _CURVES.match(cell):
+        return _Cell(None, None, 0)
+    found = _HEX.fullmatch(cell)
+    raw = bytes.fromhex(found[1]) if found else b"\xff"
+    if (order := _ORDERS.get(raw[0])) is None:
+        return None
+    code = int.from_bytes(raw[1:5], order)
+    if (code & _KIND) % 1000 not in _KINDS or (code & _KIND) > 4000:
+        return None
+    srid = int.from_bytes(raw[5:9], order) if code & _WITH_SYSTEM else 0
+    return _Cell(None, None if (code & _KIND) % 1000 in _CURVED else raw, srid)
+
+
+def _geometry(
+    cells: Sequence[_Cell | None], on_invalid: Literal["ignore", "fix"]
+) -> NDArray[np.object_]:
+    """Return the shapes of cells ``(n,)``, None where there is none or it is none."""
+    as_text = np.array([cell and cell.wkt for cell in cells], dtype=object)
+    as_bytes = np.array([cell and cell.wkb for cell in cells], dtype=object)
+    geometry = shapely.from_wkt(as_text, on_invalid=on_invalid)
+    in_bytes = as_bytes != None  # noqa: E711 - each of them
+    geometry[in_bytes] = shapely.from_wkb(as_bytes[in_bytes], on_invalid=on_invalid)
+    return np.asarray(geometry, dtype=object)
+
+
+def _about_curves(file: str, column: str, record: int) -> FileProblem:
+    return FileProblem(
+        worded(
+            "Shapes must have straight edges, but column {column!r} of {file} holds curves or "
+            'surfaces, the first in record {number}. Make them straight first ("segmentize" in a '
+            "GIS, ST_CurveToLine in a database).",
+            column=column,
+            file=file,
+            number=record + 1,
+        )
+    )
 
 
 def _about(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,7 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, repaired, seen
 from fieldmon.io.parse.crs import (
+    Transformation,
     ask_for_crs,
     candidates,
     code_of,
@@ -25,10 +27,15 @@ from fieldmon.io.parse.crs import (
 from fieldmon.plot.projection import metres_per_unit
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import pyproj
     from numpy.typing import NDArray
 
     from fieldmon.io.options import ReadOptions
+
+    #: tells where coordinates lie with the second one first, ``(n, 2)``, if anybody asks
+    Exchanged = Callable[[], NDArray[np.float64]]
 
 _EARTH_KM = 6371.0
 #: from here a file is doubted that should lie near a place, and from here it is asked about
@@ -96,10 +103,12 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     lonlat = through.lonlat(xy)
     if options.crs is None:
         _check_metres(xy, lonlat, crs, options)
+    exchanged = partial(_exchanged, xy, crs, through)
     _check_landing(lonlat, crs)
-    _check_near(xy, lonlat, through.code, options)
+    _check_near(xy, (lonlat, exchanged), through.code, options)
     step_m = step_of(xy) * metres_per_unit(crs)
-    doubts = [*_outside(xy, lonlat, crs, options), *_distance(lonlat, options)]
+    doubts = _outside(xy, (lonlat, exchanged), crs, options)
+    doubts += _distance(lonlat, exchanged, crs, options)
     return Georeferenced(lonlat, step_m, (*messages, *more, *through.messages(), *doubts))
 
 
@@ -229,6 +238,23 @@ def _without_zone(
     ]
 
 
+def _exchanged(
+    xy: NDArray[np.float64], crs: pyproj.CRS, through: Transformation
+) -> NDArray[np.float64]:
+    """Return degrees ``(n, 2)`` as if the second coordinate came first; NaN: they lie nowhere."""
+    other = xy[:, ::-1]
+    lonlat = other if _in_degrees(crs) else through.lonlat(_without_zone(other, crs)[0])
+    lands = np.isfinite(lonlat) & (np.abs(lonlat) <= (360, 90))
+    return np.where(lands.all(axis=1, keepdims=True), lonlat, np.nan)
+
+
+def _belongs(lonlat: NDArray[np.float64], crs: pyproj.CRS) -> bool:
+    """Return whether positions lie where a projected system is used."""
+    return bool(
+        crs.is_projected and np.isfinite(lonlat).all() and km_outside(crs, *_middle(lonlat)) == 0
+    )
+
+
 def _check_landing(lonlat: NDArray[np.float64], crs: pyproj.CRS) -> None:
     if not (np.isfinite(lonlat).all() and (np.abs(lonlat[:, 1]) <= 90).all()):
         raise FileProblem(
@@ -241,13 +267,31 @@ def _check_landing(lonlat: NDArray[np.float64], crs: pyproj.CRS) -> None:
 
 
 def _outside(
-    xy: NDArray[np.float64], lonlat: NDArray[np.float64], crs: pyproj.CRS, options: ReadOptions
+    xy: NDArray[np.float64],
+    either_way: tuple[NDArray[np.float64], Exchanged],
+    crs: pyproj.CRS,
+    options: ReadOptions,
 ) -> list[ImportMessage]:
     """Return a doubt where a file lies outside of where its coordinate system is used."""
+    lonlat, exchanged = either_way
     lon, lat = _middle(lonlat)
     away = km_outside(crs, lon, lat)
     if not away > (_FAR_FROM_ZONE_KM if utm_zone(crs) else _FAR_FROM_USE_KM):
         return []
+    if _belongs(other := exchanged(), crs):
+        there_lon, there_lat = _middle(other)
+        said = worded(
+            "It lies at {lon:.4f}, {lat:.4f}, which is {away:.0f} km outside of where {name} is "
+            "used; with easting and northing exchanged it lies within, at {there_lon:.2f}, "
+            "{there_lat:.2f}. Exchange them if that is right.",
+            lon=lon,
+            lat=lat,
+            away=away,
+            name=crs.name,
+            there_lon=there_lon,
+            there_lat=there_lat,
+        )
+        return [doubtful(said, None, _exchange(crs, options))]
     said = worded(
         "It lies at {lon:.4f}, {lat:.4f}, which is {away:.0f} km outside "
         "of where {name} is used, so the accuracy that PROJ states does "
@@ -272,20 +316,31 @@ def _outside(
     ]
 
 
+def _exchange(crs: pyproj.CRS, options: ReadOptions) -> Remedy:
+    label = worded("Exchange longitude and latitude")
+    if crs.is_projected:
+        label = worded("Exchange easting and northing")
+    return Remedy("swap_axes", "no" if options.swap_axes else "yes", label)
+
+
 def _check_near(
-    xy: NDArray[np.float64], lonlat: NDArray[np.float64], code: str, options: ReadOptions
+    xy: NDArray[np.float64],
+    either_way: tuple[NDArray[np.float64], Exchanged],
+    code: str,
+    options: ReadOptions,
 ) -> None:
     """Ask where a file is said to lie near a place, but lies on another part of the earth."""
+    lonlat, exchanged = either_way
     if options.near is None or options.crs is not None or options.swap_axes:
         return
     away = _nearest_km(lonlat, options.near)
     if away <= _ASKED_KM:
         return
-    if _nearest_km(lonlat[:, ::-1], options.near) < away / 10:
+    if _nearest_km(exchanged(), options.near) < away / 10:
         raise ChoiceNeeded(
             worded(
-                "It lies {away:.0f} km from the plot or place nearby. Exchange "
-                "longitude and latitude if they are in the wrong order.",
+                "It lies {away:.0f} km from the plot or place nearby. Exchange its first and "
+                "second coordinates if they are in the wrong order.",
                 away=away,
             ),
             "swap_axes",
@@ -309,6 +364,8 @@ def _check_near(
 
 def _nearest_km(lonlat: NDArray[np.float64], place: tuple[float, float]) -> float:
     """Return how far the nearest of many positions ``(n, 2)`` is from a place, on a sphere."""
+    if np.isnan(lonlat).any():
+        return np.inf
     lon, lat = np.deg2rad(lonlat).T
     there_lon, there_lat = np.deg2rad(place)
     half = np.sin((lat - there_lat) / 2) ** 2
@@ -316,27 +373,32 @@ def _nearest_km(lonlat: NDArray[np.float64], place: tuple[float, float]) -> floa
     return float(2 * _EARTH_KM * np.arcsin(np.sqrt(np.clip(half.min(), 0, 1))))
 
 
-def _distance(lonlat: NDArray[np.float64], options: ReadOptions) -> list[ImportMessage]:
+def _distance(
+    lonlat: NDArray[np.float64],
+    exchanged: Exchanged,
+    crs: pyproj.CRS,
+    options: ReadOptions,
+) -> list[ImportMessage]:
     """Return a doubt where the file lies far from the place named by hand."""
     if options.near is None:
         return []
     away = _nearest_km(lonlat, options.near)
     if away <= _FAR_KM:
         return []
-    swapped = _nearest_km(lonlat[:, ::-1], options.near)
+    swapped = _nearest_km(exchanged(), options.near)
     if swapped < away / 10:
-        other = "no" if options.swap_axes else "yes"
-        remedy = Remedy("swap_axes", other, worded("Exchange longitude and latitude"))
-        return [
-            doubtful(
-                worded(
-                    "It lies {away:.0f} km from the plot or place nearby, but "
-                    "{swapped:.0f} km from it with longitude and latitude "
-                    "exchanged.",
-                    away=away,
-                    swapped=swapped,
-                ),
-                remedy=remedy,
+        told = {"away": away, "swapped": swapped}
+        said = worded(
+            "It lies {away:.0f} km from the plot or place nearby, but "
+            "{swapped:.0f} km from it with longitude and latitude "
+            "exchanged.",
+            **told,
+        )
+        if crs.is_projected:
+            said = worded(
+                "It lies {away:.0f} km from the plot or place nearby, but {swapped:.0f} km from it "
+                "with easting and northing exchanged.",
+                **told,
             )
-        ]
+        return [doubtful(said, remedy=_exchange(crs, options))]
     return [doubtful(worded("It lies {away:.0f} km from the plot or place nearby.", away=away))]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ChoiceNeeded
+from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import text
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.columns import find
@@ -39,6 +39,8 @@ def placed_by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> P
     row = options.column("row") or find("row", layer.columns)
     taken = frozenset({row} if row else ())
     plant = options.column("plant") or find("plant", layer.columns, taken)
+    if isinstance(options, RecordOptions) and options.place == "plant" and plant is None:
+        raise _no_plants_named(layer)
     told = options.column("plot")  # "" says that no column names a plot
     plot = find("plot", layer.columns) if told is None else told
     # where plots are known but no plants, a record is somewhere on the plot that it names
@@ -68,6 +70,18 @@ def placed_by_name(layer: Layer, options: ReadOptions, places: NamedPlaces) -> P
         ),
         "columns",
         could_be_positions(layer, options),
+    )
+
+
+def _no_plants_named(layer: Layer) -> FileProblem:
+    """Return what to say where plants are to be taken that records do not name."""
+    return FileProblem(
+        worded(
+            "Records must name plants if place=plant takes these, but no column of {file} was "
+            "recognised as the plant among: {names}. Name it, or leave place out.",
+            file=layer.name,
+            names=", ".join(layer.columns),
+        )
     )
 
 

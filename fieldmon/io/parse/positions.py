@@ -13,7 +13,7 @@ import shapely
 from pyproj.exceptions import CRSError
 
 from fieldmon.compute.units import distance_figure
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import (
@@ -25,7 +25,9 @@ from fieldmon.io.import_report import (
     repaired,
     seen,
 )
+from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.columns import find, plain
+from fieldmon.io.parse.crs import system, utm_zone
 from fieldmon.io.parse.geometry import geometry_kinds
 from fieldmon.io.parse.georeference import few_unplaceable, place, written
 from fieldmon.io.parse.named_positions import placed_by_name
@@ -75,6 +77,8 @@ class LocatedFeatures:
         What was left out because nobody can read where it is.
     step_m
         To which positions are rounded; 0 where they are not.
+    by_name
+        Whether they name where they are, and give no position.
     """
 
     layer: Layer
@@ -84,12 +88,15 @@ class LocatedFeatures:
     plot: NDArray[np.str_] | None = None
     unread: Unread | None = None
     step_m: float = 0.0
+    by_name: bool = False
 
 
 def located(
     layer: Layer, options: ReadOptions, places: NamedPlaces | None = None
 ) -> LocatedFeatures:
     """Return the features of a layer that have a position, or name a place that has one."""
+    if isinstance(options, RecordOptions) and options.place == "plant":
+        return _kept(layer, placed_by_name(layer, options, places or NamedPlaces()))
     if layer.geometry is not None:
         return _points(layer, options)
     way = _way(layer, options)
@@ -178,8 +185,8 @@ def _by_coordinates(
     shown = ", ".join(repr(name) for name in names)  # in a sentence of any language
     xy, crs, messages = _coordinates(layer, options, how, names)
     stated, more = _stated_crs(layer, options)
-    if stated is None and how == "metres" and options.crs is None:
-        stated, said = _stated_zone(layer, xy)
+    if stated is None and how == "metres":
+        stated, said = _stated_zone(layer, xy, options)
         more += said
     there = _finite(xy)
     there[there] = ~few_unplaceable(xy[there], stated or crs, options)
@@ -360,32 +367,59 @@ def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Im
     return None, []
 
 
-def _stated_zone(layer: Layer, xy: NDArray[np.float64]) -> tuple[str | None, list[ImportMessage]]:
-    """Return the UTM system of a column of zones such as 34H, if all records are in one.
+def _stated_zone(
+    layer: Layer, xy: NDArray[np.float64], options: ReadOptions
+) -> tuple[str | None, list[ImportMessage]]:
+    """Return the UTM system of a column of zones such as 34H; ask where records are in several.
 
     S is a band of the north, and the south: northings tell which, but over the southern ocean.
     """
     name = next((one for one in layer.columns if plain(one) in _ZONE_COLUMNS), None)
     if name is None or not np.isfinite(xy[:, 1]).any():
         return None, []
-    zones = {text(v).strip().upper() for v in layer.column(name) if not is_missing(v)}
-    zone = re.fullmatch(r"0?([1-9]|[1-5]\d|60)\s?([C-HJ-NP-X])", zones.pop()) if zones else None
-    if zone is None or zones:
+    cells = np.array([text(v).strip().upper() for v in layer.column(name)])
+    stated = sorted({*cells.tolist()} - {""})
+    systems = [_zone_system(one, xy[cells == one, 1]) for one in stated]
+    codes = sorted({code for code in systems if code is not None})
+    if not codes or None in systems:
+        return None, []  # zones of something else
+    if len(codes) > 1:
+        if options.crs is not None and utm_zone(system(options.crs)) is None:
+            return None, []
+        raise ChoiceNeeded(
+            worded(
+                "All records must be in one UTM zone, but column {name!r} names {n}: {names}. "
+                "Bring all into one, or choose the records of one of them.",
+                name=name,
+                n=len(stated),
+                names=first_few(stated, _SHOWN),
+            ),
+            "where",
+            tuple(f"{name}={value}" for value in stated),
+        )
+    if options.crs is not None:
         return None, []
-    number, band = int(zone[1]), zone[2]
-    lowest, north = 8 * _BANDS.index(band) - 80, float(np.nanmedian(xy[:, 1])) / _M_PER_DEGREE
-    south = band < "N" or (band == "S" and not lowest - 1 < north < lowest + 9)
-    lat = north - 90 * south
-    if band not in "NS" and not lowest - 1 < lat < lowest + 13:
-        return None, []  # a zone of something else
-    code = f"EPSG:{327 if south else 326}{number:02d}"
     said = worded(
         "Column {name!r} names UTM zone {zone}, which was read as {crs}.",
         name=name,
-        zone=zone[0],
-        crs=f"{pyproj.CRS(code).name} ({code})",
+        zone=first_few(stated, _SHOWN),
+        crs=f"{pyproj.CRS(codes[0]).name} ({codes[0]})",
     )
-    return code, [guessed(said)]
+    return codes[0], [guessed(said)]
+
+
+def _zone_system(zone: str, northing_m: NDArray[np.float64]) -> str | None:
+    """Return the code of a UTM zone with its band, if northings lie in that."""
+    found = re.fullmatch(r"0?([1-9]|[1-5]\d|60)\s?([C-HJ-NP-X])", zone)
+    if found is None or not np.isfinite(northing_m).any():
+        return None
+    number, band = int(found[1]), found[2]
+    lowest, north = 8 * _BANDS.index(band) - 80, float(np.nanmedian(northing_m)) / _M_PER_DEGREE
+    south = band < "N" or (band == "S" and not lowest - 1 < north < lowest + 9)
+    lat = north - 90 * south
+    if band not in "NS" and not lowest - 1 < lat < lowest + 13:
+        return None
+    return f"EPSG:{327 if south else 326}{number:02d}"
 
 
 def _known_system(value: str) -> str | None:
@@ -414,6 +448,7 @@ def _kept(layer: Layer, named: PlacedByName) -> LocatedFeatures:
         named.accuracy_m[there],
         named.messages,
         None if named.plot is None else named.plot[there],
+        by_name=True,
     )
 
 

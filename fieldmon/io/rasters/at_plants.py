@@ -10,6 +10,7 @@ from fieldmon.compute.wording import joined, share_figure, worded
 from fieldmon.infestation.raster_risk import RELATIVE, meaning_of, risk_chance
 from fieldmon.io.import_report import doubtful, seen
 from fieldmon.io.options import source_name
+from fieldmon.io.rasters.alike import doubts_of_alike
 from fieldmon.io.rasters.read import read_raster
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 # a raster of chances seldom has more than this share infested; of other numbers many would
 _MUCH = 0.2
+# of risks, the plants of the lowest or highest value come first: few of them matter
+_FEW = 0.01
 
 
 def read_risk(
@@ -53,7 +56,8 @@ def read_risk(
         mean=mean,
     )
     told = [seen(joined("", (said, _unseen(chance, worded("and have no risk by it")))))]
-    if settings.meaning not in RELATIVE and mean > _MUCH:
+    absolute = settings.meaning not in RELATIVE
+    if absolute and mean > _MUCH:
         much = worded(
             "By it alone {share} of all plants are infested: check that its numbers are chances, "
             "and no index, order or score.",
@@ -66,6 +70,7 @@ def read_risk(
             "chance), and no index."
         )
         told.append(doubtful(small))
+    told += doubts_of_alike(values, read.value, plot.grid, _FEW, zero_is_none=absolute)
     return read.having(chance, told)
 
 
@@ -90,9 +95,8 @@ def read_missing(
         total=len(missing),
         below=below,
     )
-    return read.having(
-        missing, [seen(joined("", (said, _unseen(values, worded("and count as there")))))]
-    )
+    told = [seen(joined("", (said, _unseen(values, worded("and count as there")))))]
+    return read.having(missing, [*told, *doubts_of_alike(values, read.value, plot.grid, _MUCH)])
 
 
 def _unseen(values: Floats, what: str) -> str:

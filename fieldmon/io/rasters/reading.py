@@ -38,12 +38,13 @@ def raster(
         values = read.values[0].astype(np.result_type(kind, np.float32))
         values[read.missing] = np.nan
         values[~np.isfinite(values)] = np.nan
-        messages = (*read.messages, *_scaled(opened, band, values), *_empty(values))
+        scaled, said = _scaled(opened, band, values)
+        messages = (*read.messages, *said, *_empty(values))
         is_classes = opened.tif.colorinterp[band - 1] == ColorInterp.palette
         text = opened.crs.to_wkt()
         called = opened.tif.descriptions[band - 1] or ""
-        value = Raster(values, part.to_map(opened.to_map), text, bool(is_classes), called)
-        return Imported(value, messages)
+        to_map = part.to_map(opened.to_map)
+        return Imported(Raster(values, to_map, text, bool(is_classes), called, scaled), messages)
 
 
 def _band(opened: OpenRaster, wanted: str | None) -> int:
@@ -74,13 +75,15 @@ def _band(opened: OpenRaster, wanted: str | None) -> int:
     )
 
 
-def _scaled(opened: OpenRaster, band: int, values: NDArray[np.floating]) -> list[ImportMessage]:
-    """Apply the scale and offset that a band declares, in place."""
+def _scaled(
+    opened: OpenRaster, band: int, values: NDArray[np.floating]
+) -> tuple[tuple[float, float], list[ImportMessage]]:
+    """Apply the scale and offset that a band declares, in place; return them."""
     scale, offset = opened.tif.scales[band - 1], opened.tif.offsets[band - 1]
     if (scale, offset) == (1.0, 0.0):
-        return []
+        return (1.0, 0.0), []
     if not (np.isfinite([scale, offset]).all() and scale != 0.0):
-        return [
+        return (1.0, 0.0), [
             doubtful(
                 worded(
                     "Scale {scale:g} and offset {offset:g} make no sense and were ignored.",
@@ -91,7 +94,7 @@ def _scaled(opened: OpenRaster, band: int, values: NDArray[np.floating]) -> list
         ]
     values *= scale
     values += offset
-    return [
+    return (scale, offset), [
         seen(
             worded(
                 "Values were scaled as the band says: times {scale:g}, plus {offset:g}.",

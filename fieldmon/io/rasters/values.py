@@ -84,6 +84,8 @@ class Raster:
         The numbers are classes (the band has a colour table): they must not be averaged.
     described
         What the file calls the band; empty: nothing.
+    scaled
+        The scale and the offset that were applied.
     """
 
     values: NDArray[np.floating]
@@ -91,6 +93,7 @@ class Raster:
     crs: str
     is_classes: bool = False
     described: str = ""
+    scaled: tuple[float, float] = (1.0, 0.0)
 
     def __post_init__(self) -> None:
         self.values.setflags(write=False)
@@ -101,6 +104,11 @@ class Raster:
         rows, columns = self.values.shape
         middle = map_xy(self.to_map, np.array([[columns / 2, rows / 2]]))[0]
         return transformation_from(system(self.crs), (float(middle[0]), float(middle[1])))
+
+    def stored(self, value: float) -> float:
+        """Return how the file has a value: as nodata is named."""
+        scale, offset = self.scaled
+        return (value - offset) / scale
 
     def pixels(self, lonlat: Float) -> Float:
         """Return column and row of positions ``(n, 2)``, pixel (0, 0) reaching from 0 to 1."""
@@ -234,7 +242,7 @@ def _points(
     rows, columns = values.shape
     out = np.full(len(places), np.nan)
     for i in range(len(places)):
-        total, most, n = 0.0, -np.inf, 0
+        total, least, most, n = 0.0, np.inf, -np.inf, 0
         for k in range(len(about)):
             column, row = places[i, 0] + about[k, 0], places[i, 1] + about[k, 1]
             # so that NaN and infinity fail it too
@@ -243,10 +251,11 @@ def _points(
             value = values[int(row), int(column)]
             if not np.isnan(value):
                 total += value
-                most = max(most, value)
+                least, most = min(least, value), max(most, value)
                 n += 1
         if n:
-            out[i] = most if highest else total / n
+            # of equal values the mean is that value to the bit, however many they are
+            out[i] = most if highest or least == most else total / n
     return out
 
 
@@ -261,12 +270,13 @@ def _bilinear(values: NDArray[np.floating], places: Float) -> Float:
         if np.isnan(values[int(row), int(column)]):
             continue
         left, above = int(np.floor(column - 0.5)), int(np.floor(row - 0.5))
-        total, weights = 0.0, 0.0
+        total, weights, least, most = 0.0, 0.0, np.inf, -np.inf
         for r in range(above, above + 2):
             for c in range(left, left + 2):
                 if 0 <= r < rows and 0 <= c < columns and not np.isnan(values[r, c]):
                     weight = (1.0 - abs(column - 0.5 - c)) * (1.0 - abs(row - 0.5 - r))
                     total += weight * values[r, c]
                     weights += weight
-        out[i] = total / weights
+                    least, most = min(least, values[r, c]), max(most, values[r, c])
+        out[i] = most if least == most else total / weights
     return out

@@ -62,6 +62,13 @@ class InspectionOptions(RecordOptions):
             )
         if self.zone is not None:
             zone_of(self.zone)
+        if self.place is not None:
+            raise SettingError(
+                worded(
+                    "An inspection is of the plant that it names, and is doubted where its "
+                    "position is elsewhere: take_doubtful=yes takes it. Leave place out."
+                )
+            )
 
     def on(self, field: Field) -> Self:
         """Return these options with the time zone in which a plot lies, where none was told."""

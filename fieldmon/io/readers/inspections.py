@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -111,13 +111,60 @@ def look_up(
     rows: InspectionRows, grid: PlantGrid, options: InspectionOptions
 ) -> tuple[Inspections, tuple[ImportMessage, ...]]:
     """Return what a file says with its plants, and what was left out or guessed on the way."""
+    placed = _placed(rows, grid, options)
+    rows, plant = placed.rows, placed.plant
+    taken = plant >= 0
+    if not options.take_doubtful:
+        taken[list(placed.doubts)] = False
+    taken[list(placed.problems)] = False
+    said = _about_places(placed, grid, options, taken)
+    whole, records, of_leaves = _whole_plants(rows, plant, np.flatnonzero(taken))
+    inspections = _inspections(whole, plant, records)
+    once = _once_each(whole, inspections, records)
+    said += [*of_leaves, *_about_contradictions(whole, grid, plant, records)]
+    said += _about_repeats(len(inspections) - len(once))
+    if len(rows) > 1 and not taken.all():
+        said.append(_what_became(len(rows), plant[taken]))
+    return once, tuple(said)
+
+
+class _Placed(NamedTuple):
+    """Records of a file on the plot.
+
+    Parameters
+    ----------
+    rows
+        The records, with names of rows and plants read as numbers.
+    plant
+        ``(m,)`` the plant of each, -1 for none.
+    numbered
+        ``(m,)`` the plant that each names by its number, -1 for none.
+    by_position
+        ``(m,)`` which only their positions tell.
+    problems, doubts
+        Why records cannot be placed, or are doubtful, by index.
+    said
+        What else there is to say of names.
+    """
+
+    rows: InspectionRows
+    plant: NDArray[np.int64]
+    numbered: NDArray[np.int64]
+    by_position: NDArray[np.bool_]
+    problems: dict[int, str]
+    doubts: dict[int, str]
+    said: tuple[ImportMessage, ...]
+
+
+def _placed(rows: InspectionRows, grid: PlantGrid, options: InspectionOptions) -> _Placed:
+    """Place records by the names of plants, else by their numbers, labels and positions."""
     rows, misnamed, said_of_names = by_name(rows, grid)
     named = by_number(rows, grid)
-    plant, problems, doubts = named.plant, named.problems | misnamed, named.doubts
+    plant, problems = named.plant, named.problems | misnamed
     labelled = by_label(rows, grid, plant < 0)
     plant = np.where(labelled.plant >= 0, labelled.plant, plant)
     problems |= labelled.problems
-    doubts = misplaced(rows, grid, plant) | doubts
+    doubts = misplaced(rows, grid, plant) | named.doubts
     open_yet = (plant < 0) & np.isfinite(rows.lonlat).all(axis=1)
     open_yet &= ~np.isin(np.arange(len(rows)), list(problems))
     snapped = by_position(rows, grid, np.flatnonzero(open_yet), options)
@@ -128,44 +175,34 @@ def look_up(
     below = below_first(rows, grid)
     for i in np.flatnonzero(plant < 0).tolist():
         problems.setdefault(i, _nowhere(str(rows.unread[i]), below_one=bool(below[i])))
-    taken = plant >= 0
-    if not options.take_doubtful:
-        taken[list(doubts)] = False
-    taken[list(problems)] = False
-    said = [
+    said = (*said_of_names, *labelled.said)
+    return _Placed(rows, plant, named.plant, open_yet, problems, doubts, said)
+
+
+def _about_places(
+    placed: _Placed, grid: PlantGrid, options: InspectionOptions, taken: NDArray[np.bool_]
+) -> list[ImportMessage]:
+    """Return what to say of where records were placed, of which those marked were `taken`."""
+    rows, problems, by_position = placed.rows, placed.problems, placed.by_position
+    doubts = {i: why for i, why in placed.doubts.items() if i not in problems}
+    return [
         *_listed(rows, problems, dropped, None),
-        *_listed(
-            rows,
-            {i: why for i, why in doubts.items() if i not in problems},
-            doubtful,
-            None if options.take_doubtful else _TAKE,
-        ),
+        *_listed(rows, doubts, doubtful, None if options.take_doubtful else _TAKE),
         *_about_order(rows, grid),
-        *_about_numbers(rows, grid, named.plant, taken),
-        *said_of_names,
-        *labelled.said,
-        *_about_faces(rows, grid, plant, taken),
-        *_about_accuracy(rows, options, open_yet & taken),
-        *_too_coarse(rows, grid, options, open_yet),
+        *_about_numbers(rows, grid, placed.numbered, taken),
+        *placed.said,
+        *_about_faces(rows, grid, placed.plant, taken),
+        *_about_accuracy(rows, options, by_position & taken),
+        *_too_coarse(rows, grid, options, by_position),
     ]
-    records = np.flatnonzero(taken)
-    n_rows, n_taken = len(rows), len(records)
-    rows, records, of_leaves = _whole_plants(rows, plant, records)
-    inspections = _inspections(rows, plant, records)
-    said += [*of_leaves, *_about_contradictions(rows, grid, plant, records)]
-    once = _once_each(rows, inspections, records)
-    if n_again := len(inspections) - len(once):
-        said.append(
-            seen(
-                worded(
-                    "{n} {n:record says|records say} again what another one says; taken once.",
-                    n=n_again,
-                )
-            )
-        )
-    if n_rows > 1 and n_taken < n_rows:
-        said.append(_what_became(n_rows, plant[taken]))
-    return once, tuple(said)
+
+
+def _about_repeats(n: int) -> list[ImportMessage]:
+    """Return what to say of so many records that say again what another one says."""
+    if not n:
+        return []
+    said = worded("{n} {n:record says|records say} again what another one says; taken once.", n=n)
+    return [seen(said)]
 
 
 def _unknown_faces(

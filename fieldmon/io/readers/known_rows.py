@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.units import LENGTHS
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Severity, WrongRows, doubtful, seen
 from fieldmon.io.parse.columns import plain
-from fieldmon.io.parse.values import is_missing, number, numbers
+from fieldmon.io.parse.lengths import UNITS_M, metres
+from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.plot.planting import PLANTED
 
 if TYPE_CHECKING:
@@ -30,14 +30,17 @@ class KnownRows(NamedTuple):
 
 
 _NAMED = 5
-_WITH_UNIT = re.compile(r"([-+]?[\d.,]+)\s*([^\s\d.,].*)")
-_UNITS_M = {
-    **dict.fromkeys(("m", "metre", "metres", "meter", "meters"), 1.0),
-    **dict.fromkeys(("cm", "centimetres", "centimeters"), 0.01),
-    "mm": 0.001,
-    **dict.fromkeys(("'", "’", "′", "ft", "foot", "feet"), LENGTHS["ft"]),
-    **dict.fromkeys(('"', "”", "″", "in", "inch", "inches"), LENGTHS["ft"] / 12),
-}
+# nothing that is grown in rows stands so far apart
+_VERY_FAR_M = 30.0
+_NO_UNITS = frozenset({"", "deg", "degree", "degrees", "°"})
+#: rows or plants and how they stand; or, alone, what only they have
+_OF_ROWS = re.compile(
+    r"^(?:row|rows|vine|vines|plant|plants|tree|trees|reihen?|zeilen?|pflanz|pflanzen|rebstock)"
+    r"(?:spac|dist|abstand|gap$|width|weite|bearing|azimu|orient|direction|richtung|heading)"
+    r"|^(?:inter|between|in|intra|within)rows?(?:spac|dist|width)?$|spacing|abstand$"
+    r"|^distancia(?:entre)?(?:filas|hileras|plantas)|^(?:inter|entre)(?:rang|linea|linha|fila)"
+    r"|^marco(?:de)?plantaci|^sesto|^headland"
+)
 _COLUMNS = {
     "row_bearing_deg": ("row_bearing_deg", "row_bearing", "bearing", "row_azimuth", "azimuth"),
     "row_spacing_m": (
@@ -57,43 +60,75 @@ _COLUMNS = {
 
 def known_rows(layer: Layer, names: list[str]) -> tuple[dict[str, KnownRows], list[ImportMessage]]:
     """Return what a layer's columns state of the rows of its features, by the features' names."""
-    called = {plain(column): column for column in layer.columns}
     values: list[list[float | None]] = []
     used = []
     wrong: list[ImportMessage] = []
     for setting, columns in _COLUMNS.items():
-        column = next((called[plain(c)] for c in columns if plain(c) in called), None)
-        if column is None:
+        found = _column(list(layer.columns), columns, in_metres=setting != "row_bearing_deg")
+        if found is None:
             values.append([None] * len(names))
             continue
-        used.append(f"{column!r}")
+        column, unit_m = found
+        used.append(column)
         cells = layer.column(column)
-        stated = numbers(cells) if setting == "row_bearing_deg" else _metres(cells)
+        stated = numbers(cells) if setting == "row_bearing_deg" else metres(cells, unit_m)
         # 0 and less stand for what nobody knows
         usable = np.isfinite(stated) & ((stated > 0) | (setting == "row_bearing_deg"))
         values.append([float(v) if good else None for v, good in zip(stated, usable, strict=True)])
         wrong += left_aside(column, cells, usable | (stated == 0), names)
         wrong += _out_of_range(setting, column, values[-1], names)
+        wrong += _very_far(setting, column, values[-1], names)
+    wrong += _unread([column for column in layer.columns if column not in used])
     if not used:
-        return {}, []
+        return {}, wrong
     rows = (KnownRows(*one) for one in zip(*values, strict=True))
     said = seen(
         worded(
             "Direction and spacings of rows and plants are taken from {names}.",
-            names=", ".join(used),
+            names=", ".join(map(repr, used)),
         )
     )
     return dict(zip(names, rows, strict=True)), [said, *wrong]
 
 
-def _metres(cells: NDArray[np.object_]) -> NDArray[np.float64]:
-    """Return distances in metres ``(n,)``, each in the unit it is written in; NaN in any other."""
-    stated = numbers(cells)
-    for k, cell in enumerate(map(text, cells)):
-        if found := _WITH_UNIT.match(cell.casefold()):
-            value = number(found[1], "," if "," in found[1] else ".")
-            stated[k] = value * _UNITS_M.get(found[2].rstrip("."), np.nan)
-    return stated
+def _column(
+    columns: list[str], known: tuple[str, ...], *, in_metres: bool
+) -> tuple[str, float] | None:
+    """Return the column that has one of the known names, and how many metres its unit is."""
+    read = [(*_name_and_unit(column), column) for column in columns]
+    for name in map(plain, known):
+        for own, unit_m, column in read:
+            if name == own and (unit_m is not None or not in_metres):
+                return column, unit_m or 1.0
+    return None
+
+
+def _name_and_unit(column: str) -> tuple[str, float | None]:
+    """Return a column's plain name, and the metres of the unit behind it; None: it is no length."""
+    bracket = re.search(r"[(\[]([^)\]]*)[)\]]\s*$", column)
+    if bracket:
+        unit = bracket[1].strip().casefold().rstrip(".")
+        return plain(column), 1.0 if unit in _NO_UNITS else UNITS_M.get(unit)
+    stem, _, unit = column.casefold().replace(" ", "_").rpartition("_")
+    if stem and unit in UNITS_M and unit != "m":
+        return plain(stem), UNITS_M[unit]
+    return plain(column), 1.0
+
+
+def _unread(columns: list[str]) -> list[ImportMessage]:
+    """Return a doubt about columns that seem to say how rows or plants stand, and are not read."""
+    alike = [column for column in columns if _OF_ROWS.search(plain(column))]
+    if not alike:
+        return []
+    return [
+        doubtful(
+            worded(
+                "What seems to be said of rows or plants is not read: {names}. Call such columns "
+                "row_bearing_deg, row_spacing_m and plant_spacing_m, or say it by hand.",
+                names=first_few([repr(column) for column in alike], _NAMED),
+            )
+        )
+    ]
 
 
 def left_aside(
@@ -113,6 +148,29 @@ def left_aside(
                 some=first_few([f"{names[k]} ({text(cells[k])!r})" for k in wrong], _NAMED),
             )
         )
+    ]
+
+
+def _very_far(
+    setting: str, column: str, stated: list[float | None], names: list[str]
+) -> list[ImportMessage]:
+    """Return a doubt for each plot whose rows or plants are as far apart as in another unit."""
+    if setting == "row_bearing_deg":
+        return []
+    broken = PLANTED[setting].broken
+    return [
+        doubtful(
+            worded(
+                "Column {column!r} says {value:g} m, as no rows or plants stand: check its unit, "
+                "and write it with the number or behind the column's name, as in row_spacing_cm.",
+                column=column,
+                value=value,
+            ),
+            name,
+            many="Rows or plants of {n} plots would stand as far apart as in another unit",
+        )
+        for name, value in zip(names, stated, strict=True)
+        if value is not None and value > _VERY_FAR_M and not broken(value)
     ]
 
 

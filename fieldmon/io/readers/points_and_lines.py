@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.options import PlotOptions, ReadOptions
+    from fieldmon.io.parse.positions import LocatedFeatures
     from fieldmon.plot.block import Block
 
 
@@ -68,61 +69,95 @@ class DrawnBlocks(NamedTuple):
 def plants_of(layer: Layer, options: ReadOptions) -> Imported[Plants]:
     """Return the plants of a layer of points, or of a table with positions."""
     found = located(layer, options)
-    messages = list(found.messages)
-    taken: set[str] = set()
-    labels, columns = [], {}
+    names, columns, said_of_names = _named(found.layer, options)
+    block, row, plant = names
+    corners, said_of_corners = _corners_among(found.layer, found.lonlat, options)
+    gone, said_of_gone = _in_another_part(found.lonlat, plant, corners)
+    here = np.flatnonzero(~gone)
+    coarse = doubts_of_rounding(found.lonlat[here], found.step_m, row[here], FileProblem)
+    kept, said_of_doubles = _one_of_each(found, here, options)
+    left_out, said_of_strays = _strays(found.lonlat[kept], plant[kept], options)
+    said = [
+        *said_of_names,
+        *said_of_corners,
+        *said_of_gone,
+        *map(doubtful, coarse),
+        *said_of_doubles,
+        *_of_near_doubles(found.lonlat[kept]),
+        *said_of_strays,
+    ]
+    kept = kept[~left_out]
+    block, row, plant = (name[kept] for name in names)
+    plants = Plants(found.lonlat[kept], row, plant, block if (block != "").any() else None)
+    for role, of_role in (("block", block), ("row", row)):
+        if role in columns and (of_role == "").any():
+            said.append(_of_blanks(of_role, columns[role]))
+    return Imported(plants, (*layer.messages, *found.messages, *said))
+
+
+def _named(
+    layer: Layer, options: ReadOptions
+) -> tuple[list[NDArray[np.str_]], dict[str, str], list[ImportMessage]]:
+    """Return what blocks, rows and plants are called ``(n,)``, by which columns, and say so."""
+    names: list[NDArray[np.str_]] = []
+    columns: dict[str, str] = {}
     for role in ("block", "row", "plant"):
-        named = options.column(role) or find(role, found.layer.columns, frozenset(taken))
+        taken = frozenset(columns.values())
+        named = options.column(role) or find(role, layer.columns, taken)
         if named is None and role == "plant":
-            named = find("name", found.layer.columns, frozenset(taken))
-        if role == "plant" and options.column(role) is None and _is_constant(found.layer, named):
+            named = find("name", layer.columns, taken)
+        if role == "plant" and options.column(role) is None and _is_constant(layer, named):
             named = None  # it tells no plant from another
         if named is None:
-            labels.append(np.full(len(found.layer), "", dtype=np.str_))
+            names.append(np.full(len(layer), "", dtype=np.str_))
             continue
-        taken.add(named)
         columns[role] = named
-        messages.append(seen(worded("Column {named!r} names the {role}s.", named=named, role=role)))
-        labels.append(np.array([text(v) for v in found.layer.column(named)], dtype=np.str_))
-    corners, said_of_corners = _corners_among(found.layer, found.lonlat, options)
-    messages += said_of_corners
-    gone = _elsewhere(found.lonlat) & ~corners
-    if gone.any():
-        said = worded(
-            "{n} {n:plant lies|plants lie} in another part of the earth than the others and "
-            "{n:was|were} left out: {some}.",
-            n=int(gone.sum()),
-            some=_some(found.lonlat[gone], labels[-1][gone]),
-        )
-        messages.append(dropped(said))
-    gone |= corners
-    here = np.flatnonzero(~gone)
-    coarse = doubts_of_rounding(found.lonlat[here], found.step_m, labels[1][here], FileProblem)
-    messages += map(doubtful, coarse)
+        names.append(np.array([text(v) for v in layer.column(named)], dtype=np.str_))
+    said = [
+        seen(worded("Column {named!r} names the {role}s.", named=named, role=role))
+        for role, named in columns.items()
+    ]
+    return names, columns, said
+
+
+def _in_another_part(
+    lonlat: NDArray[np.float64], names: NDArray[np.str_], corners: NDArray[np.bool_]
+) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
+    """Return which plants ``(n,)`` are `corners` or far off; say so of those far off."""
+    gone = _elsewhere(lonlat) & ~corners
+    if not gone.any():
+        return corners, []
+    said = worded(
+        "{n} {n:plant lies|plants lie} in another part of the earth than the others and "
+        "{n:was|were} left out: {some}.",
+        n=int(gone.sum()),
+        some=_some(lonlat[gone], names[gone]),
+    )
+    return gone | corners, [dropped(said)]
+
+
+def _one_of_each(
+    found: LocatedFeatures, here: NDArray[np.intp], options: ReadOptions
+) -> tuple[NDArray[np.intp], list[ImportMessage]]:
+    """Return which of the plants `here` are kept where several stand in one place.
+
+    Ask whether they are doubles unless that was answered; say what was left out.
+    """
     apart_m = options.doubles_m or SAME_PLANT_M
     kept = here[distinct(found.lonlat[here], apart_m)]
     n_doubles = len(here) - len(kept)
-    if n_doubles and options.doubles is None:
-        raise _about_doubles(found.layer, np.union1d(kept, np.flatnonzero(gone)))
-    if n_doubles:
-        said = worded(
-            "{n_doubles} of {n} plants stood within {apart} of another one; left out.",
-            n_doubles=n_doubles,
-            n=len(here),
-            apart=worded("{apart_cm:g} cm", apart_cm=100 * apart_m),
-        )
-        messages.append(dropped(said))
-    messages += _of_near_doubles(found.lonlat[kept])
-    left_out, said_of_strays = _strays(found.lonlat[kept], labels[-1][kept], options)
-    kept = kept[~left_out]
-    block, row, plant = (label[kept] for label in labels)
-    named_blocks = block if (block != "").any() else None
-    plants = Plants(found.lonlat[kept], row, plant, named_blocks)
-    messages += said_of_strays
-    for role, names in (("block", block), ("row", row)):
-        if role in columns and (names == "").any():
-            messages.append(_of_blanks(names, columns[role]))
-    return Imported(plants, (*layer.messages, *messages))
+    if not n_doubles:
+        return kept, []
+    if options.doubles is None:
+        gone = np.setdiff1d(np.arange(len(found.lonlat)), here)
+        raise _about_doubles(found.layer, np.union1d(kept, gone))
+    said = worded(
+        "{n_doubles} of {n} plants stood within {apart} of another one; left out.",
+        n_doubles=n_doubles,
+        n=len(here),
+        apart=worded("{apart_cm:g} cm", apart_cm=100 * apart_m),
+    )
+    return kept, [dropped(said)]
 
 
 def _of_near_doubles(lonlat: NDArray[np.float64]) -> list[ImportMessage]:

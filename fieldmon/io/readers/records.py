@@ -24,6 +24,7 @@ from fieldmon.io.import_report import (
 from fieldmon.io.options import ROLES
 from fieldmon.io.parse.clock import as_clocks, clock_time, local_time, zone_of
 from fieldmon.io.parse.columns import find, is_confidence, is_id, is_position, recognised
+from fieldmon.io.parse.lengths import accuracies
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.result_words import (
     ResultWords,
@@ -46,6 +47,7 @@ from fieldmon.io.readers.date_doubts import broken_times, in_future, mixed_dates
 from fieldmon.io.readers.inspection_file.columns import names_in, own_column
 from fieldmon.io.readers.inspection_file.results import results_in_names
 from fieldmon.io.readers.other_counts import about_other_counts
+from fieldmon.io.readers.placed_twice import placed_twice
 from fieldmon.io.readers.species import mixed_species
 from fieldmon.io.readers.visits import VISIT_S, first_of_visits, same_places, telling
 from fieldmon.io.readers.wide_tables import by_day
@@ -59,6 +61,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.options import RecordOptions
+    from fieldmon.io.parse.positions import LocatedFeatures
     from fieldmon.io.parse.values import DatedColumn
     from fieldmon.io.readers.places import NamedPlaces
 
@@ -102,18 +105,22 @@ def _records_and_plots(
     table = _Table(found.layer, options)
     day, at_s, day_messages = _days(table, found.lonlat)
     counts = _counts(table)
-    stated_m = table.numbers("accuracy")
+    accuracy_m, unread = _accuracy_m(table, found, options)
+    twice = placed_twice(found, accuracy_m, options)
     observations = Observations.of(
         found.lonlat,
         counts.present,
         day,
         count=counts.number,
-        accuracy_m=np.fmax(np.where(stated_m > 0, stated_m, np.nan), found.accuracy_m),
+        accuracy_m=accuracy_m,
         species=table.texts("species"),
         stage=table.texts("stage"),
         leaves_sampled=table.numbers("leaves"),
     )
-    messages = (*layer.messages, *repeated, *found.messages, *day_messages, *counts.messages)
+    messages = (
+        *layer.messages, *repeated, *found.messages, *unread, *twice, *day_messages,
+        *counts.messages,
+    )  # fmt: skip
     place = _places(observations)
     half_m = (apart_m or Planting().plant_spacing_m) / 2
     known = ~np.isnat(day) & np.isfinite(found.lonlat).all(axis=1)
@@ -126,6 +133,17 @@ def _records_and_plots(
     more = (*mixed, *counted_once, *_same_visit(once, place[first]))
     messages += (*about_confidences(layer.columns, table.used()),)
     return Imported(once, (*messages, *more)), None if found.plot is None else found.plot[first]
+
+
+def _accuracy_m(
+    table: _Table, found: LocatedFeatures, options: RecordOptions
+) -> tuple[NDArray[np.float64], list[ImportMessage]]:
+    """Return how far off the places of records may be ``(n,)``, NaN where that is not known."""
+    name = table.named("accuracy")
+    if name is None or options.place == "plant":  # what is stated is of their positions
+        return found.accuracy_m, []
+    stated_m, unread = accuracies(table.layer.column(name), name, options.decimal)
+    return np.fmax(stated_m, found.accuracy_m), unread
 
 
 @dataclass(frozen=True, eq=False)

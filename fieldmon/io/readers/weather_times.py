@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
     from fieldmon.io.formats.layer import Layer
     from fieldmon.io.parse.clock import ClockTime
+    from fieldmon.io.parse.values import DatedColumn
     from fieldmon.io.readers.weather_options import WeatherOptions
     from fieldmon.pests.weather import Times
 
@@ -171,40 +172,57 @@ def times_of(
             ("dmy", "mdy"),
         )
     clocks = {cell: clock_time(cell) for cell in set(cells)}
-    broken = [*read.broken, *(c for c in clocks if clocks[c] is None and _rest(c))]
-    n_broken = read.n_broken + sum(clocks[cell] is None and _rest(cell) for cell in cells)
-    local = np.full(len(cells), "NaT", "datetime64[s]")
-    stated = np.zeros(len(cells), bool)
-    for i, cell in enumerate(cells):
-        clock = clocks[cell]
-        if np.isnat(read.day[i]) or not _FIRST_DAY <= read.day[i] < _LAST_DAY:
-            continue
-        if clock is None and _rest(cell):
-            continue
-        local[i] = read.day[i] if clock is None else local_time(read.day[i], clock, UTC)
-        stated[i] = clock is not None and clock.offset is not None
-    by_day = all(clock is None for clock in clocks.values())
-    ends, messages = _hours_that_end(layer, columns, service, clocks)
-    messages = [*mixed_dates(read), *messages]
+    local, stated = _local_times(cells, read.day, clocks)
+    ends, said_of_hours = _hours_that_end(layer, columns, service, clocks)
     if ends:
         local -= np.timedelta64(_HOUR_S, "s")
+    messages = [*mixed_dates(read), *said_of_hours]
+    by_day = all(clock is None for clock in clocks.values())
     if by_day or np.isnat(local).all():
         at = utc_times(local, zone)
     else:
         first = local[~np.isnat(local)][0]
-        there, said = _zone_of_times(layer, columns, service, zone, first)
-        at, more = _as_utc(local, there, zone)
+        there, said_of_zone = _zone_of_times(layer, columns, service, zone, first)
+        at, said_of_clock = _as_utc(local, there, zone)
         at = np.where(stated, local, at)
-        messages += [] if stated.all() else [*said, *more]
-        if there is None and not options.zone and not stated.all():
-            remedy = Remedy("zone", "+02:00", worded("Name the time zone"))
-            messages.append(guessed(worded("Times name no zone; read as UTC."), None, remedy))
-    if n_broken:
-        shown = ", ".join(repr(cell) for cell in broken[:3])
-        messages.append(
-            dropped(worded("{n} {n:time is|times are} none ({shown}).", n=n_broken, shown=shown))
-        )
-    return TimesRead(at, zone, messages)
+        if not stated.all():
+            messages += [*said_of_zone, *said_of_clock]
+            if there is None and not options.zone:
+                remedy = Remedy("zone", "+02:00", worded("Name the time zone"))
+                messages.append(guessed(worded("Times name no zone; read as UTC."), None, remedy))
+    return TimesRead(at, zone, [*messages, *_about_broken(cells, read, clocks)])
+
+
+def _local_times(
+    cells: list[str], day: Times, clocks: dict[str, ClockTime | None]
+) -> tuple[Times, NDArray[np.bool_]]:
+    """Return the times in cells ``(n,)``, NaT for none, and which of them state their zone.
+
+    Those are UTC.
+    """
+    local = np.full(len(cells), "NaT", "datetime64[s]")
+    stated = np.zeros(len(cells), bool)
+    for i, cell in enumerate(cells):
+        clock = clocks[cell]
+        if np.isnat(day[i]) or not _FIRST_DAY <= day[i] < _LAST_DAY:
+            continue
+        if clock is None and _rest(cell):
+            continue
+        local[i] = day[i] if clock is None else local_time(day[i], clock, UTC)
+        stated[i] = clock is not None and clock.offset is not None
+    return local, stated
+
+
+def _about_broken(
+    cells: list[str], read: DatedColumn, clocks: dict[str, ClockTime | None]
+) -> list[ImportMessage]:
+    """Return what to say of cells that are no date, or one with something that is no clock."""
+    broken = [*read.broken, *(c for c in clocks if clocks[c] is None and _rest(c))]
+    n_broken = read.n_broken + sum(clocks[cell] is None and _rest(cell) for cell in cells)
+    if not n_broken:
+        return []
+    shown = ", ".join(repr(cell) for cell in broken[:3])
+    return [dropped(worded("{n} {n:time is|times are} none ({shown}).", n=n_broken, shown=shown))]
 
 
 def _rest(cell: str) -> bool:

@@ -29,7 +29,7 @@ from fieldmon.planning.routes.frontier import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.planning.routes.relaxation import Ladder
+    from fieldmon.planning.routes.ladders import Ladder
     from fieldmon.plot.robot import Robot
 
     Float = NDArray[np.float64]

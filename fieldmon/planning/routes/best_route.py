@@ -24,9 +24,9 @@ from fieldmon.planning.bound_wording import (
 from fieldmon.planning.routes.binned import proposals
 from fieldmon.planning.routes.blocks import Blocks, blockings
 from fieldmon.planning.routes.improve import Tour, fit, ruin
+from fieldmon.planning.routes.ladders import Ladders
 from fieldmon.planning.routes.pendant_parts import ladder_with_parts
 from fieldmon.planning.routes.priced import Priced
-from fieldmon.planning.routes.relaxation import Ladders
 from fieldmon.planning.routes.stops import stops_of
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE, Aisles, driven_s, robot_clock

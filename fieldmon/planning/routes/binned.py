@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.planning.routes.frontier import Tables
+    from fieldmon.planning.routes.ladders import Ladder
     from fieldmon.planning.routes.priced import Offered, Priced
-    from fieldmon.planning.routes.relaxation import Ladder
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.planning.routes.ladders import Ladders, Rungs
     from fieldmon.planning.routes.priced import Drawn
-    from fieldmon.planning.routes.relaxation import Ladders, Rungs
     from fieldmon.plot.robot import Robot
 
     Float = NDArray[np.float64]

@@ -16,8 +16,8 @@ import numpy as np
 
 from fieldmon.planning.routes.aisle_ways import IMPOSSIBLE
 from fieldmon.planning.routes.frontier import END_LEFT, END_RIGHT, FROM_LEFT, FROM_RIGHT
+from fieldmon.planning.routes.ladders import Rungs
 from fieldmon.planning.routes.priced import Priced
-from fieldmon.planning.routes.relaxation import Rungs
 from fieldmon.planning.routes.stops import stops_of
 
 if TYPE_CHECKING:
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.planning.routes.ladders import Ladder, Ladders
     from fieldmon.planning.routes.priced import Drawn
-    from fieldmon.planning.routes.relaxation import Ladder, Ladders
     from fieldmon.plot.robot import Robot
 
     Float = NDArray[np.float64]

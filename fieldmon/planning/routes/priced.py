@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.planning.routes.relaxation import Ladder
+    from fieldmon.planning.routes.ladders import Ladder
     from fieldmon.plot.robot import Robot
 
     Float = NDArray[np.float64]

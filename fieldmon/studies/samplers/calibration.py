@@ -13,7 +13,7 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.ensemble import Ensemble
-from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.independent_plants import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import PlotEstimate, estimate_of, estimate_plot
 from fieldmon.infestation.traced_pairs import TracedPairs

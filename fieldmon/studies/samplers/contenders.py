@@ -9,7 +9,7 @@ import numpy as np
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
-from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.independent_plants import IndependentPlants
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.plot.robot import Robot

@@ -7,7 +7,7 @@ import pytest
 import streamlit as st
 
 from app.actions import acting, morning
-from app.state import plot_source, presses, work_day
+from app.state import button_presses, plot_source, work_day
 from app.state.fresh_boxes import FreshBoxes
 from app.words import texts
 from tests.app.chosen import a_plot, chosen
@@ -71,17 +71,17 @@ def test_a_press_acts_before_the_page_is_drawn_and_a_second_one_only_on_what_was
 
     press = shown(boxes, act, monkeypatch)
     press()
-    assert (acted, list(presses.waiting())) == ([3], [])
+    assert (acted, list(button_presses.waiting())) == ([3], [])
     press()  # of boxes that are emptied, but in view still
-    assert (acted, list(presses.waiting())) == ([3], ["record"])
+    assert (acted, list(button_presses.waiting())) == ([3], ["record"])
     press = shown(boxes, act, monkeypatch)
-    assert (acted, list(presses.waiting())) == ([3], [])
+    assert (acted, list(button_presses.waiting())) == ([3], [])
     boxes.put("row", 4)
     press()
     press()
     boxes.put("row", 5)  # typed into those in view, as the emptied ones came
     shown(boxes, act, monkeypatch)
-    assert (acted, list(presses.waiting())) == ([3, 4, 5], [])
+    assert (acted, list(button_presses.waiting())) == ([3, 4, 5], [])
 
 
 def test_a_press_that_goes_by_what_is_shown_waits_until_it_is_and_is_done_once(
@@ -91,9 +91,9 @@ def test_a_press_that_goes_by_what_is_shown_waits_until_it_is_and_is_done_once(
     press = shown(None, lambda: acted.append("as drawn first"), monkeypatch, at_once=False)
     press()
     press()
-    assert (acted, list(presses.waiting())) == ([], ["record"])
+    assert (acted, list(button_presses.waiting())) == ([], ["record"])
     shown(None, lambda: acted.append("as drawn now"), monkeypatch, at_once=False)
-    assert (acted, list(presses.waiting())) == (["as drawn now"], [])
+    assert (acted, list(button_presses.waiting())) == (["as drawn now"], [])
     assert "notice" not in session
 
 
@@ -110,7 +110,7 @@ def test_a_press_of_a_page_of_another_day_does_nothing_and_is_told(
     work_day.choose(plot_source.chosen(), date(2026, 11, 20))
     press()
     draw()
-    assert (acted, list(presses.waiting())) == ([], [])
+    assert (acted, list(button_presses.waiting())) == ([], [])
     assert session.pop("notice") == ("warning", texts.PRESSED_BEFORE.format(button="Record"))
 
 
@@ -119,7 +119,7 @@ def test_what_is_chosen_while_a_press_waits_is_not_what_it_was_meant_for(session
     shown(None, lambda: acted.append("then"), monkeypatch, at_once=False)()
     work_day.choose(plot_source.chosen(), date(2026, 11, 20))
     shown(None, lambda: acted.append("now"), monkeypatch, at_once=False)
-    assert (acted, list(presses.waiting()), session["notice"][0]) == ([], [], "warning")
+    assert (acted, list(button_presses.waiting()), session["notice"][0]) == ([], [], "warning")
 
 
 def test_a_second_press_of_what_chose_another_plot_itself_says_nothing(session, monkeypatch):
@@ -135,14 +135,14 @@ def test_a_press_that_fails_does_not_wait_and_one_that_is_broken_off_does(boxes,
         press = shown(boxes, Mock(side_effect=error), monkeypatch)
         with pytest.raises(error):
             press()
-        assert list(presses.waiting()) == waits
+        assert list(button_presses.waiting()) == waits
 
 
 def test_a_season_begins_though_the_run_of_the_press_is_broken_off(app, season, monkeypatch):
     draw, breaks = morning.show, [True]
 
     def show(choices, plan):
-        if breaks and presses.waiting():
+        if breaks and button_presses.waiting():
             breaks.clear()
             st.rerun()
         draw(choices, plan)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import streamlit as st
 
-from app.actions import bending, drawing
+from app.actions import bending, editing_plot
 from app.state import plot_files
 from tests.app.chosen import a_plot, chosen
 from tests.app.driving import go, layer, map_of, metric, plants, press
@@ -26,7 +26,7 @@ def bending_on(session):
 
 
 def test_the_row_to_be_bent_is_on_the_map_with_handles_along_it(bending_on):
-    made, _ = drawing.content(bending_on, bending_on.records)
+    made, _ = editing_plot.content(bending_on, bending_on.records)
     assert made.draw.kind == "bent"
     places = np.array(made.draw.points)
     assert len(places) == 5
@@ -36,10 +36,10 @@ def test_the_row_to_be_bent_is_on_the_map_with_handles_along_it(bending_on):
 
 
 def test_rows_that_follow_a_bent_one_are_shown_before_they_are_used(bending_on):
-    made, answers = drawing.content(bending_on, bending_on.records)
+    made, answers = editing_plot.content(bending_on, bending_on.records)
     answers.drawn(made.draw.name, bent(made.draw.points))
     assert plot_files.drawn(bending_on.plot_key) == ()
-    again, _ = drawing.content(bending_on, bending_on.records)
+    again, _ = editing_plot.content(bending_on, bending_on.records)
     (tried,) = [one for one in again.layers if one.id == "rows-tried"]
     assert len(tried.data) > 10
     assert max(len(row["path"]) for row in tried.data) > 2
@@ -66,17 +66,17 @@ def test_bent_rows_are_laid_once_they_are_used_and_can_be_taken_back(app):
 
 
 def test_what_was_tried_is_dropped_and_the_handles_begin_anew(bending_on):
-    made, answers = drawing.content(bending_on, bending_on.records)
+    made, answers = editing_plot.content(bending_on, bending_on.records)
     answers.drawn(made.draw.name, bent(made.draw.points))
     bending.drop(bending_on)
-    again, _ = drawing.content(bending_on, bending_on.records)
+    again, _ = editing_plot.content(bending_on, bending_on.records)
     assert "rows-tried" not in [one.id for one in again.layers]
     assert again.draw.name != made.draw.name
 
 
 def test_rows_without_room_are_refused_in_a_sentence(bending_on):
-    made, answers = drawing.content(bending_on, bending_on.records)
+    made, answers = editing_plot.content(bending_on, bending_on.records)
     start = made.draw.points[0]
     answers.drawn(made.draw.name, (start, start))
-    drawing.content(bending_on, bending_on.records)
+    editing_plot.content(bending_on, bending_on.records)
     assert st.session_state["notice"][0] == "error"

@@ -87,7 +87,7 @@ def test_a_season_that_is_gone_is_waited_for_and_nothing_stands_in_its_place(sea
 
 def test_who_waits_with_a_phone_is_told_so_outside_of_the_box_that_folds(season_app, monkeypatch):
     monkeypatch.setattr(choosing.browser, "is_phone", lambda: True)
-    monkeypatch.setattr(choosing.held, "wait", lambda _: choosing.st.caption("waiting"))
+    monkeypatch.setattr(choosing.season_held, "wait", lambda _: choosing.st.caption("waiting"))
     season_app.run()
     assert "waiting" in [one.value for one in season_app.caption]
     folded = [one for box in season_app.get("popover") for one in box.caption]

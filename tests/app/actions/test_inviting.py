@@ -7,7 +7,7 @@ from urllib.parse import parse_qs, urlsplit
 import pytest
 
 from app.show import qr_code
-from app.state import heard, scout_page
+from app.state import last_heard, scout_page
 from app.words import texts
 from fieldmon.errors import AccessError
 from fieldmon.monitoring import scouts
@@ -139,7 +139,7 @@ def test_who_is_out_stands_in_the_scout_room_with_what_each_did(scout, season):
     said = next(one.value for one in scout.caption if "code made" in one.value)
     assert texts.OUT_SILENT in said
     ann = scouts.scouts_of(season())[0]
-    heard.note(season().path, ann.name, season().settings.begins - timedelta(days=1))
+    last_heard.note(season().path, ann.name, season().settings.begins - timedelta(days=1))
     said = next(one.value for one in scout.run().caption if "code made" in one.value)
     assert texts.OUT_SILENT not in said
     assert any("Has the plan of" in one.value for one in scout.markdown)

@@ -2,10 +2,13 @@
 
 from datetime import date
 
+import numpy as np
 import pytest
 
 from app.words import texts
 from fieldmon.decisions.labels import ProductLabel
+from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.io.writers.treatment_map import treatment_map_bytes
 from tests.app.chosen import in_season
 from tests.app.driving import boxed, go, press, texts_of
 
@@ -121,12 +124,33 @@ def test_a_treatment_of_what_is_selected_on_the_map_is_of_those_plants(season_ap
     go(season_app, "record")
     assert "3 plants" in boxed(season_app.checkbox, "treat selected").label
     part_noted(season_app, rows="20")
-    assert "but both are said" in season_app.error[0].value
+    assert "two of them are said" in season_app.error[0].value
     part_noted(season_app, rows="")
     (one,) = season().treatments()
     assert tuple(one.place.plants.nonzero()[0].tolist()) == some
     # the next one is of the whole plot again, unless something is selected
     assert not [box for box in season_app.checkbox if "treat selected" in (box.key or "")]
+
+
+@pytest.mark.parametrize("page", ["record", "decide"])
+def test_a_treatment_of_a_file_is_of_its_area_whatever_the_zones_are_now(season_app, season, page):
+    advice = season().advice(season().day_meant())
+    data = treatment_map_bytes(advice.treatment_map(season().plot.field), "zones.geojson")
+    season().record(Inspections.of([0], [FOUND], np.datetime64(season().day_meant())))
+    go(season_app, page)
+    boxed(season_app.file_uploader, "treat file").upload("zones.geojson", data, "text/plain")
+    if page == "record":
+        part_noted(season_app, rows="20")
+        assert "two of them are said" in season_app.error[0].value
+        part_noted(season_app, rows="")
+    else:
+        part_noted(season_app)
+    assert not season_app.exception
+    (one,) = season().treatments()
+    assert 0 < advice.sprayed.sum() < advice.sprayed.size
+    assert one.place.plants.tolist() == advice.sprayed.tolist()
+    part_noted(season_app)
+    assert season().treatments()[-1].place.plants.sum() != advice.sprayed.sum(), "it is emptied"
 
 
 def test_without_a_word_on_where_the_whole_plot_was_treated(season_app, season):

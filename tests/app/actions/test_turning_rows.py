@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.actions import drawing, turning_rows
+from app.actions import editing_plot, turning_rows
 from fieldmon.plot.plot import plot_around
 from fieldmon.plot.projection import Frame
 from tests.app.chosen import a_plot, chosen
@@ -68,7 +68,7 @@ def test_a_triangular_planting_has_three_ways_to_choose_from():
     choices = chosen(plot_around("trees", planted(triangular=True)))
     found = turning_rows.directions(choices)
     assert sorted(round(one.bearing_deg) for one in found) == [20, 80, 140]
-    made, _ = drawing.content(choices, choices.records)
+    made, _ = editing_plot.content(choices, choices.records)
     ids = [one.id for one in made.layers if one.id.startswith("direction-")]
     assert ids == ["direction-1", "direction-2", "direction-3"]
 

@@ -38,7 +38,7 @@ def test_each_zone_has_a_row_with_its_place_and_how_often_it_is_wrong(made):
     assert table[texts.DECIDE_ROWS].tolist() == ["2", "7"]
     assert table[texts.DECIDE_PLANTS].tolist() == ["2-5", "21-24"]
     assert set(table[texts.DECIDE_ITSELF]) == {"treat"}
-    assert set(table[texts.DECIDE_WRONG]) == {"0\u00a0%"}
+    assert set(table[texts.DECIDE_WRONG]) == {"under 1\u00a0%"}
 
 
 def test_each_zone_is_outlined_and_numbered_on_the_map(made):

@@ -9,7 +9,7 @@ from app.show import drive_play
 from app.show.maps import colours
 from app.state.driving import DriveRun
 from app.state.map_store import STORE
-from fieldmon.drive.simulated import MadeUp
+from fieldmon.drive.simulated_robots import MadeUp
 from fieldmon.samplers import sampler
 from tests.app.chosen import a_plot, chosen
 

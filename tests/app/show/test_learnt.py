@@ -10,11 +10,13 @@ from app.show import learnt
 from app.words import texts
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.learnt import Learnt
+from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring.told_detection import ToldOtherwise
 from tests.app.driving import apart
 
 DETECTION = Learnt("detection", 0.84, 0.71, 0.94)
 ON = date(2026, 11, 2)
+RECORDS = Observations.of([[35.0, 30.0]], [1], "2024-06-03")
 
 
 @pytest.fixture
@@ -29,6 +31,7 @@ def shown(monkeypatch):
         progress = SimpleNamespace(inspected=inspected)
         monkeypatch.setattr(learnt.chosen_day, "progress", lambda _: progress)
         monkeypatch.setattr(learnt.chosen_day, "told_otherwise", lambda _: said)
+        monkeypatch.setattr(learnt.chosen_day, "records_known", lambda _: RECORDS)
         learnt.show(SimpleNamespace(open_season=SimpleNamespace(taught=lambda: taught)))
         return apart("\n".join(lines[1:])).splitlines()
 
@@ -50,8 +53,9 @@ def test_how_far_insects_jump_is_said_where_they_may(shown):
 
 
 def test_before_anything_was_inspected_it_is_said_to_be_believed_only(shown):
-    assert texts.LEARNT_AT_FIRST in shown(DETECTION, inspected=0)[0]
-    assert texts.LEARNT_AT_FIRST not in shown(DETECTION)[0]
+    for said in (texts.LEARNT_AT_FIRST, "Chances and hot spots begin with 1 record of 2024-06-03."):
+        assert said in shown(DETECTION, inspected=0)[0]
+        assert said not in shown(DETECTION)[0]
 
 
 def test_an_earlier_season_is_named(shown):

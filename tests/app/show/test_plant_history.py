@@ -126,7 +126,7 @@ def test_a_chance_of_nothing_after_a_find_is_explained(said, season, monkeypatch
         tap(choices, PLANT)
         plant_history.show(choices)
         assert (texts.HISTORY_TREATED in why) == explained
-    assert any("**0.0 %**" in apart(line) for line in said[-5:])
+    assert any("**under 0.1 %**" in apart(line) for line in said[-5:])
     why.clear()
     tap(choices, PLANT + 1)
     plant_history.show(choices)

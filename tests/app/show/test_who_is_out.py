@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from app.show import who_is_out
-from app.state import heard
+from app.state import last_heard
 from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.monitoring import scouts
@@ -42,7 +42,7 @@ def test_a_line_says_rows_code_phone_and_how_far(choices):
     route = route_ahead(choices.open_season, BEGINS, Part((1, 8), "Ann")).plant
     take(choices.open_season, key, [a_finding(int(route[0]), on=BEGINS)],
          utc_now() + timedelta(hours=1))  # fmt: skip
-    heard.note(
+    last_heard.note(
         choices.open_season.path,
         "Ann",
         BEGINS,
@@ -52,7 +52,7 @@ def test_a_line_says_rows_code_phone_and_how_far(choices):
     assert f"1 of {len(route)} recorded" in line.said
     assert "has the day since " in line.said
     assert line.cautions == (texts.OUT_CLOCK.format(minutes=60),)
-    heard.note(choices.open_season.path, "Ann", BEGINS + timedelta(days=1))
+    last_heard.note(choices.open_season.path, "Ann", BEGINS + timedelta(days=1))
     (line,) = who_is_out.lines(choices)
     assert texts.OUT_OTHER_DAY.format(day="Tue 7 Apr") in line.cautions
 

@@ -3,7 +3,7 @@
 import pytest
 
 from app.state.driving import DayInTime, DriveRun
-from fieldmon.drive.simulated import MadeUp
+from fieldmon.drive.simulated_robots import MadeUp
 from fieldmon.errors import FieldmonError
 from fieldmon.planning.workday import plan_work
 from fieldmon.samplers import sampler

@@ -60,7 +60,7 @@ def test_nobody_looks_and_it_ends_by_itself(broker, scene, monkeypatch):  # noqa
 
 
 def test_where_no_broker_is_it_is_said(scene):
-    from fieldmon.drive.vda5050.wire import Broker
+    from fieldmon.drive.vda5050.mqtt import Broker
 
     live = LiveDrive(Broker("127.0.0.1", 1), ROBOT, scene)
     live.start()

@@ -1,17 +1,22 @@
 """From a session's files to a plot."""
 
 from datetime import date
+from pathlib import Path
 
 import numpy as np
 import pytest
+from shapely import LineString, MultiLineString
 
 from app.show.maps import colours
+from app.state import plot_files
+from app.state.brought_files import File
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.options import Upload
 from fieldmon.io.prepare import prepare
 from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
 from fieldmon.plot.grid import plant_at, row_label
+from fieldmon.plot.plot import Plot
 from tests.app.driving import (
     geotiff,
     go,
@@ -109,3 +114,13 @@ def test_a_plant_that_is_not_there_is_said_in_a_sentence(app, tmp_path):
            record=("mites.csv", b"row,plant,date,count\n999,1,2026-11-10,9\n"))  # fmt: skip
     assert not app.exception
     assert "999" in texts_of(app)
+
+
+def test_what_was_said_of_rows_that_were_drawn_is_told_as_the_commands_tell_it(monkeypatch):
+    rows = MultiLineString([LineString([(35.15, y), (35.152, y)]) for y in (30.36, 30.3601)])
+    plot = Plot.along("drawn", rows)
+    monkeypatch.setattr(plot_files, "row_settings", lambda _: {"row_spacing_m": 7.0})
+    files = plot_files.Files(File("a", Path("plot.zip")), None, None, File("b", Path("rows.zip")))
+    told = plot_files._said_of_rows(files, plot, "a")
+    unused = [one for one in told if "not as was said: row spacing" in one.message.sentence]
+    assert [one.asked for one in unused] == [files.rows.asked]

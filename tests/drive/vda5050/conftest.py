@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from fieldmon.drive.vda5050.wire import Broker, RobotName
+from fieldmon.drive.vda5050.mqtt import Broker, RobotName
 
 ROBOT = RobotName("fieldmon", "robot1")
 
@@ -54,4 +54,4 @@ def broker(broker_program):
 @pytest.fixture(autouse=True)
 def _soon(monkeypatch):
     """Seek a lost connection again at once."""
-    monkeypatch.setattr("fieldmon.drive.vda5050.wire._SEEK_S", 0.02)
+    monkeypatch.setattr("fieldmon.drive.vda5050.mqtt._SEEK_S", 0.02)

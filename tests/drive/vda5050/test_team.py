@@ -9,9 +9,9 @@ import pytest
 from fieldmon.drive.team_season import MemberDay, TeamSeason
 from fieldmon.drive.vda5050 import team
 from fieldmon.drive.vda5050.fleet import Vda5050Robot
+from fieldmon.drive.vda5050.mqtt import RobotName
 from fieldmon.drive.vda5050.stand_in import StandIn
 from fieldmon.drive.vda5050.team import drive_team
-from fieldmon.drive.vda5050.wire import RobotName
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season

@@ -9,8 +9,8 @@ import pytest
 
 from fieldmon.drive.errand import Errand
 from fieldmon.drive.vda5050.messages import encoded, header_of, order_of
+from fieldmon.drive.vda5050.mqtt import RobotName
 from fieldmon.drive.vda5050.watcher import RobotWatcher
-from fieldmon.drive.vda5050.wire import RobotName
 from tests.drive.vda5050.bodies import STATE
 from tests.drive.vda5050.test_messages import STOP, line
 

@@ -57,6 +57,38 @@ def test_degrees_in_the_wrong_order_are_offered_to_be_exchanged():
     np.testing.assert_array_equal(exchanged.lonlat, lonlat)
 
 
+@pytest.mark.parametrize("crs", ["EPSG:32636", "EPSG:2039"])
+def test_northings_that_come_first_are_offered_to_be_exchanged(crs):
+    northing_first = projected(crs)[:, ::-1]
+    placed = place(northing_first, crs, NOTHING)
+    (doubt,) = [one for one in placed.messages if one.severity is Severity.DOUBTFUL]
+    assert "with easting and northing exchanged it lies within, at 35.15" in doubt.sentence
+    assert (doubt.remedy.option, doubt.remedy.choices) == ("swap_axes", ("yes",))
+    exchanged = place(northing_first, crs, NOTHING.choose("swap_axes", "yes"))
+    np.testing.assert_allclose(exchanged.lonlat, PARAN, atol=2e-8)
+    assert "exchanged" not in " ".join(one.sentence for one in exchanged.messages[1:])
+    wrongly = place(projected(crs), crs, ReadOptions(swap_axes=True))
+    (doubt,) = [one for one in wrongly.messages if one.severity is Severity.DOUBTFUL]
+    assert doubt.remedy.choices == ("no",)
+
+
+def test_northings_that_come_first_are_seen_by_a_place_nearby_where_their_system_fits_both_ways():
+    lonlat = np.array([[-8.6, 40.6], [-8.599, 40.601]])
+    northing_first = projected("EPSG:3763", lonlat)[:, ::-1]
+    near = ReadOptions(near=(-8.6, 40.6))
+    (doubt,) = [
+        one
+        for one in place(northing_first, "EPSG:3763", near).messages
+        if one.severity is Severity.DOUBTFUL
+    ]
+    assert "with easting and northing exchanged" in doubt.sentence
+    assert doubt.remedy.choices == ("yes",)
+    northing_first = projected("EPSG:32636")[:, ::-1]
+    with pytest.raises(ChoiceNeeded, match="wrong order") as asked:
+        place(northing_first, "EPSG:32636", ReadOptions(near=(35.15, 30.36)))
+    assert asked.value.option == "swap_axes"
+
+
 def test_some_that_lie_nowhere_are_named_and_no_order_is_advised():
     half = np.array([[35.1, 30.3], [35.1, 303.2]])
     for xy, options in ((half, NOTHING), (half[:, ::-1], ReadOptions(swap_axes=True))):

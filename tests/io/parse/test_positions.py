@@ -175,10 +175,15 @@ def test_a_column_of_utm_zones_is_read_unless_it_names_zones_of_something_else(z
     assert f"(EPSG:{code})" in next(one for one in sentences(found).split(". ") if "names" in one)
 
 
-def test_records_of_two_utm_zones_are_asked_for_their_system():
+def test_records_of_two_utm_zones_are_asked_for_those_of_one():
     layer = table(zone=["34H", "35H"], easting=[3e5, 3e5], northing=[6.3e6, 6.3e6])
-    with pytest.raises(ChoiceNeeded, match="does not say in which coordinate system"):
-        located(layer, ANY)
+    for options in (ANY, ReadOptions(crs="EPSG:32734")):
+        with pytest.raises(ChoiceNeeded, match=r"names 2: 34H, 35H[.] Bring all into one") as asked:
+            located(layer, options)
+        assert (asked.value.option, asked.value.choices) == ("where", ("zone=34H", "zone=35H"))
+    assert len(located(layer, ReadOptions(crs="EPSG:2054")).lonlat) == 2
+    bands = table(zone=["34H", "34J"], easting=[3e5, 3e5], northing=[6.4e6, 6.5e6])
+    assert "names UTM zone 34H, 34J, which was read as" in sentences(located(bands, ANY))
 
 
 def test_degrees_with_an_o_are_refused_with_the_letter():

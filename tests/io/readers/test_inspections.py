@@ -266,7 +266,7 @@ def test_waypoints_are_read_by_their_names():
     np.testing.assert_array_equal(findings.count, [3, *[np.nan] * 5, 2, np.nan])
     assert set(when(findings).astype(str)) == {"2026-11-18T08:30:00"}
     assert any(
-        "2 of 10 records left unknown: no finding in the name" in f.sentence
+        "2 of 10 records left unknown: no result in the name" in f.sentence
         for f in imported.messages
     )
 

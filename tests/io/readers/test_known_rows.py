@@ -70,3 +70,42 @@ def test_what_no_rows_are_is_doubted_with_its_column_and_its_value():
         ("doubtful", "b", "Column 'plant_m' must be 0.05 to 1000 metres, but it is 0.01."),
     ]
     assert known["a"].row_spacing_m == 5000
+
+
+@pytest.mark.parametrize(
+    ("column", "said", "metres"),
+    [
+        ("row_spacing_cm", 250, 2.5),
+        ("Row spacing (cm)", 250, 2.5),
+        ("row spacing [ft]", "10", 3.048),
+        ("row_dist_ft", "3 m", 3.0),
+        ("row_spacing_metres", 3, 3.0),
+    ],
+)
+def test_a_column_may_say_the_unit_of_its_spacings(column, said, metres):
+    known, messages = known_rows(table(**{column: [said, said]}), NAMES)
+    assert known["a"].row_spacing_m == pytest.approx(metres)
+    assert [one.severity.value for one in messages] == ["seen"]
+
+
+@pytest.mark.parametrize(
+    "column",
+    ["row spacing (yd)", "Reihenabstand", "vine_distance", "row_direction", "InterRow", "spacing"],
+)
+def test_what_seems_to_be_said_of_rows_and_is_not_read_is_named(column):
+    known, (doubt,) = known_rows(table(crop=["vine"] * 2, **{column: ["3", "4"]}), NAMES)
+    assert known == {}
+    assert f"is not read: {column!r}. Call such columns row_bearing_deg" in doubt.sentence
+
+
+def test_spacings_that_may_be_in_another_unit_are_doubted():
+    known, (_, doubt) = known_rows(table(row_spacing=[250, 4]), NAMES)
+    assert known["a"].row_spacing_m == 250.0
+    assert "Column 'row_spacing' says 250 m" in doubt.sentence
+    assert doubt.feature == "a"
+
+
+def test_a_direction_may_have_a_remark_behind_its_name():
+    known, (said,) = known_rows(table(**{"bearing (from north)": [10, 20]}), NAMES)
+    assert known["b"].row_bearing_deg == 20.0
+    assert said.severity.value == "seen"

@@ -264,6 +264,12 @@ def test_what_else_a_record_knows_comes_with_it():
     np.testing.assert_array_equal(records.leaves_sampled, [10, np.nan])
 
 
+def test_accuracies_are_read_with_their_units():
+    records = read(count=[1, 2, 3], accuracy=["25 m", "10 ft", "poor"])
+    assert records.value.accuracy_m == pytest.approx([25.0, 3.048, np.nan], nan_ok=True)
+    assert "3, 3 m or 10 ft, but 1 is not: 'poor'" in sentences(records)
+
+
 def test_an_empty_table_is_refused():
     with pytest.raises(ObservationError, match="must hold records, but it holds none"):
         records_of(table(lon=[], lat=[], count=[]), ANY)

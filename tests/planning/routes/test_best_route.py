@@ -24,6 +24,7 @@ from fieldmon.samplers.dynamic import Dynamic
 from fieldmon.samplers.sweeps import Naive
 from fieldmon.samplers.without_prior import RandomShare
 from tests.crooked import crooked_grids
+from tests.cut_lanes import WIDE, cut_plot
 from tests.planning.routes.tiny import best_of_all, earliest_of_each
 
 ROBOTS = st.builds(
@@ -91,6 +92,23 @@ def test_no_order_of_few_plants_exceeds_the_bound_nor_is_missed_by_much(data):
     most = best_of_all(aisles, reward, robot, seconds)
     assert route.reward <= most + 1e-9
     assert most <= route.bound + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_where_lanes_are_cut_no_order_exceeds_the_bound_nor_is_missed_by_much(seed):
+    aisles, _, _ = cut_plot(seed, n_rows=3, n_plants=9, faces=1 + seed % 2)
+    assert aisles.grid.cut_ends.any()
+    rng, reward = np.random.default_rng(seed), np.zeros(len(aisles.grid))
+    plants = rng.permutation(np.flatnonzero(~aisles.too_narrow))[:7]
+    reward[plants] = rng.random(len(plants))
+    for robot in (WIDE, replace(WIDE, returns=False, row_change_s=25.0)):
+        held, earliest_s = earliest_of_each(aisles, reward, robot)
+        for seconds in rng.uniform(0.2, 1.0, 3) * earliest_s[-1]:
+            route = best(aisles, reward, robot, seconds)
+            check(aisles, reward, robot, seconds, route)
+            most = float(held[earliest_s <= seconds].max())
+            assert 0.8 * most <= route.reward <= most + 1e-9
+            assert most <= route.bound + 1e-9
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -22,9 +22,9 @@ from fieldmon.planning.routes.blocks import (
     _way_out,
     blockings,
 )
+from fieldmon.planning.routes.ladders import Ladders
 from fieldmon.planning.routes.pendant_parts import ladder_with_parts
 from fieldmon.planning.routes.priced import Priced
-from fieldmon.planning.routes.relaxation import Ladders
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting

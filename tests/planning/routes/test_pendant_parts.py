@@ -9,6 +9,7 @@ from shapely import MultiPolygon, box
 from fieldmon.planning.routes import best
 from fieldmon.planning.routes.best_route import upper_bound
 from fieldmon.planning.routes.blocks import Blocks, blockings
+from fieldmon.planning.routes.ladders import Ladders, Rungs
 from fieldmon.planning.routes.pendant_parts import (
     LadderWithParts,
     PendantPart,
@@ -17,7 +18,6 @@ from fieldmon.planning.routes.pendant_parts import (
     ladder_with_parts,
 )
 from fieldmon.planning.routes.priced import Priced
-from fieldmon.planning.routes.relaxation import Ladders, Rungs
 from fieldmon.planning.routes.stops import stops_of
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay

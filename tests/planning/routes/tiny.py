@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fieldmon.planning.routes.relaxation import Ladders
+from fieldmon.planning.routes.ladders import Ladders
 from fieldmon.plot.travel import GATE, robot_clock, travel_s
 
 

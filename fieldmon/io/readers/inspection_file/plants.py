@@ -12,6 +12,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.lengths import accuracies
 from fieldmon.io.parse.named_positions import could_be_positions
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.values import is_missing, numbers
@@ -113,10 +114,11 @@ def positions_in(
         return lonlat, accuracy_m, unread, ()
     kept = found.layer.columns[_ROW].astype(np.int64)
     name = options.column("accuracy") or find("accuracy", layer.columns)
-    stated = numbers(found.layer.column(name)) if name else np.full(len(kept), np.nan)
+    column = found.layer.column(name) if name else np.full(len(kept), None)
+    stated_m, doubts = accuracies(column, name or "", options.decimal)
     lonlat[kept] = found.lonlat
-    accuracy_m[kept] = np.fmax(np.where(stated > 0, stated, np.nan), found.accuracy_m)
-    messages = found.messages
+    accuracy_m[kept] = np.fmax(stated_m, found.accuracy_m)
+    messages = (*found.messages, *doubts)
     if found.unread is not None and not found.unread.n_dotted:
         unread[list(found.unread.written)] = list(found.unread.written.values())
         told = found.unread.messages()

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from fieldmon.io.formats.layer import LayerInfo
     from fieldmon.io.options import Source
     from fieldmon.io.readers.inspection_file.columns import InspectionColumns
+    from fieldmon.io.readers.inspection_file.results import SeenResults
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.sandbox.workroom import Workroom
 
@@ -67,7 +68,7 @@ def rows_of(
             read = rows_in(open_layer(source, own, workroom), own, source_name(source))
         except (ChoiceNeeded, FileProblem):
             continue  # this one has no columns for inspections
-        said = seen(worded("Findings were read from layer {layer}.", layer=info.layer))
+        said = seen(worded("Inspections were read from layer {layer}.", layer=info.layer))
         if len(read.value):
             return Imported(read.value, (said, *read.messages))
         said_nothing.append(Imported(read.value, (said, *read.messages)))
@@ -90,34 +91,8 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
     layer = by_day(_without_undone(layer), options)
     columns = columns_of(layer, options)
     results = results_in(layer, columns, options)
-    notes = notes_in(layer)
-    if results.gone.any():
-        pairs = zip(notes.tolist(), results.gone.tolist(), strict=True)
-        notes = np.array([gone_note(note) if gone else note for note, gone in pairs], np.str_)
-    said = results.said
-    noted = int((~said & (notes != "")).sum()) if columns.marks is None else 0
-    if noted:
-        messages.append(
-            doubtful(
-                worded(
-                    "{noted} {noted:record has|records have} a note, but no result: left unknown.",
-                    noted=noted,
-                )
-            )
-        )
-    silent = ~(said | results.unread)  # what is written and cannot be read is said apart
-    if silent.any():
-        what = worded("no finding in the name") if columns.marks else worded("not filled in")
-        messages.append(
-            seen(
-                worded(
-                    "{n} of {total} {total:record|records} left unknown: {what}.",
-                    n=int(silent.sum()),
-                    total=len(layer),
-                    what=what,
-                )
-            )
-        )
+    said, notes = results.said, _notes(layer, results)
+    messages += _about_silence(results, notes, in_names=columns.marks is not None)
     lonlat, accuracy_m, unread, more = positions_in(layer, columns, options)
     plant, line, number, face = named_plants(layer, columns)
     times = times_in(layer, columns, options)
@@ -149,6 +124,46 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
     mixed = _mixed(kept, columns.species, texts_in(layer, columns.species)[said])
     every = (*layer.messages, *messages, *results.messages, *more, *times.messages, *mixed)
     return Imported(kept, every)
+
+
+def _notes(layer: Layer, results: SeenResults) -> NDArray[np.str_]:
+    """Return the notes of records ``(n,)``, with that the plant is gone where a result says so."""
+    notes = notes_in(layer)
+    if not results.gone.any():
+        return notes
+    pairs = zip(notes.tolist(), results.gone.tolist(), strict=True)
+    return np.array([gone_note(note) if gone else note for note, gone in pairs], np.str_)
+
+
+def _about_silence(
+    results: SeenResults, notes: NDArray[np.str_], *, in_names: bool
+) -> list[ImportMessage]:
+    """Return what to say of records without a result; `in_names`: names were to tell it."""
+    messages = []
+    noted = int((~results.said & (notes != "")).sum())
+    if noted and not in_names:
+        messages.append(
+            doubtful(
+                worded(
+                    "{noted} {noted:record has|records have} a note, but no result: left unknown.",
+                    noted=noted,
+                )
+            )
+        )
+    silent = ~(results.said | results.unread)  # what is written and cannot be read is said apart
+    if silent.any():
+        what = worded("no result in the name") if in_names else worded("not filled in")
+        messages.append(
+            seen(
+                worded(
+                    "{n} of {total} {total:record|records} left unknown: {what}.",
+                    n=int(silent.sum()),
+                    total=len(silent),
+                    what=what,
+                )
+            )
+        )
+    return messages
 
 
 def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> NDArray[np.str_]:

@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams, coin_table
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.independent import learn, overnight
+from fieldmon.infestation.independent_plants import learn, overnight
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.planning.workday import draw_detections
 from fieldmon.samplers import sampler

@@ -9,7 +9,7 @@ import numpy as np
 
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.dispersal import dispersal_of
-from fieldmon.infestation.independent import learn, overnight
+from fieldmon.infestation.independent_plants import learn, overnight
 from fieldmon.infestation.pest_in_weather import PestInWeather, kernel_of
 from fieldmon.infestation.spread import night
 from fieldmon.planning.workday import draw_detections

@@ -62,6 +62,16 @@ def test_the_name_of_a_waypoint_given_out_holds_its_plant():
     assert (line, number, face) == ([3, UNSAID, 1], [17, UNSAID, 2], [2, 0, 0])
 
 
+def test_accuracies_are_read_with_their_units():
+    _, accuracy_m, _, messages = positions(
+        table(
+            lon=[35.1234567] * 3, lat=[30.1234567] * 3, accuracy=["25 m", 4, "?!"], found=["x"] * 3
+        )
+    )
+    assert accuracy_m == pytest.approx([25.0, 4.0, np.nan], nan_ok=True)
+    assert any("but 1 is not: '?!'" in one.sentence for one in messages)
+
+
 def test_a_file_that_names_plants_needs_no_positions():
     lonlat, accuracy_m, _, messages = positions(table(plant=[7], found=["x"]))
     assert np.isnan(lonlat).all()

@@ -8,7 +8,7 @@ from scipy import stats
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.independent import IndependentPlants
+from fieldmon.infestation.independent_plants import IndependentPlants
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.spread import Spread
 from fieldmon.pests.pest import Movement, Pest

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.infestation.landing import landing_of
+from fieldmon.infestation.jump_landing import landing_of
 from fieldmon.plot.layout import rectangle
 from tests.infestation.landing_by_hand import LANDING, SHARES, N, by_hand
 

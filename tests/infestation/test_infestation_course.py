@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.infestation.course import BEFORE, Course
+from fieldmon.infestation.infestation_course import BEFORE, Course
 from fieldmon.pests.pest import Pest, Stage
 
 EGG = Stage("egg", 5.0, 10.0, visible=False, mobile=False)

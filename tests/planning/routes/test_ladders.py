@@ -12,8 +12,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.planning.routes import relaxation
-from fieldmon.planning.routes.relaxation import (
+from fieldmon.planning.routes import ladders
+from fieldmon.planning.routes.ladders import (
     Ladders,
     _from_left_to_right,
     _hanging,
@@ -24,6 +24,7 @@ from fieldmon.plot.layout import lay, rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.travel import GATE, Aisles
+from tests.cut_lanes import cut_plot
 from tests.planning.routes.test_best_route import crooked_aisles
 from tests.planning.routes.tiny import ladder_below
 
@@ -80,11 +81,21 @@ def test_nobody_crosses_by_an_aisle_that_hangs_on_the_left(corners):
     assert (on_the_ladder(ladder) <= truly(aisles) + 1e-5).all()
 
 
+@pytest.mark.parametrize("hanging", [False, True])
+@pytest.mark.parametrize("seed", range(6))
+def test_no_way_is_longer_where_lanes_are_cut(seed, hanging):
+    aisles, _, _ = cut_plot(seed, n_rows=4, n_plants=10, faces=1 + seed % 2)
+    assert aisles.grid.cut_ends.any()
+    there = np.append(~aisles.too_narrow, [True])
+    longer = on_the_ladder(Ladders(aisles).whole(hanging=hanging)) > truly(aisles) + 1e-5
+    assert not longer[np.ix_(there, there)].any()
+
+
 @pytest.mark.parametrize("hangs", [[0, 0, 0, 0, 0], [1, 0, 2, 0, 1], [2, 2, 0, 1, 0]])
 def test_both_ends_of_an_aisle_that_hangs_are_one_place_and_the_other_headland_has_none(hangs):
     n, ends = len(hangs), {0: ((0,), (1,)), 1: ((0, 1), ()), 2: ((), (0, 1))}
     apart_m = np.random.default_rng(1).uniform(1.0, 50.0, (2, 2, n, n))
-    found = relaxation._lines(apart_m, np.array(hangs))
+    found = ladders._lines(apart_m, np.array(hangs))
     for a, b, side, other in np.ndindex(n, n, 2, 2):
         ways = [apart_m[s, t, a, b] for s in ends[hangs[a]][side] for t in ends[hangs[b]][other]]
         assert found[side, other, a, b] == min(ways, default=np.inf)
@@ -116,7 +127,7 @@ def test_beside_the_main_aisle_of_a_height_the_others_hang_on_the_headland_where
     rungs, expected, at_m
 ):
     low, high, up = np.array(rungs, np.float64).T
-    place = relaxation.Rungs(low + at_m, high + at_m, up, np.empty(0), np.zeros(len(up), np.int64))
+    place = ladders.Rungs(low + at_m, high + at_m, up, np.empty(0), np.zeros(len(up), np.int64))
     for order in (np.arange(len(up)), np.arange(len(up))[::-1]):
         members = order if (np.diff(np.sort(up)) > 0).all() else np.arange(len(up))
         found = _hanging(place, members, 1.0)
@@ -126,7 +137,7 @@ def test_beside_the_main_aisle_of_a_height_the_others_hang_on_the_headland_where
 @given(crooked_aisles(max_radius_m=60.0, max_plants=400))
 def test_where_no_cross_links_are_found_each_element_may_be_crossed_and_none_is_too_long(aisles):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(relaxation, "_ROUNDS", 0)
+        patch.setattr(ladders, "_ROUNDS", 0)
         ladder = ladder_below(aisles)
     assert (on_the_ladder(ladder) <= truly(aisles) + 1e-5).all()
 
@@ -178,7 +189,7 @@ def test_ladders_are_made_once_for_a_plot_and_gone_with_it():
 def test_the_ends_of_some_aisles_and_a_gate_of_their_own_are_as_far_apart_as_told():
     rungs = Ladders(Aisles.of(rectangle(5, 4))).rungs
     members, to_gate_m = np.array([3, 0, 4]), np.arange(6.0).reshape(2, 3) + 1.0
-    apart_m = relaxation._apart(rungs, members, to_gate_m)
+    apart_m = ladders._apart(rungs, members, to_gate_m)
     assert apart_m.shape == (2, 2, 4, 4)
     for side, other, a, b in np.ndindex(2, 2, 3, 3):
         told_m = rungs.apart_m[side, other, members[a], members[b]]
@@ -197,12 +208,12 @@ def test_places_are_as_far_up_as_no_two_are_further_apart_than_they_truly_are(se
     if seed == 4:  # of one place, and of the first, nothing is known
         apart_m[3], apart_m[:, 3] = np.inf, np.inf
         apart_m[0], apart_m[:, 0] = np.inf, np.inf
-    hull = relaxation._hull(apart_m)
+    hull = ladders._hull(apart_m)
     for a, b in np.ndindex(n, n):
         if a < b:
             told = [apart_m[i, j] for i in range(a + 1) for j in range(b, n)]
             assert hull[a, b] == min(told)
-    place = relaxation._places(apart_m)
+    place = ladders._places(apart_m)
     assert place[0] == 0.0
     assert (np.diff(place) >= 0.0).all()
     for k in range(1, n):
@@ -231,11 +242,11 @@ def test_cross_links_are_no_more_and_no_shorter_than_true_ways_ask_for(seed):
     )
     # true ways: as by the aisles, some longer, and some shorter by holes in the rows
     apart_m = crossed(left, right, by_aisles) + rng.uniform(0.0, 9.0, (n, n))
-    assert relaxation._cross_links((left, right), apart_m, across_m, gate) == []
+    assert ladders._cross_links((left, right), apart_m, across_m, gate) == []
     shorter = [(0, 8), (2, 6), (gate, 1), (8, gate), (5, 5)]
     for a, b in shorter:
         apart_m[a, b] = np.abs(np.subtract.outer(left, right)).max() + 20.0 + a
-    links = relaxation._cross_links((left, right), apart_m, across_m, gate)
+    links = ladders._cross_links((left, right), apart_m, across_m, gate)
     cross = by_aisles.copy()
     for k, metres in links:
         assert metres < by_aisles[k]
@@ -253,7 +264,7 @@ def test_cross_links_are_no_more_and_no_shorter_than_true_ways_ask_for(seed):
     # where ends lie nearer to each other than their places differ, there is none
     apart_m[0, 8] = 0.5 * min(abs(left[0] - left[k]) + abs(right[k] - right[8])
                               for k in range(n) if k != gate)  # fmt: skip
-    assert (relaxation._cross_links((left, right), apart_m, across_m, gate) is None) == (
+    assert (ladders._cross_links((left, right), apart_m, across_m, gate) is None) == (
         apart_m[0, 8] > 0.0
     )
 
@@ -267,7 +278,7 @@ def test_the_gate_is_as_far_from_its_node_as_its_nearest_way_allows():
     ):  # fmt: skip
         apart_m = np.full((4, 4), np.nan)
         apart_m[gate] = to_m
-        stub_m = relaxation._stub(place, apart_m, gate)
+        stub_m = ladders._stub(place, apart_m, gate)
         assert stub_m == pytest.approx(expected)
         assert stub_m <= expected
 
@@ -275,14 +286,14 @@ def test_the_gate_is_as_far_from_its_node_as_its_nearest_way_allows():
 @pytest.mark.parametrize("cross", [None, [(1, 33.0), (3, 44.0)]])
 def test_aisles_links_and_the_gate_are_put_together_in_order_with_their_plants(cross):
     aisles = Aisles.of(rectangle(4, 6, Planting(faces=2)))
-    rungs, links = relaxation.rungs_of(aisles), cross or []
+    rungs, links = ladders.rungs_of(aisles), cross or []
     n = len(rungs.low)
     # the gate is the third; one aisle is left out
     placed = np.insert(np.arange(n - 1)[::-1], 2, -1)
     hangs = np.arange(n) % 3
     left, right = np.arange(n) * 4.0, np.arange(n) * 5.0
     across_m = np.where(placed >= 0, 100.0 + placed, np.inf)
-    ladder = relaxation._assembled(
+    ladder = ladders._assembled(
         aisles.travel,
         rungs,
         (placed, hangs),
@@ -328,7 +339,7 @@ def test_ends_of_aisles_are_as_far_apart_as_the_nearest_of_their_lanes_and_what_
     travel = bitten().travel
     n_aisles, n_rows = int(travel.corridor.max()) + 1, len(travel.end_x_m)
     short = -np.random.default_rng(2).uniform(0.0, 3.0, (2, n_rows))
-    found = relaxation._between_aisles(travel, short)
+    found = ladders._between_aisles(travel, short)
     rows = [np.flatnonzero(travel.corridor == k) for k in range(n_aisles)]
     assert any(len(own) > 1 for own in rows)
     for a, b, i, j in np.ndindex(2, 2, n_aisles + 1, n_aisles + 1):
@@ -341,7 +352,7 @@ def test_ends_of_aisles_are_as_far_apart_as_the_nearest_of_their_lanes_and_what_
 
 def test_a_rung_is_as_long_as_its_longest_lane_and_no_ends_are_nearer_than_nothing():
     aisles = bitten()
-    travel, rungs = aisles.travel, relaxation.rungs_of(aisles)
+    travel, rungs = aisles.travel, ladders.rungs_of(aisles)
     assert (rungs.low <= rungs.high).all()
     assert (rungs.apart_m >= 0.0).all()
     assert (rungs.part == 0).all()
@@ -368,7 +379,7 @@ def test_an_aisle_of_lanes_without_a_metre_in_common_is_one_place_midway_between
     near = np.full((2, 2, 3, 3), 5.0)
     near[:, :, 0, 1] = near[:, :, 1, 0] = -1.0
     apart_m = iter([near, np.full((2, 2, 3, 3), 5.0)])
-    monkeypatch.setattr(relaxation, "_between_aisles", lambda *_: next(apart_m))
-    rungs = relaxation.rungs_of(aisles)
+    monkeypatch.setattr(ladders, "_between_aisles", lambda *_: next(apart_m))
+    rungs = ladders.rungs_of(aisles)
     assert rungs.low.tolist() == [20.0, 0.0]
     assert rungs.high.tolist() == [20.0, 50.0]

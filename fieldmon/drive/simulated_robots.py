@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.insects import Insects
 from fieldmon.drive.mujoco_robot import MujocoRobot
 from fieldmon.errors import SettingError

@@ -13,8 +13,8 @@ from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.pests.pest import Pest
-from fieldmon.planning.batch import Orders, Task, _robot, plan_task
 from fieldmon.planning.day_bound import found_bound
+from fieldmon.planning.many_plots import Orders, Task, _robot, plan_task
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
 from fieldmon.plot.plot import Plot

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import streamlit as st
 
-from app.state import estate, held, seasons_folder
+from app.state import estate, season_held, seasons_folder
 from app.views import plots as plots_view
 from app.words import texts
 from fieldmon.errors import FileProblem
@@ -51,9 +51,9 @@ def test_who_waits_is_told_for_what_and_for_how_long_until_it_is_over(monkeypatc
             tell(waited_s)
         return True
 
-    monkeypatch.setattr(held, "wait_until_free", wait)
+    monkeypatch.setattr(season_held, "wait_until_free", wait)
     monkeypatch.setattr(st, "empty", lambda: places.append(Place()) or places[-1])
-    held.wait(Path("<b>Gate.gpkg"))
+    season_held.wait(Path("<b>Gate.gpkg"))
     (place,) = places
     assert [re.findall(r"\d seconds?", one) for one in place] == [["1 second"], ["2 seconds"], []]
     assert place[-1] == ""
@@ -67,13 +67,13 @@ def test_a_season_that_stays_held_is_a_sentence_and_nothing_is_left_on_the_page(
 ):
     place = Place()
     monkeypatch.setattr(st, "empty", lambda: place)
-    monkeypatch.setattr(held, "wait_until_free", lambda _, tell, **__: tell(3.0) or False)
+    monkeypatch.setattr(season_held, "wait_until_free", lambda _, tell, **__: tell(3.0) or False)
     with pytest.raises(FileProblem, match=r"Another program holds the season .*Gate"):
-        held.wait(Path("Gate.gpkg"))
+        season_held.wait(Path("Gate.gpkg"))
     assert place[-1] == ""
     speaking("he")
     with pytest.raises(FileProblem, match="תוכנה אחרת"):
-        held.wait(Path("Gate.gpkg"))
+        season_held.wait(Path("Gate.gpkg"))
 
 
 @pytest.mark.usefixtures("impatient")

@@ -5,7 +5,7 @@ import socket
 
 import pytest
 
-from fieldmon.drive.vda5050.wire import Broker, Wire
+from fieldmon.drive.vda5050.mqtt import Broker, Wire
 from fieldmon.errors import SettingError
 from tests.drive.vda5050.conftest import ROBOT
 
@@ -90,7 +90,7 @@ def test_a_broker_that_does_not_let_one_in_is_said(wary, who):
 
 
 def test_a_broker_that_says_nothing_is_said(monkeypatch):
-    monkeypatch.setattr("fieldmon.drive.vda5050.wire._ANSWERS_S", 0.2)
+    monkeypatch.setattr("fieldmon.drive.vda5050.mqtt._ANSWERS_S", 0.2)
     with socket.create_server(("127.0.0.1", 0)) as mute:
         broker = Broker("127.0.0.1", mute.getsockname()[1])
         with pytest.raises(SettingError, match="it said nothing for 0 s"):

@@ -8,6 +8,7 @@ import numpy as np
 import pydeck as pdk
 import shapely
 
+from fieldmon.compute.wording import chance_figure
 from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def _plants(grid: PlantGrid, believed: Floats) -> list[dict[str, Any]]:
         {
             "at": at,
             "colour": colour,
-            "text": f"row {row}, plant {number}: chance {100 * chance:.1f} %",
+            "text": f"row {row}, plant {number}: chance {chance_figure(chance, 1)}",
         }
         for at, colour, row, number, chance in zip(
             grid.lonlat().round(8).tolist(),
@@ -92,7 +93,7 @@ def _stops(route: Route) -> list[dict[str, Any]]:
         {
             "at": at,
             "text": f"stop {order}: row {row}, plant {number}, after {_clock(arrive_s)}, "
-            f"chance {100 * chance:.1f} %",
+            f"chance {chance_figure(chance, 1)}",
         }
         for order, (at, row, number, arrive_s, chance) in enumerate(zip(*columns, strict=True), 1)
     ]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.heavier import (
+from fieldmon.infestation.heavier_priors import (
     TOLD,
     doubt_between,
     heavier_than,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.insects import Insects
 from fieldmon.infestation.spread import Spread

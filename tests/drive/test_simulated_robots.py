@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from fieldmon.drive.charged import ChargedRobot
+from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.mujoco_robot import MujocoRobot
 from fieldmon.drive.recording import Recording
-from fieldmon.drive.simulated import MadeUp, simulated_robot
+from fieldmon.drive.simulated_robots import MadeUp, simulated_robot
 from fieldmon.errors import SettingError
 from fieldmon.samplers import sampler
 

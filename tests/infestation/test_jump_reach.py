@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 
 from fieldmon.infestation.cells import Cells
-from fieldmon.infestation.kernels import DistanceKernel
-from fieldmon.infestation.reach import (
+from fieldmon.infestation.jump_reach import (
     BEYOND,
     RADIUS,
     TO_ADJACENT,
@@ -16,6 +15,7 @@ from fieldmon.infestation.reach import (
     pest_reach_of,
     reach_of,
 )
+from fieldmon.infestation.kernels import DistanceKernel
 from fieldmon.plot.layout import rectangle
 from tests.crooked import crooked_grids
 

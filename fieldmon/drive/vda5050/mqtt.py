@@ -44,7 +44,7 @@ class Broker(NamedTuple):
 
         Examples
         --------
-        >>> from fieldmon.drive.vda5050.wire import Broker
+        >>> from fieldmon.drive.vda5050.mqtt import Broker
         >>> Broker.of("farm.local:1884").port
         1884
         """

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.jit import routine
+from fieldmon.infestation.cell_squares import empty_squares, gather, leave, stand
 from fieldmon.infestation.cells import Cells
-from fieldmon.infestation.squares import empty_squares, gather, leave, stand
 from fieldmon.plot.layout import rectangle
 
 CELLS = Cells.of(rectangle(20, 31))

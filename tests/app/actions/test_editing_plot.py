@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import streamlit as st
 
-from app.actions import drawing
+from app.actions import editing_plot
 from app.state import plot_files
 from tests.app.chosen import a_plot, chosen
 from tests.app.driving import go, layer, map_of, metric, plants, press, row_box, upload
@@ -73,7 +73,7 @@ def drawn_on(session):
 
     def draw(kind, points):
         session["draw_kind"] = kind
-        _, answers = drawing.content(choices, choices.records)
+        _, answers = editing_plot.content(choices, choices.records)
         answers.drawn(kind, points)
         return plot_files.drawn(choices.plot_key)
 
@@ -87,7 +87,7 @@ AREA = ((35.1502, 30.3602), (35.1504, 30.3602), (35.1503, 30.3604))
 def test_each_layer_has_a_name_of_its_own():
     # of two of one name, the browser draws one and complains of the other
     choices = chosen(a_plot(0.001))
-    made, _ = drawing.content(choices, choices.records)
+    made, _ = editing_plot.content(choices, choices.records)
     ids = [one.id for one in made.layers]
     assert sorted(ids) == sorted(set(ids))
 
@@ -111,7 +111,7 @@ def test_an_area_over_the_whole_plot_is_refused_in_a_sentence_and_nothing_is_kep
 def test_what_another_tool_drew_is_not_taken_for_this_one(session):
     session["draw_kind"] = "gate"
     choices = chosen(a_plot(0.001))
-    _, answers = drawing.content(choices, choices.records)
+    _, answers = editing_plot.content(choices, choices.records)
     answers.drawn("no_go", AREA)
     assert plot_files.drawn(choices.plot_key) == ()
 

@@ -3,7 +3,7 @@
 import gc
 import weakref
 
-from fieldmon.cli.cycles import cycles_seldom_looked_for
+from fieldmon.cli.garbage_collection import cycles_seldom_looked_for
 
 
 class Holds:

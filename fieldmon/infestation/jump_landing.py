@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.infestation.reach import (
+from fieldmon.infestation.jump_reach import (
     OF_PEST,
     KernelsOnCells,
     pest_kernels,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.floating[Any]]
 
 #: how jumps are shared out at first, in finds: along and across the rows to the next plant, and by
-#: the kernels of `reach` (our choice)
+#: the kernels of `jump_reach` (our choice)
 SHARES = np.array([1.0, 1.0, 0.15, 0.03, 0.03, 0.03, 0.03, 0.03])
 #: the same of a pest with a kernel of its own, which brings what lands next to a plant, too
 SHARES_OF_PEST = np.concatenate([[0.3, 0.3], (SHARES.sum() - 0.6) * OF_PEST])
@@ -36,7 +36,8 @@ class Landing(KernelsOnCells):
     """The kernels by which insects go from plant to plant, ``(8, d, d)``.
 
     To the next plant along the row, across the rows, and those of
-    :func:`fieldmon.infestation.reach.kernels` or, of a pest that has its own, of `pest_kernels`.
+    :func:`fieldmon.infestation.jump_reach.kernels` or, of a pest that has its own, of
+    `pest_kernels`.
 
     Parameters
     ----------

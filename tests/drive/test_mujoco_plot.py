@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from fieldmon.drive.ground import UnevenGround, rough_ground
-from fieldmon.drive.world import lay_ground, world_xml
+from fieldmon.drive.mujoco_plot import lay_ground, world_xml
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 

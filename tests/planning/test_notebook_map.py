@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.planning.explore import deck_of
+from fieldmon.compute.wording import chance_figure
+from fieldmon.planning.notebook_map import deck_of
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.layout import rectangle
 from fieldmon.samplers import sampler
@@ -27,7 +28,8 @@ def layers(day):
 def test_every_plant_is_drawn_at_its_place_and_says_its_chance(day, layers):
     drawn = layers["plants"].data
     np.testing.assert_allclose([one["at"] for one in drawn], GRID.lonlat(), atol=1e-8)
-    assert drawn[21]["text"] == f"row 2, plant 2: chance {100 * day.chance[21]:.1f} %"
+    text = f"row 2, plant 2: chance {chance_figure(day.chance[21], 1)}"
+    assert drawn[21]["text"] == text
 
 
 def test_a_more_suspected_plant_is_never_drawn_paler(day, layers):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.independent import learn, overnight
+from fieldmon.infestation.independent_plants import learn, overnight
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.plot.layout import rectangle
 

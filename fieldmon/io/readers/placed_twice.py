@@ -1,0 +1,173 @@
+"""Records that give a position and name a plant, too: what to say where the two disagree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.units import distance_figure
+from fieldmon.compute.wording import joined, worded
+from fieldmon.errors import FieldmonError
+from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.import_report import ImportMessage, Remedy, Severity, doubtful
+from fieldmon.io.options import RecordOptions
+from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.named_positions import placed_by_name
+from fieldmon.io.parse.values import is_missing
+from fieldmon.plot.plants_outside import distance_m
+from fieldmon.plot.projection import M_PER_DEGREE
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fieldmon.compute.wording import Worded
+    from fieldmon.io.parse.positions import LocatedFeatures
+    from fieldmon.io.readers.places import NamedPlaces
+    from fieldmon.plot.field import Field
+
+    Float = NDArray[np.float64]
+
+# a plant is another one where it is so many times the accuracy from the position, and a spacing
+_SIGMAS = 4.0
+# where most disagree, and not just a few, rows are counted otherwise
+_FEW = 3
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedTwice(ImportMessage):
+    """What is said of records that give a position and name a plant, too.
+
+    Parameters
+    ----------
+    names
+        The columns that name plots, blocks, rows and plants, of these ``m`` records.
+    lonlat
+        ``(m, 2)`` degrees.
+    accuracy_m
+        ``(m,)`` of the position; NaN where it is not known.
+    options
+        With which they were read.
+    """
+
+    names: Layer = field(default_factory=lambda: Layer("", {}))
+    lonlat: Float = field(default_factory=lambda: np.empty((0, 2)))
+    accuracy_m: Float = field(default_factory=lambda: np.empty(0))
+    options: RecordOptions = field(default_factory=RecordOptions)
+
+    def on(self, plot: Field) -> PlacedTwice:
+        """Return what is said of those that lie on a plot: what lies beside it may be another's."""
+        here = distance_m(self.lonlat, plot) <= 0.0
+        return replace(
+            self,
+            names=self.names.take(here),
+            lonlat=self.lonlat[here],
+            accuracy_m=self.accuracy_m[here],
+        )
+
+    @property
+    def plots(self) -> tuple[str, ...]:
+        """Return the plots that they name, perhaps none."""
+        told = self.options.column("plot")
+        column = find("plot", self.names.columns) if told is None else told
+        cells = self.names.column(column) if column else ()
+        return tuple(sorted({text(cell) for cell in cells} - {""}))
+
+    def doubts(self, places: NamedPlaces, spacing_m: float) -> list[ImportMessage]:
+        """Return a doubt where they lie elsewhere than the plants of a plot that they name.
+
+        A spacing away, the greatest of these plants, one is as good as the next. None where it
+        was said what counts, nor where they name no plants of it.
+        """
+        if self.options.place is not None:
+            return []
+        try:
+            named = placed_by_name(self.names, self.options, places)
+        except FieldmonError:  # it is not known what their names mean here
+            return []
+        away_m = _away_m(named.lonlat, self.lonlat)
+        own_m = np.where(np.isnan(self.accuracy_m), PriorSettings().accuracy_m, self.accuracy_m)
+        elsewhere = away_m > spacing_m + _SIGMAS * own_m
+        n, n_known = (int(np.count_nonzero(one)) for one in (elsewhere, np.isfinite(away_m)))
+        if not n:
+            return []
+        worst = int(np.argmax(np.where(elsewhere, away_m, -1.0)))
+        said = worded(
+            "{n} of {all} records that give a position and name a plant {n:lies|lie} elsewhere "
+            "than that plant, {example}. {n:Its position was|Their positions were} taken: look "
+            "which is right.",
+            n=n,
+            all=n_known,
+            example=self._example(worst, float(away_m[worst])),
+        )
+        if n > _FEW and 2 * n > n_known:
+            other = worded("The file may count rows or plants otherwise than this plot does.")
+            said = joined(" ", [said, other])
+        remedy = Remedy("place", "plant", worded("Take the plants that they name"), ("position",))
+        return [doubtful(said, remedy=remedy)]
+
+    def _example(self, record: int, away_m: float) -> Worded:
+        """Return which plant a record names, and how far it lies from it."""
+        row, plant = (
+            None if column is None else text(self.names.column(column)[record])
+            for column in _columns(self.names, self.options)
+        )
+        away = distance_figure(away_m)
+        if row is None:
+            return worded("the farthest {away} from plant {plant}", plant=plant, away=away)
+        return worded(
+            "the farthest {away} from row {row}, plant {plant}", row=row, plant=plant, away=away
+        )
+
+
+def placed_twice(
+    found: LocatedFeatures, accuracy_m: Float, options: RecordOptions
+) -> tuple[PlacedTwice, ...]:
+    """Return what is said of records that were placed by position and name a plant, too."""
+    layer = found.layer
+    row, plant = _columns(layer, options)
+    if found.by_name or plant is None:
+        return ()
+    named = [column for column in (row, plant) if column is not None]
+    both = np.ones(len(layer), np.bool_)
+    for column in named:
+        both &= [not is_missing(value) for value in layer.column(column)]
+    if not both.any():
+        return ()
+    roles = (options.column(r) or find(r, layer.columns) for r in ("plot", "block"))
+    columns = {*named, *(one for one in roles if one)}
+    names = Layer(layer.name, {one: layer.column(one)[both] for one in layer.columns
+                               if one in columns})  # fmt: skip
+    said = worded(
+        "{n} {n:record gives a position and names|records give positions and name} a plant, too: "
+        "{n:its position was|their positions were} taken.",
+        n=int(np.count_nonzero(both)),
+    )
+    return (
+        PlacedTwice(
+            Severity.SEEN,
+            said,
+            names=names,
+            lonlat=found.lonlat[both],
+            accuracy_m=accuracy_m[both],
+            options=options,
+        ),
+    )
+
+
+def _columns(layer: Layer, options: RecordOptions) -> tuple[str | None, str | None]:
+    """Return the columns of rows and of plants, as `placed_by_name` finds them."""
+    row = options.column("row") or find("row", layer.columns)
+    taken = frozenset({row} if row else ())
+    return row, options.column("plant") or find("plant", layer.columns, taken)
+
+
+def _away_m(one: Float, other: Float) -> Float:
+    """Return how far positions ``(m, 2)`` are apart, NaN where one is not known."""
+    off_deg = one - other
+    off_deg[:, 0] = (off_deg[:, 0] + 180.0) % 360.0 - 180.0
+    off_deg[:, 0] *= np.cos(np.radians(one[:, 1]))
+    away_m: Float = np.hypot(*off_deg.T) * M_PER_DEGREE
+    return away_m

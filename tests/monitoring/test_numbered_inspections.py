@@ -1,0 +1,28 @@
+"""Inspections of a plant by their numbers."""
+
+from datetime import time
+
+import numpy as np
+
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from tests.monitoring.seasons import on
+
+
+def test_a_plants_inspections_that_count_come_in_their_order_with_their_numbers(season):
+    def say(day, result, second=np.nan, plant=7):
+        told = Inspections.of([plant], [result], on(day), second=[second])
+        return season.record(told, "x", "Ann").batch
+
+    say(1, FOUND)
+    say(1, CLEAN, 40_000, plant=8)
+    say(1, FOUND, 30_000)
+    say(0, CLEAN, 50_000)
+    season.undo(say(0, CLEAN, 20_000), who="Ann")
+    made = season.inspections_of(7)
+    assert [(one.number, one.on, one.result, one.who) for one in made] == [
+        (4, on(0), CLEAN, "Ann"), (3, on(1), FOUND, "Ann"), (1, on(1), FOUND, "Ann"),
+    ]  # fmt: skip
+    assert [one.second for one in made[:2]] == [50_000, 30_000]
+    assert np.isnan(made[2].second)
+    season.correct_time(1, time(6), "Ben", on(0))
+    assert [one.number for one in season.inspections_of(7)] == [1, 4, 3]

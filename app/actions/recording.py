@@ -16,7 +16,7 @@ from fieldmon.errors import ContradictionError, FieldmonError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
-from fieldmon.io.parse.result_words import GONE
+from fieldmon.io.parse import result_words
 from fieldmon.monitoring.brought_findings import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
@@ -24,6 +24,7 @@ from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.named_rows import plant_meant
 
 from ..show import cautions, day, plant_history, recorded_batches
+from ..show.recorded_batches import GONE
 from ..state import chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
@@ -47,8 +48,6 @@ _LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
 #: what a season's file calls what was typed in here, whatever the page's language
 TYPED_IN, _ROUTE_TABLE = "typed in", "route table"
 # the forms
-#: said of a plant that could not be inspected as it is not there any more
-_PULLED_OUT = 3
 _ONE, _ROUTE, _FILE = "one_plant", "route", "file"
 # row and number of the plant that was tapped: no name of another row is meant by them
 _TAPPED = "one_tapped"
@@ -107,7 +106,7 @@ def _show_one(choices: Choices) -> None:
         show(left.number_input, texts.HISTORY_ROW, 0, None, box="one_row")
     show(right.number_input, texts.HISTORY_PLANT, 0, None, box="one_plant")
     show(
-        st.segmented_control, texts.RESULT, [FOUND, CLEAN, SKIPPED, _PULLED_OUT],
+        st.segmented_control, texts.RESULT, [FOUND, CLEAN, SKIPPED, GONE],
         box="one_result", format_func=texts.RESULTS_OF.__getitem__,
     )  # fmt: skip
     show(st.number_input, texts.COUNT, 0, None, box="one_count")
@@ -142,12 +141,17 @@ def _record_one(choices: Choices) -> str:
         raise SettingError(texts.ONE_UNSAID)
     plant = _plant_meant(choices, row, number)
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
-    note = GONE if result == _PULLED_OUT else ""
+    result, note = as_kept(result)
     results = Inspections.of(
-        np.array([plant]), np.array([SKIPPED if note else result]), np.datetime64(choices.day),
+        np.array([plant]), np.array([result]), np.datetime64(choices.day),
         count=counted, notes=np.array([note], object),
     )  # fmt: skip
     return said_of(choices, recorded(choices, results, TYPED_IN, _ONE), results)
+
+
+def as_kept(result: int) -> tuple[int, str]:
+    """Return a result as a season keeps it, with its note."""
+    return (SKIPPED, result_words.GONE) if result == GONE else (result, "")
 
 
 # -- the stops of the route

@@ -39,10 +39,10 @@ def _second(choices: Choices) -> float:
 def _tap(choices: Choices, plant: int, result: int) -> str:
     count = st.session_state.get("scout_count")
     counted = float(count) if result == FOUND and count is not None else np.nan
-    second = _second(choices)
+    second, (kept, note) = _second(choices), recording.as_kept(result)
     results = Inspections.of(
-        np.array([plant]), np.array([result]), np.datetime64(choices.day),
-        second=np.array([second]), count=np.array([counted]),
+        np.array([plant]), np.array([kept]), np.datetime64(choices.day),
+        second=np.array([second]), count=np.array([counted]), notes=np.array([note], object),
     )  # fmt: skip
     if not len(chosen_day.given_out(choices)):  # from the first tap on it is the day's route
         handing_out.give_out(choices)

@@ -59,7 +59,8 @@ FINDING: dict[str, Any] = {
         | {"description": "Pests of a find: whole, from 1. Anything else does not count."},
         "stage": _text("stage"),
         "leaves": _within("leaves"),
-        "notes": _text("notes"),
+        "notes": _text("notes")
+        | {"description": "`gone`, or `gone: why`, of one skipped: it stands there no more."},
         **_PLACE,
         "on": _DATE
         | {"description": "The day meant; it has no time where that is not the day of `at`."},
@@ -132,6 +133,8 @@ _SAID = {
             "count": {"type": ["number", "null"]},
             "second": {"type": ["number", "null"], "description": "Since local midnight."},
             "who": {"type": "string"},
+            "gone": {"type": "boolean"}
+            | {"description": "Of one skipped: the plant does not stand there any more."},
         },
     },
 }
@@ -200,6 +203,7 @@ DAY: dict[str, Any] = {
         "chance": _LIST | {"description": "Of each plant, in thousandths."},
         "found": _LIST,
         "clean": _LIST,
+        "gone": _LIST | {"description": "Plants that do not stand there any more."},
         "today": _SAID,
         "contradicting": _SAID,
         "taken_back": {

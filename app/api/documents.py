@@ -28,6 +28,7 @@ from fieldmon.monitoring.day_ahead import (
 )
 from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.findings import taken_back, taken_back_before
+from fieldmon.monitoring.history import say_gone
 from fieldmon.monitoring.photos import photos_of
 from fieldmon.monitoring.plant_states import hot_spots_on, shown_states
 from fieldmon.planning.skips import left_out
@@ -121,6 +122,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "chance": np.round(season.evening(on) * 1000).astype(int).tolist(),
         "found": np.flatnonzero(known == PRESENT).tolist(),
         "clean": np.flatnonzero(known == ABSENT).tolist(),
+        "gone": np.flatnonzero(history.gone(settings.day(on))).tolist(),
         "today": _said(history.inspections.on(on)),
         "contradicting": _said(season.contradicting(on)),
         "taken_back": list(taken_back(season, scout.name, on)),
@@ -192,6 +194,7 @@ def _said(inspections: Inspections) -> list[dict[str, Any]]:
         inspections.count.tolist(),
         inspections.second.tolist(),
         inspections.who,
+        say_gone(inspections).tolist(),
         strict=True,
     )
     return [
@@ -201,8 +204,9 @@ def _said(inspections: Inspections) -> list[dict[str, Any]]:
             "count": None if np.isnan(count) else count,
             "second": None if np.isnan(second) else second,
             "who": str(who),
+            **({"gone": True} if gone else {}),
         }
-        for plant, result, count, second, who in columns
+        for plant, result, count, second, who, gone in columns
     ]
 
 

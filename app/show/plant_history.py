@@ -25,6 +25,7 @@ from ..words.language import in_words, number
 from . import field_map
 from .map_view import MapAnswers
 from .maps import plant_layers
+from .recorded_batches import GONE
 
 if TYPE_CHECKING:
     from datetime import date
@@ -211,7 +212,7 @@ def _inspected(choices: Choices, done: Inspections, gone: NDArray[np.bool_]) -> 
     """Return a line for each inspection of a plant; `gone`: whether it said the plant is gone."""
     lines = []
     for k, (day, second) in enumerate(zip(done.date.tolist(), done.second.tolist(), strict=True)):
-        result = texts.RESULTS_OF[3] if gone[k] else texts.HISTORY_RESULTS[int(done.result[k])]
+        result = texts.RESULTS_OF[GONE] if gone[k] else texts.HISTORY_RESULTS[int(done.result[k])]
         if not np.isnan(done.count[k]):
             result = texts.RESULT_COUNTED.format(result=result, n=number(done.count[k], ",g"))
         beside = [texts.written(said) for said in (done.notes[k], done.who[k]) if said]

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from ..state.choices import Choices
 
+#: in `RESULTS_OF`: of a plant that could not be inspected as it is not there any more
+GONE = 3
 _CODES = {name: code for code, name in RESULT_NAMES.items()}
 
 
@@ -78,7 +80,7 @@ def _row(choices: Choices, said: BatchContents) -> str:
 
 def _result(said: BatchContents) -> str:
     """Return the result of the only inspection, and what was counted."""
-    result = in_short(said.result)
+    result = texts.RESULTS_OF[GONE] if said.is_gone else in_short(said.result)
     if said.count is None:
         return result
     return texts.RESULT_COUNTED.format(result=result, n=number(said.count, ",g"))

@@ -1,4 +1,4 @@
-"""Scout mode: the next plant, three big buttons, each tap saved at once."""
+"""Scout mode: the next plant, the big buttons, each tap saved at once."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ..actions import choosing, inviting, recording, scouting
 from ..show import field_map, map_layers
 from ..show.maps import marks
 from ..show.next_stop import NextStop, next_stop
+from ..show.recorded_batches import GONE
 from ..state import chosen_day
 from ..words import texts
 
@@ -58,6 +59,7 @@ def _lead(choices: Choices, stop: NextStop) -> None:
     st.number_input(texts.COUNT_LABEL, 0, 100_000, None, key="scout_count")
     with st.container(key="scout_others"):
         st.button(texts.SKIP_BUTTON, "scout_skip", width="stretch", on_click=tap, args=(SKIPPED,))
+        st.button(texts.GONE_BUTTON, "scout_gone", on_click=tap, args=(GONE,))
 
 
 def _say_done(choices: Choices) -> None:

@@ -1070,7 +1070,7 @@ COMPASS = ("north", "north-east", "east", "south-east", "south", "south-west", "
            "north-west")  # fmt: skip
 ARROWS = ("⬆️", "↗️", "➡️", "↘️", "⬇️", "↙️", "⬅️", "↖️")
 CLEAN_BUTTON, FOUND_BUTTON = "Clean", "Found"
-SKIP_BUTTON, UNDO_BUTTON = "Could not inspect", "Undo"
+SKIP_BUTTON, GONE_BUTTON, UNDO_BUTTON = "Could not inspect", "Plant is gone", "Undo"
 COUNT_LABEL = "Pests counted (if found)"
 SCOUT_DONE = Plural(
     "### Done for today\n{inspected:,} plant inspected, {found:,} found.",
@@ -1232,6 +1232,7 @@ SCOUT_PAGE = {
     "left_out_skipped": "Left out, as nobody could inspect them last time: {n}.",
     "left_out_flagged": "Left out, as they were found and only flagged: {n}.",
     "clean": "Clean", "found": "Found", "skipped": "Could not inspect",
+    "gone": "Plant is gone",
     "count": "Pests", "leaves": "Leaves looked at", "stage": "Stage", "fewer": "{what}: one fewer",
     "more": "{what}: one more", "stage_egg": "Eggs", "stage_young": "Young",
     "stage_adult": "Adults", "stage_web": "Webs", "save_found": "Save the find",

@@ -78,7 +78,8 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
     What contradicts results recorded of the same plants and day (clean against found) is listed,
     and nothing is recorded, unless --contradicting is given.
 
-    Plants that are not in the files stay unknown. Positions are snapped to the nearest plant;
+    Plants that are not in the files stay unknown. Write gone as the result of one that is dead or
+    pulled out. Positions are snapped to the nearest plant;
     doubtful ones are listed and left out, unless --take-doubtful is given.
 
     Example: fieldmon record season.gpkg route.csv --date 2026-04-06 --who Ann

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
+from fieldmon.io.parse.result_words import says_gone
 from fieldmon.monitoring import replaced, schema, treatments
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.plot.local_clock import utc_text
@@ -87,6 +89,8 @@ class BatchContents:
     row, plant, result, count
         Of the only inspection: where it was, ``"found"``, ``"clean"`` or ``"skipped"``, and how
         many were counted (None: nobody counted). Of several and of a treatment they say nothing.
+    note
+        Of the only inspection.
     who
         Everybody who inspected, by name.
     """
@@ -100,7 +104,13 @@ class BatchContents:
     plant: int
     result: str
     count: float | None = None
+    note: str = ""
     who: str = ""
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether the only inspection says that the plant does not stand there any more."""
+        return self.result == RESULT_NAMES[SKIPPED] and says_gone(self.note)
 
 
 class Undone(NamedTuple):
@@ -229,7 +239,7 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
         "AND date NOTNULL AND result NOTNULL), "
         "counting AS (SELECT DISTINCT batch FROM own WHERE undone = 0) "
         "SELECT batch, count(*), sum(result = 'found'), sum(undone = 0), min(date), max(date), "
-        "min(line), min(number), min(result), min(count) FROM own "
+        "min(line), min(number), min(result), min(count), min(coalesce(notes, '')) FROM own "
         "WHERE undone = 0 OR batch NOT IN counting GROUP BY batch",
         tuple(numbers),
     )

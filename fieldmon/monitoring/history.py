@@ -517,9 +517,7 @@ class History:
     @cached_property
     def says_gone(self) -> NDArray[np.bool_]:
         """Which inspections say that the plant does not stand there any more, ``(k,)``."""
-        gone: NDArray[np.bool_] = self.inspections.result == SKIPPED
-        gone[gone] = [says_gone(str(note)) for note in self.inspections.notes[gone]]
-        return gone
+        return say_gone(self.inspections)
 
     def gone(self, day: int) -> NDArray[np.bool_]:
         """Return ``(n,)`` which plants are gone by the evening of a day.
@@ -714,6 +712,13 @@ class History:
         last = work[earlier].max(initial=-1)
         plants: NDArray[np.int32] = self.inspections.plant[earlier & (work == last)]
         return plants
+
+
+def say_gone(inspections: Inspections) -> NDArray[np.bool_]:
+    """Return ``(k,)`` which inspections say that the plant does not stand there any more."""
+    gone: NDArray[np.bool_] = inspections.result == SKIPPED
+    gone[gone] = [says_gone(str(note)) for note in inspections.notes[gone]]
+    return gone
 
 
 def in_sight(belief: Belief) -> Belief:

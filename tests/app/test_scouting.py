@@ -10,6 +10,7 @@ import shutil
 from dataclasses import replace
 from datetime import date, timedelta
 
+import numpy as np
 import pytest
 
 from app.api import documents
@@ -161,6 +162,19 @@ def test_what_a_phone_was_planned_to_find_holds_though_another_robot_is_set_mean
     assert now.reads(BEGINS) == 0.5
     assert now.history.detections.tolist() == [0.84, 0.84]
     assert [(one.who, one.n, one.own) for one in now.told_otherwise(BEGINS)] == [("Ann", 2, 0.5)]
+
+
+def test_a_scout_says_that_a_plant_is_gone_and_takes_it_back(season, line, phone):
+    invited(phone, line, season)
+    page = phone.page
+    kept_one, _ = told_now(page, "gone")
+    told_now(page, "gone")
+    page.locator("#last", has_text="Plant is gone").wait_for()
+    page.locator("#undo").click()
+    page.locator(f"#last[data-plant='{kept_one}']").wait_for()
+    page.locator(SENT).wait_for(timeout=120_000)
+    history = Season(season.path).history
+    assert np.flatnonzero(history.gone(0)).tolist() == [kept_one]
 
 
 def test_killed_in_the_moment_of_a_tap_it_is_whole_or_asked_for_again(season, line, mortal_phone):

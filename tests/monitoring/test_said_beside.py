@@ -119,12 +119,19 @@ def test_a_file_without_times_notes_what_was_tapped(season):
     assert beside(season) == ("", "webs")
 
 
-def test_a_plant_is_gone_once_anybody_notes_it(season):
+@pytest.mark.parametrize(
+    ("note", "together"),
+    [
+        ("gone: burnt", "gone: gate locked; burnt (Bob)"),
+        ("Missing.", "gate locked; Missing. (Bob)"),
+    ],
+)
+def test_a_plant_is_gone_once_anybody_notes_it(season, note, together):
     season.record(find("gate locked", "Ada", result=SKIPPED))
     assert not season.history.gone(0)[5]
-    season.record(find("gone: burnt", "Bob", result=SKIPPED))
+    season.record(find(note, "Bob", result=SKIPPED))
     assert season.history.gone(0)[5]
-    assert beside(season)[1] == "gone: gate locked; burnt (Bob)"
+    assert beside(season)[1] == together
     season.undo()
     assert not season.history.gone(0)[5]
 

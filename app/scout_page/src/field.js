@@ -24,6 +24,12 @@ function dateIn(zone, ms, how = {}) {
 
 const within = (at, [low, high]) => at >= low && at <= high;
 
+// a plant that does not stand there any more: skipped, as every server knows; that it is gone says its note, and here the page itself
+const GONE = { result: "skipped", gone: true };
+
+/** The note of a plant that is gone, with what else was noted. */
+const goneNote = (notes) => (notes ? `gone: ${notes}` : "gone");
+
 /** Whether something of a plant is in hand that is not told yet. */
 const isNoted = (draft) => Boolean(draft?.open || draft?.photos || draft?.notes);
 
@@ -424,10 +430,10 @@ export class Field {
 
   /** Say what was found at the plant: the next one is there at once; resolves when it is on the disk. */
   tell(result) {
-    const { id, plant, count, stage, leaves, notes, photos } = this.draft;
+    const { id, plant, count, stage, leaves, notes, photos } = this.draft, isGone = result === "gone";
     if (plant < 0) return Promise.resolve();
     const of = result === "found" ? { count: count ?? null, stage: stage ?? "", leaves: leaves ?? null } : {};
-    const record = { ...this.#common(id), ...this.#where(), plant, result, ...of, notes: notes ?? "", off_route: this.offRoute, photos: photos ?? 0,
+    const record = { ...this.#common(id), ...this.#where(), plant, ...(isGone ? GONE : { result }), ...of, notes: isGone ? goneNote(notes) : notes ?? "", off_route: this.offRoute, photos: photos ?? 0,
       // of the route that one goes by; a server of before said none
       ...(this.day.route.detects == null ? {} : { detects: this.day.route.detects }) };
     // the hours of another day run by no clock
@@ -435,8 +441,8 @@ export class Field {
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
       const done = new Set([...this.done, plant]);
-      // a neighbour that nobody may come to yet, or that plans leave out, is none to go to
-      const out = neighbours(this.plot, plant).filter((one) => this.closedUntil(one) || this.isLeftOut(one));
+      // a neighbour that nobody may come to yet, that plans leave out or that is gone, is none to go to
+      const out = neighbours(this.plot, plant).filter((one) => this.closedUntil(one) || this.isLeftOut(one) || this.isGone(one));
       ahead = afterFind(this.plot, this.day, ahead, plant, new Set([...done, ...out]), this.#secondsLeft(begun, [plant]));
     }
     const follows = { ahead, begun, draft: this.#comesNext(ahead), last: { id, plant, ahead: this.ahead } };
@@ -545,6 +551,9 @@ export class Field {
 
   /** Whether plans leave a plant out: nobody could inspect it last time, or it was found and only flagged. */
   isLeftOut(plant) { return (this.day?.left_out ?? []).some(({ plants }) => plants.some((run) => within(plant, run))); }
+
+  /** Whether a plant does not stand there any more, as the season says; a server of before says none. */
+  isGone(plant) { return (this.day?.gone ?? []).includes(plant); }
 
   /** The day that is meant where it is not today: one ahead until it comes, and one that was over as it was loaded. */
   meant() {

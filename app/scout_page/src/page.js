@@ -9,6 +9,8 @@ import { LANGUAGES, chanceSaid, dayOf, own, say, speak } from "./words.js";
 // a glove that bounces must say nothing of the next plant
 const REST_MS = 250;
 const STAGES = ["egg", "young", "adult", "web"];
+// the word of a result; that of a plant that is gone goes before "could not inspect"
+const resultOf = (one) => say(one.gone ? "gone" : one.result);
 const LEFT_OUT = { skipped: "left_out_skipped", flagged: "left_out_flagged" };
 
 function h(name, values = {}, ...inner) {
@@ -218,7 +220,7 @@ export class Page {
     this.last.hidden = !one;
     if (!one) return this.last.replaceChildren();
     const isKept = one.state !== "writing", { plot } = this.field;
-    const what = `${say("place", { row: signOf(plot, one.plant), plant: plot.number[one.plant] })}: ${say(one.result)}`;
+    const what = `${say("place", { row: signOf(plot, one.plant), plant: plot.number[one.plant] })}: ${resultOf(one)}`;
     Object.assign(this.last.dataset, { plant: one.plant, kept: isKept });
     this.last.textContent = say(isKept ? "kept" : "keeping", { what });
   }
@@ -249,7 +251,7 @@ export class Page {
       this.menu.close();
       this.#act(() => field.answer(again)).then(() => { this.#draw(); this.onTold?.(); });
     } }, say(name));
-    const which = (one) => h("li", {}, `${say("place", { row: signOf(plot, one.plant), plant: plot.number[one.plant] })}: ${say(one.result)}`);
+    const which = (one) => h("li", {}, `${say("place", { row: signOf(plot, one.plant), plant: plot.number[one.plant] })}: ${resultOf(one)}`);
     this.#show(h("div", {}, h("h2", {}, title), h("p", {}, say("taken_back_why")), h("ul", {}, ...field.takenBack().map(which)),
       answer("tell_again", true), answer("let_go", false),
       h("button", { type: "button", class: "wide", onclick: () => this.menu.close() }, say("close"))), title, "taken_back");
@@ -289,10 +291,11 @@ export class Page {
       const taken = field.draft.photos > 0;
       place.append(h("p", { class: "asked", "data-taken": String(taken) }, `${taken ? "✓" : "▣"} ${one.note ? say("photo_asked_of", { note: one.note }) : say("photo_asked")}`));
     }
+    if (field.isGone(plant) && !field.own.has(plant)) place.append(h("p", { id: "is_gone" }, say("gone")));
     const contradicting = (field.day.contradicting ?? []).filter((one) => one.plant === plant);
-    if (contradicting.length) place.append(h("p", { class: "bad" }, contradicting.map((one) => say("who_says", { who: one.who, result: say(one.result) })).join(", ")));
+    if (contradicting.length) place.append(h("p", { class: "bad" }, contradicting.map((one) => say("who_says", { who: one.who, result: resultOf(one) })).join(", ")));
     const known = contradicting.length ? [] : field.said(plant);
-    if (known.length) place.append(h("p", {}, known.map((one) => say("who_says", { who: one.who, result: say(one.result) })).join(", ")));
+    if (known.length) place.append(h("p", {}, known.map((one) => say("who_says", { who: one.who, result: resultOf(one) })).join(", ")));
   }
 
   /** A local time as it is said: with its day where that is not the day of the route. */
@@ -304,7 +307,7 @@ export class Page {
   #buttons() {
     const tap = (result, beat) => h("button", { type: "button", class: result, id: result, onclick: () => this.#tell(result, beat) }, say(result));
     const found = h("button", { type: "button", class: "found", id: "found", onclick: () => this.#act(() => this.field.note({ open: true })) }, say("found"));
-    return h("div", { id: "answers", "data-resting": performance.now() < this.rests }, tap("clean", 30), found, tap("skipped", 30));
+    return h("div", { id: "answers", "data-resting": performance.now() < this.rests }, tap("clean", 30), found, tap("skipped", 30), tap("gone", [30, 60, 30]));
   }
 
   async #tell(result, beat) {
@@ -386,7 +389,7 @@ export class Page {
   }
 
   #note() {
-    const text = h("textarea", { id: "notes", maxlength: "2000", rows: "4", "aria-label": say("note_button") });
+    const text = h("textarea", { id: "notes", maxlength: "1990", rows: "4", "aria-label": say("note_button") });
     text.value = this.field.draft.notes ?? "";
     this.#ask(say("note_button"), text, () => this.#act(() => this.field.note({ notes: text.value.trim() })));
     text.focus();

@@ -32,6 +32,34 @@ test("what was tapped comes back after a kill", async () => {
   assert.deepEqual(other.ahead, [1, 2, 10, 11]);
 });
 
+test("a plant that is gone is sent as skipped with the word for it, which servers of before know too", async () => {
+  const { season, field, sync, again } = await aField();
+  await field.tell("gone");
+  await field.note({ notes: "rotten" });
+  await field.tell("gone");
+  assert.deepEqual(field.ahead, [2, 10, 11]);
+  await sync.send();
+  const sent = [...season.taken.values()];
+  assert.deepEqual(sent.map((one) => [one.plant, one.result, one.notes]), [[0, "skipped", "gone"], [1, "skipped", "gone: rotten"]]);
+  assert.equal(sent.some((one) => "gone" in one), false, "a server refuses what it does not know");
+  const other = await again();
+  assert.deepEqual([...other.known().skipped], [0, 1]);
+  assert.equal(other.lastRecord().gone, true);
+  await other.undo();
+  assert.deepEqual([other.plant, [...other.known().skipped]], [1, [0]]);
+});
+
+test("after a find nobody is led to a neighbour that is gone", async () => {
+  const left = async (gone) => {
+    const { field } = await aField(new ASeason(aDay([0, 10], gone && { gone })));
+    await field.tell("found");
+    return field.ahead;
+  };
+  const all = await left();
+  assert.ok(all.includes(1));
+  assert.deepEqual(await left([1]), all.filter((one) => one !== 1));
+});
+
 test("what was taken back here is shown no more, though what the season said last still says it", async () => {
   const { season, field, sync } = await aField();
   await field.tell("found");

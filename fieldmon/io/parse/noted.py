@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.io.parse.result_words import GONE, says_gone
+from fieldmon.io.parse.result_words import GONE, begins_gone
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -20,7 +20,7 @@ def parts(note: str) -> list[str]:
     >>> parts("gone: cut; burnt; cut")
     ['gone', 'cut', 'burnt']
     """
-    gone = says_gone(note)
+    gone = begins_gone(note)
     rest = note.partition(":")[2] if gone else note
     each = (part.strip() for part in rest.split(_BETWEEN.strip()))
     return [*dict.fromkeys([*([GONE] if gone else []), *filter(None, each)])]

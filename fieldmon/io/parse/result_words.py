@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
@@ -87,6 +88,23 @@ gone|pulled out|removed|uprooted|entfernt|gerodet|verwijderd|arraché|arrachée|
 arrancado|arrancada|eliminado|eliminada|rimosso|rimossa|estirpato|estirpata|removido|removida
 usunięto|söküldü|удалено|נעקר|נעקרה|הוסר|أزيل|مقلوع|拔除
 """
+#: the same beside "could not inspect"; as a result alone they may be of the pest, or of the value
+_MAYBE_GONE = """
+missing|dead|died|not there|not there anymore|not there any more|no longer there|no plant|no tree
+no vine|cut down|felled|tot|abgestorben|fehlt|gefällt|dood|ontbreekt|mort|morte|manquant|manquante
+disparu|disparue|muerto|muerta|falta|desaparecido|desaparecida|ya no|ya no está|no hay planta
+talado|talada|morto|morta|mancante|martwy|martwa|martwe|ölü|погиб|погибло|мёртвый|мертвый|νεκρό
+מת|מתה|חסר|חסרה|נכרת|נכרתה|איננו|איננה|כבר לא שם|אין צמח|אין עץ|אין גפן
+ميت|ميتة|مات|ماتت|مفقود|مفقودة|لم تعد موجودة|لا توجد نبتة|لا توجد شجرة|死|枯死|缺株
+"""
+# words around these that say of what they are
+_THE_PLANT = """
+the|this|that|it|its|it's|plant|tree|vine|palm|is|was|has|been|la|el|este|esta|árbol|planta|vid
+está|fue|es|die|der|das|pflanze|baum|ist|le|plante|arbre|est
+הצמח|צמח|העץ|עץ|הגפן|גפן|זה|הזה|הזאת|הוא|היא|النبتة|نبتة|النبات|الشجرة|شجرة|هذه|هذا
+"""
+# where what a note says first ends
+_FIRST = re.compile(r"[:,.!\n(]|\s[-\u2013\u2014]\s")
 #: clean where a column also holds a plus; alone it is an empty cell, unless one says otherwise
 MINUS = frozenset({"-", "\u2212", "\u2013", "\u2014"})
 
@@ -98,6 +116,10 @@ def _split(words: str) -> frozenset[str]:
 FOUND = {word.casefold(): PRESENT for word in _split(_FOUND)}
 CLEAN = {word.casefold(): ABSENT for word in _split(_CLEAN)}
 _PULLED_OUT = frozenset(word.casefold() for word in _split(_GONE))
+#: words that say so of a plant beside "could not inspect", and alone leave open of what they are
+MAYBE_GONE = frozenset(word.casefold() for word in _split(_MAYBE_GONE))
+_OF_THE_PLANT = _split(_THE_PLANT)
+_SAYS_GONE = _PULLED_OUT | MAYBE_GONE
 NOT_INSPECTED = frozenset(word.casefold() for word in _split(_NOT_INSPECTED)) | _PULLED_OUT
 
 
@@ -106,19 +128,46 @@ def plain_word(cell: str) -> str:
     return " ".join(cell.casefold().replace("_", " ").split()).rstrip(".!") or cell.strip()
 
 
-def is_gone(cell: str) -> bool:
-    """Return whether a word for a result says that the plant does not stand there any more."""
-    return plain_word(cell) in _PULLED_OUT
+def is_gone(cell: str, own: str | None = None) -> bool:
+    """Return whether a word for a result says that the plant does not stand there any more.
+
+    `own`: words that say so, too, set apart by commas.
+    """
+    word = plain_word(cell)
+    return word in _PULLED_OUT or (own is not None and word in _own(own))
 
 
 def gone_note(note: str) -> str:
     """Return the note of a plant that is gone, with what else was noted."""
-    return note if says_gone(note) else f"{GONE}: {note}" if note else GONE
+    return note if begins_gone(note) else f"{GONE}: {note}" if note else GONE
+
+
+def begins_gone(note: str) -> bool:
+    """Return whether a note is `GONE`, or that with what else was noted: ``gone: burnt``."""
+    return note.partition(":")[0].strip().casefold() == GONE
 
 
 def says_gone(note: str) -> bool:
-    """Return whether the note of a skipped plant says that it is gone: gone, or gone: and why."""
-    return note.partition(":")[0].strip().casefold() == GONE
+    """Return whether the note of a skipped plant says in one of its parts that it is gone.
+
+    What is asked is not said.
+
+    Examples
+    --------
+    >>> [says_gone(note) for note in ("gone: burnt", "Tree is dead.", "thorns; missing")]
+    [True, True, True]
+    >>> [says_gone(note) for note in ("dead?", "dead branches", "key missing", "")]
+    [False, False, False, False]
+    """
+    return any(_part_says_gone(part) for part in note.split(";")) if note else False
+
+
+def _part_says_gone(part: str) -> bool:
+    if "?" in part:
+        return begins_gone(part)
+    word = plain_word(_FIRST.split(part.strip(), maxsplit=1)[0])
+    rest = " ".join(one for one in word.split() if one not in _OF_THE_PLANT)
+    return not {word, rest}.isdisjoint(_SAYS_GONE)
 
 
 def meaning(cell: str) -> int | None:

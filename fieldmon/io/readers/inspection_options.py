@@ -36,6 +36,8 @@ class InspectionOptions(RecordOptions):
         Time zone of the plot (``"Asia/Jerusalem"``, ``"+02:00"``), for times that a file states in
         UTC or another zone, as all GPX files do. None: such times keep their own clock; `on`
         gives the plot's.
+    gone
+        Words of one's own for a plant that does not stand there any more, set apart by commas.
     take_doubtful
         Take what would be listed and left out: the nearest plant, the plant's id before its row
         and number or position, a find before a contradicting "clean".
@@ -46,6 +48,7 @@ class InspectionOptions(RecordOptions):
     who: str | None = None
     accuracy_m: float | None = None
     zone: str | None = None
+    gone: str | None = None
     take_doubtful: bool = False
 
     def __post_init__(self) -> None:

@@ -37,6 +37,16 @@ def test_each_tap_of_the_scout_is_kept_at_once_and_the_route_goes_on(season_app,
     assert season_app.number_input(key="scout_count").value is None
 
 
+def test_a_tap_says_that_a_plant_is_gone_and_is_taken_back(season_app, season):
+    go(season_app, "scout")
+    tap(season_app, "scout_gone")
+    history = season().history
+    assert np.flatnonzero(history.gone(0)).tolist() == history.inspections.plant.tolist()
+    assert [one.value for one in season_app.caption if one.value.endswith(": gone (pulled out)")]
+    tap(season_app, "scout_undo")
+    assert not season().history.gone(0).any()
+
+
 def test_a_tap_that_was_answered_says_nothing_of_a_plant_again(season_app, season, monkeypatch):
     go(season_app, "scout")
     tap(season_app, "scout_clean")

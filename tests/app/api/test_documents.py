@@ -133,10 +133,16 @@ def test_who_works_is_told_what_plans_leave_out_and_why(tmp_path, monkeypatch):
     season = a_season(tmp_path / "season.gpkg", belief=BeliefSettings(treated=False))
     scout = scouts.key_owner(season, scouts.let_in(season, "Ann"))
     assert json.loads(day_document(season, scout, BEGINS))["left_out"] == []
-    results = np.array([2, 2, 2, 1, 1], np.int8)
-    season.record(Inspections.of(np.arange(100, 105), results, np.datetime64(BEGINS)), "a.csv", "Z")
+    results = np.array([2, 2, 2, 1, 1, 2], np.int8)
+    notes = np.array([""] * 5 + ["Plant missing."], object)
+    done = Inspections.of(np.arange(100, 106), results, np.datetime64(BEGINS), notes=notes)
+    season.record(done, "a.csv", "Z")
+    today = json.loads(day_document(season, scout, BEGINS))
+    jsonschema.validate(today, description.DAY)
+    assert [one["plant"] for one in today["today"] if one.get("gone")] == [105]
     day = json.loads(day_document(season, scout, BEGINS + timedelta(days=1)))
     jsonschema.validate(day, description.DAY)
+    assert day["gone"] == [105]
     assert day["left_out"] == [
         {"why": "skipped", "plants": [[100, 102]], "own": 3},
         {"why": "flagged", "plants": [[103, 104]], "own": 2},

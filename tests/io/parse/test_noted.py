@@ -15,6 +15,7 @@ from fieldmon.io.parse.result_words import says_gone
         (["", "eggs"], "eggs"),
         (["as;it was", "it was"], "as;it was"),
         (["locked", "gone: burnt"], "gone: locked; burnt"),
+        (["locked", "Missing."], "locked; Missing."),
     ],
 )
 def test_each_part_is_kept_once(notes, joined):

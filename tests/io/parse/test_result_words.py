@@ -4,12 +4,38 @@ import pytest
 
 from fieldmon.infestation.observations import ABSENT, PRESENT
 from fieldmon.io.options import RecordOptions
-from fieldmon.io.parse.result_words import CLEAN, FOUND, NOT_INSPECTED, ResultWords, meaning
+from fieldmon.io.parse.result_words import (
+    CLEAN,
+    FOUND,
+    MAYBE_GONE,
+    NOT_INSPECTED,
+    ResultWords,
+    gone_note,
+    meaning,
+    says_gone,
+)
 
 
 def test_no_word_says_two_things():
     assert not FOUND.keys() & CLEAN.keys()
     assert not NOT_INSPECTED & (FOUND.keys() | CLEAN.keys())
+    assert not MAYBE_GONE & (FOUND.keys() | CLEAN.keys() | NOT_INSPECTED)
+
+
+@pytest.mark.parametrize(
+    ("note", "is_gone"),
+    [
+        *((n, True) for n in ("gone", "Gone.", "GONE: burnt", "missing", "Plant missing", "dead")),
+        *((n, True) for n in ("tree is dead", "The plant was removed!", "dead - replant", "falta")),
+        *((n, True) for n in ("planta muerta", "La planta ya no está", "העץ מת", "הצמח נעקר")),
+        *((n, True) for n in ("الشجرة ميتة", "thorns; missing (Ben)", "Gone, cut last week")),
+        *((n, False) for n in ("", "dead?", "dead branches", "not dead", "key missing", "plant")),
+        *((n, False) for n in ("locked: dead dog", "thorns", "no", "?")),
+    ],
+)
+def test_a_note_says_that_a_plant_is_gone_in_the_words_that_people_use(note, is_gone):
+    assert says_gone(note) == is_gone
+    assert says_gone(gone_note(note))
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,7 @@ def test_every_plant_stands_in_order_with_three_boxes(tmp_path, plan):
     assert plants == plan.route.plant.tolist()
     # those of the legend, and those of each plant
     assert len(sheet.all("i")) == BOXES * (1 + len(plants))
+    assert "write gone if dead or missing" in sheet.text
 
 
 def test_a_thick_line_stands_over_each_new_row_of_plants(tmp_path, plan):

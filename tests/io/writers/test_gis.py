@@ -96,7 +96,8 @@ def test_stops_of_a_geopackage_carry_their_order_and_a_list_to_choose_findings_f
     edited["found"] = words
     pyogrio.write_dataframe(edited, tmp_path / "edited.gpkg", layer="stops")
     read = read_inspections(tmp_path / "edited.gpkg", plan.grid).value
-    assert read.result.tolist() == [FOUND, CLEAN, SKIPPED]
+    assert read.result.tolist() == [FOUND, CLEAN, SKIPPED, SKIPPED]
+    assert read.notes.tolist() == ["", "", "", "gone"]
 
 
 def test_in_the_form_of_a_stop_only_what_is_filled_in_stands_beside_what_names_it(tmp_path):

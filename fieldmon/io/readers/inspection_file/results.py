@@ -13,6 +13,7 @@ from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
 from fieldmon.io.parse.columns import recognised
 from fieldmon.io.parse.result_words import (
+    MAYBE_GONE,
     MINUS,
     NOT_INSPECTED,
     ResultWords,
@@ -21,6 +22,7 @@ from fieldmon.io.parse.result_words import (
     about_mark,
     about_minus,
     is_gone,
+    plain_word,
 )
 from fieldmon.io.parse.values import counted, is_missing, mark_of_counts, number, presence
 from fieldmon.io.readers.inspection_file.plants import PLANT_IN_NAME
@@ -35,6 +37,8 @@ if TYPE_CHECKING:
 
 # cells of each other column that may tell the decimal mark
 _LOOKED_AT = 200
+# what stands for no value where a number is asked for, and for a result says something
+_SAYS_SOMETHING = MAYBE_GONE | {"?"}
 _PLUS = re.compile(r"^\+\s*(\d*)$")
 
 
@@ -64,6 +68,7 @@ class CellResult(NamedTuple):
 
 
 _SILENT = CellResult(UNKNOWN, np.nan, is_said=False)
+_NOT_INSPECTED = CellResult(UNKNOWN, np.nan, is_said=True)
 
 
 def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> SeenResults:
@@ -78,6 +83,7 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
         words = ResultWords(cells, options)
         mark, guess = _mark(layer, columns.result, cells, options)
         known = {cell: _of_word(cell, mark, words) for cell in set(cells)}
+        known |= {cell: _NOT_INSPECTED for cell in known if is_gone(cell, options.gone)}
         by_result = [known[cell] for cell in cells]
         messages += [
             seen(worded("Results are in column {result!r}.", result=columns.result)),
@@ -112,7 +118,8 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
     seen_so = seen_so._replace(doubt=doubt, messages=[*seen_so.messages, *others.messages])
     if columns.result is None:
         return seen_so
-    gone = np.array([is_gone(text(v)) for v in layer.column(columns.result)], np.bool_)
+    column = layer.column(columns.result)
+    gone = np.array([is_gone(text(v), options.gone) for v in column], np.bool_)
     return seen_so._replace(gone=gone & (seen_so.result == UNKNOWN))
 
 
@@ -171,19 +178,41 @@ def _put_together(
 
 def _unread(cells: list[str], known: dict[str, CellResult]) -> list[ImportMessage]:
     odd = [cell for cell in cells if not known[cell].is_read]
+    of_plant = [cell for cell in odd if plain_word(cell) in MAYBE_GONE]
+    return [*_neither([cell for cell in odd if cell not in {*of_plant}]), *_maybe_gone(of_plant)]
+
+
+def _neither(odd: list[str]) -> list[ImportMessage]:
     if not odd:
         return []
-    shown = ", ".join(repr(cell) for cell in list(dict.fromkeys(odd))[:5])
     said = worded(
         "{n} {n:record says|records say} neither clean nor found ({shown}); left unknown.",
         n=len(odd),
-        shown=shown,
+        shown=_some(odd),
     )
     one = odd[0] if "," not in odd[0] else ""
     remedy = Remedy(
         "found", one, worded("Take {one!r} as found; clean= takes it as clean", one=one)
     )
     return [doubtful(said, None, remedy if one else None)]
+
+
+def _maybe_gone(odd: list[str]) -> list[ImportMessage]:
+    """Return a doubt about words that may be of the plant, of the pest or of the value."""
+    if not odd:
+        return []
+    said = worded(
+        "{n} {n:record says|records say} {shown}, which may be of the plant; left unknown. Write "
+        "gone where it does not stand there any more.",
+        n=len(odd),
+        shown=_some(odd),
+    )
+    label = worded("Take {shown} as plants that are gone", shown=_some(odd))
+    return [doubtful(said, None, Remedy("gone", ",".join(dict.fromkeys(odd)), label))]
+
+
+def _some(cells: list[str]) -> str:
+    return ", ".join(repr(cell) for cell in list(dict.fromkeys(cells))[:5])
 
 
 def _of_word(cell: str, mark: str, words: ResultWords) -> CellResult:
@@ -197,13 +226,14 @@ def _of_word(cell: str, mark: str, words: ResultWords) -> CellResult:
     if plus:
         return CellResult(PRESENT, counted(plus.group(1) or "").number, is_said=True)
     if word in NOT_INSPECTED:
-        return CellResult(UNKNOWN, np.nan, is_said=True)
+        return _NOT_INSPECTED
     meant = words[cell]
     if meant is not None and not np.isfinite(number(word)):
         return CellResult(meant, np.nan, is_said=True)
     result = presence(word)
     if result == UNKNOWN:
-        return CellResult(UNKNOWN, np.nan, is_said=False, is_read=is_missing(word))
+        is_empty = is_missing(word) and plain_word(cell) not in _SAYS_SOMETHING
+        return CellResult(UNKNOWN, np.nan, is_said=False, is_read=is_empty)
     read = counted(word, mark)
     how_many = read.number if read.number > 1 and not read.is_rough else np.nan
     return CellResult(result, how_many, is_said=True)
@@ -212,7 +242,7 @@ def _of_word(cell: str, mark: str, words: ResultWords) -> CellResult:
 def _of_count(cell: str, mark: str) -> CellResult:
     """Return what a cell for a count says; ``<5`` is a find that was not counted."""
     if cell.strip().casefold() in NOT_INSPECTED:
-        return CellResult(UNKNOWN, np.nan, is_said=True)
+        return _NOT_INSPECTED
     read = counted(cell.removeprefix("+"), mark)
     if read.present == UNKNOWN:
         return CellResult(UNKNOWN, np.nan, is_said=False, is_read=not read.is_rough)

@@ -41,16 +41,36 @@ def test_what_is_not_filled_in_says_nothing(blank):
     assert seen.said.tolist() == [False, True]
 
 
+def test_words_that_may_be_of_the_plant_have_one_answer():
+    seen = read(plant=[7, 8, 9], found=["missing", "dead", "no"])
+    (doubt,) = [m for m in seen.messages if m.severity == Severity.DOUBTFUL]
+    assert doubt.sentence.startswith("2 records say 'missing', 'dead', which may be of the plant")
+    answered = InspectionOptions().choose("gone", doubt.remedy.value)
+    again = read(answered, plant=[7, 8, 9], found=["missing", "dead", "no"])
+    assert again.gone.tolist() == [True, True, False]
+
+
 def test_a_minus_is_clean_only_in_a_column_with_a_plus():
     assert read(plant=[7, 8], found=["-", "+"]).result.tolist() == [ABSENT, PRESENT]
     assert read(plant=[7, 8], found=["-", "x"]).said.tolist() == [False, True]
 
 
-def test_a_word_that_says_nothing_is_named():
-    seen = read(plant=[7, 8], found=["maybe", "no"])
-    assert seen.said.tolist() == [False, True]
+@pytest.mark.parametrize(
+    ("word", "option"),
+    [("maybe", "found"), ("?", "found"), *((w, "gone") for w in ("missing", "Dead.", "falta"))],
+)
+def test_a_word_that_says_nothing_is_named_with_what_it_may_be(word, option):
+    seen = read(plant=[7, 8, 9], found=[word, "no", None])
+    assert seen.said.tolist() == [False, True, False]
+    assert seen.unread.tolist() == [True, False, False]
     (doubt,) = [m for m in seen.messages if m.severity == Severity.DOUBTFUL]
-    assert "'maybe'" in doubt.sentence
+    assert f"'{word}'" in doubt.sentence
+    assert (doubt.remedy.option, doubt.remedy.value) == (option, word)
+    answered = InspectionOptions().choose(option, doubt.remedy.value)
+    again = read(answered, plant=[7, 8, 9], found=[word, "no", None])
+    assert again.said.tolist() == [True, True, False]
+    assert again.gone.tolist() == [option == "gone", False, False]
+    assert not [m for m in again.messages if m.severity == Severity.DOUBTFUL]
 
 
 @pytest.mark.parametrize(

@@ -36,7 +36,7 @@ def show(choices: Choices) -> None:
     if not chosen_day.progress(choices).inspected:
         notes.append(texts.LEARNT_AT_FIRST)
         if len(records := chosen_day.records_known(choices)):
-            notes.append(in_words(records.sentence()))
+            notes.append(in_words(records.sentence(choices.units.in_sentences(choices.on))))
     notes += [texts.LEARNT_COUNTS_FOR, texts.LEARNT_INTERVALS]
     st.caption(" ".join(notes))
     worth = (one.sentence() for one in worth_saying(estimates))

@@ -23,7 +23,7 @@ def show(choices: Choices) -> None:
     st.markdown(f"### {texts.HOT_TITLE}")
     spots, records = chosen_day.hot_spots(choices), chosen_day.records_known(choices)
     if len(records):
-        st.caption(in_words(records.sentence()))
+        st.caption(in_words(records.sentence(choices.units.in_sentences(choices.on))))
     said = hot_spot_meanings(choices.plot.grid, spots, chosen_day.finds_apart(choices))
     # as their numbers on the map
     signs = [f"{k}." if len(spots) else "-" for k in range(1, len(said) + 1)]

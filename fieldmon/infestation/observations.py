@@ -11,6 +11,7 @@ import numpy as np
 
 from fieldmon.compute.arguments import array_of, days_of, entries_of, must_be, must_be_known, shown
 from fieldmon.compute.kinds import must_be_of, must_hold_kinds
+from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import ImportDoubt, ObservationError
 from fieldmon.plot.positions import lonlat_of
@@ -99,8 +100,10 @@ class Observations:
         """Return the number of records."""
         return len(self.lonlat)
 
-    def in_words(self) -> Worded:
+    def in_words(self, units: Units | None = None) -> Worded:
         """Return how many there are and of which days, with the years: last year's count, too.
+
+        Days are written as `units` has them; None: as usual.
 
         Examples
         --------
@@ -112,7 +115,8 @@ class Observations:
         n, days = counted(len(self), "record"), self.day[~np.isnat(self.day)]
         if not len(days):
             return worded("{records} without a date", records=n)
-        first, last = str(days.min()), str(days.max())
+        say_day = (units or Units()).day
+        first, last = say_day(str(days.min())), say_day(str(days.max()))
         said = worded("{records} of {first} to {last}", records=n, first=first, last=last)
         if first == last:
             said = worded("{records} of {day}", records=n, day=first)
@@ -123,9 +127,10 @@ class Observations:
             else said
         )
 
-    def sentence(self) -> Worded:
+    def sentence(self, units: Units | None = None) -> Worded:
         """Return that chances and hot spots begin with them, and of which days they are."""
-        return worded("Chances and hot spots begin with {records}.", records=self.in_words())
+        said = self.in_words(units)
+        return worded("Chances and hot spots begin with {records}.", records=said)
 
     def reach_m(self) -> NDArray[np.float64]:
         """Return ``(m,)`` metres outside a plot at which a record is still one of its own.

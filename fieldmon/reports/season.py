@@ -304,7 +304,7 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     yield Listing(words.HOT_LIST, meanings, numbered=bool(len(facts.status.hot_spots)))
     yield from map(Paragraph, _left_out(facts.status.hot_spots, len(meanings), words.REST))
     if len(records := facts.season.records_known()):
-        yield Paragraph(records.sentence())
+        yield Paragraph(records.sentence(facts.units))
     plants = np.flatnonzero(facts.state == PRESENT)
     if not len(plants):
         yield Paragraph(words.FINDS_NONE)

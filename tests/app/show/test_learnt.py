@@ -8,6 +8,7 @@ import streamlit as st
 
 from app.show import learnt
 from app.words import texts
+from app.words.units import UnitsInLanguage
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.learnt import Learnt
 from fieldmon.infestation.observations import Observations
@@ -32,7 +33,9 @@ def shown(monkeypatch):
         monkeypatch.setattr(learnt.chosen_day, "progress", lambda _: progress)
         monkeypatch.setattr(learnt.chosen_day, "told_otherwise", lambda _: said)
         monkeypatch.setattr(learnt.chosen_day, "records_known", lambda _: RECORDS)
-        learnt.show(SimpleNamespace(open_season=SimpleNamespace(taught=lambda: taught)))
+        season = SimpleNamespace(taught=lambda: taught)
+        units, on = UnitsInLanguage(), date(2026, 11, 16)
+        learnt.show(SimpleNamespace(open_season=season, units=units, on=on))
         return apart("\n".join(lines[1:])).splitlines()
 
     return show
@@ -53,7 +56,10 @@ def test_how_far_insects_jump_is_said_where_they_may(shown):
 
 
 def test_before_anything_was_inspected_it_is_said_to_be_believed_only(shown):
-    for said in (texts.LEARNT_AT_FIRST, "Chances and hot spots begin with 1 record of 2024-06-03."):
+    for said in (
+        texts.LEARNT_AT_FIRST,
+        "Chances and hot spots begin with 1 record of Mon 3 Jun 2024.",
+    ):
         assert said in shown(DETECTION, inspected=0)[0]
         assert said not in shown(DETECTION)[0]
 

@@ -93,6 +93,17 @@ def last_tap(choices: Choices) -> tuple[int, str] | None:
     return number, recorded_batches.last(choices, tapped)
 
 
+def offer_undo(choices: Choices) -> None:
+    """Show what this person tapped last, and a button that takes it back."""
+    if (last := last_tap(choices)) is None:
+        return
+    batch, said = last
+    st.caption(said)
+    with st.container(key="scout_back"):
+        st.button(texts.UNDO_BUTTON, key="scout_undo", width="stretch", icon=":material/undo:",
+                  on_click=undo, args=(choices, batch, taps()))  # fmt: skip
+
+
 def can_be_longer(choices: Choices) -> bool:
     """Return whether the day shown would go by other hours: one that is past would not."""
     return not choices.open_season.is_earlier(choices.on)

@@ -42,7 +42,7 @@ def show(choices: Choices) -> None:
         _lead(choices, stop)
     else:
         _say_done(choices)
-    _undo(choices)
+    scouting.offer_undo(choices)
     field_map.want(map_layers.day_map(choices, above=above, first="state"))
     inviting.show_below(choices)
 
@@ -70,12 +70,3 @@ def _say_done(choices: Choices) -> None:
         st.caption(texts.SCOUT_LONGER_NOTE)
         with st.container(key="scout_more"):
             st.button(texts.SCOUT_LONGER, "scout_hour", on_click=scouting.longer, args=(choices,))
-
-
-def _undo(choices: Choices) -> None:
-    if (last := scouting.last_tap(choices)) is not None:
-        batch, said = last
-        st.caption(said)
-        with st.container(key="scout_back"):
-            st.button(texts.UNDO_BUTTON, key="scout_undo", width="stretch", icon=":material/undo:",
-                      on_click=scouting.undo, args=(choices, batch, scouting.taps()))  # fmt: skip

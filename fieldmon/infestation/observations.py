@@ -108,8 +108,9 @@ class Observations:
         Examples
         --------
         >>> import numpy as np
+        >>> import fieldmon as fm
         >>> days = np.array(["2024-08-11", "2024-06-03", "NaT"], "datetime64[D]")
-        >>> Observations.of(np.full((3, 2), 30.0), np.ones(3, np.int8), days).in_words()
+        >>> fm.Observations.of(np.full((3, 2), 30.0), np.ones(3, np.int8), days).in_words()
         '3 records of 2024-06-03 to 2024-08-11, 1 of them without a date'
         """
         n, days = counted(len(self), "record"), self.day[~np.isnat(self.day)]
@@ -120,15 +121,15 @@ class Observations:
         said = worded("{records} of {first} to {last}", records=n, first=first, last=last)
         if first == last:
             said = worded("{records} of {day}", records=n, day=first)
-        undated = len(self) - len(days)
-        return (
-            worded("{records}, {n:,} of them without a date", records=said, n=undated)
-            if (undated)
-            else said
-        )
+        if undated := len(self) - len(days):
+            said = worded("{records}, {n:,} of them without a date", records=said, n=undated)
+        return said
 
     def sentence(self, units: Units | None = None) -> Worded:
-        """Return that chances and hot spots begin with them, and of which days they are."""
+        """Return that chances and hot spots begin with them, and of which days they are.
+
+        Days are written as `units` has them; None: as usual.
+        """
         said = self.in_words(units)
         return worded("Chances and hot spots begin with {records}.", records=said)
 

@@ -69,7 +69,7 @@ class Times:
 @contextmanager
 def served(tree: Path, folder: str):
     """Start the app by its command; yield its address at once."""
-    command = ["fieldmon.cli", "app", "--no-browser", "--seasons", folder, "--port"]
+    command = ["fieldmon", "app", "--no-browser", "--seasons", folder, "--port"]
     with started(lambda port: [*command, str(port)], {"PYTHONPATH": str(tree)}, tree) as url:
         yield url
 

@@ -210,6 +210,7 @@ def walk(new_tab, address):
         page.goto(f"{address}/{name}")
         page.wait_for_selector(IDLE, timeout=240_000)
     try:
+        rest(page)  # as people do: they see the map before they turn from it
         for name, room in rooms.ROOMS.items():
             open_room(page, texts.ROOMS[name])
             for part in room.parts[1:]:

@@ -86,7 +86,7 @@ def _kept(kind: str) -> None:
 
 def _take(kind: str) -> None:
     parts = st.session_state.get(brought_files.box(kind)) or []
-    if kind != PLOT or not bringing_seasons.is_held(parts):
+    if kind != PLOT or not bringing_seasons.hold(parts):
         brought_files.keep(kind, parts)
 
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 _DROPPED, _REMOVED = "season dropped", "season to bring back"
 
 
-def is_held(parts: Sequence[UploadedFile]) -> bool:
-    """Tell whether what was dropped is the file of a season, and hold it until that is answered."""
+def hold(parts: Sequence[UploadedFile]) -> bool:
+    """Hold what was dropped until it is answered, if it is the file of a season; tell whether."""
     st.session_state.pop(_DROPPED, None)
     if len(parts) != 1 or not seasons_folder.is_of_season(data := parts[0].getvalue()):
         return False

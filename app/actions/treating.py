@@ -169,7 +169,9 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
     zoned = None if zones is None or read is not None else zones()
     if zoned is not None:
         season.advise(choices.on, zoned.advised, choices.who or "")
-    area = read.value if read is not None else None if zoned is None else zoned.area
+    area = None if zoned is None else zoned.area
+    if read is not None:
+        area = read.value
     done = season.treat(choices.on, works, area, application=said, plants=plants)
     boxes.empty()
     if plants is not None:

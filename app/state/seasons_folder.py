@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import SettingError
+from fieldmon.io.options import Upload
 from fieldmon.monitoring import Store, is_season
+from fieldmon.monitoring.brought_findings import season_copied
 
 from ..words import texts
 
@@ -110,9 +112,7 @@ def bring_back(name: str) -> str:
 def is_of_season(data: bytes) -> bool:
     """Tell whether these bytes are the file of a season."""
     with working_folder() as here:
-        copy = Path(here) / f"copy{_ENDING}"
-        copy.write_bytes(data)
-        return is_season(copy)
+        return season_copied(Upload(f"season{_ENDING}", data), Path(here)) is not None
 
 
 def take_in(data: bytes, name: str) -> str:

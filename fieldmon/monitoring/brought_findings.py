@@ -104,7 +104,7 @@ def read_brought(
     if is_phone_file(source):
         saved = read_phone_file(source)
         return BroughtFile(name, Inspections.none(), saved.messages, saved=saved.value)
-    copy = _copied(source, folder)
+    copy = season_copied(source, folder)
     if copy is not None:
         season.refuse_another_pest(copy)
     corrected = [] if copy is None else [one.row for one in season.corrections_in(copy)]
@@ -115,8 +115,8 @@ def read_brought(
     return BroughtFile(name, read.value, read.messages, None, copy, len(corrected))
 
 
-def _copied(source: Source, folder: Path) -> Path | None:
-    """Return a copy of a source that is a season; None: it is none."""
+def season_copied(source: Source, folder: Path) -> Path | None:
+    """Return a copy of a source that is a season, in a folder; None: it is none."""
     if isinstance(source, Upload):
         if not source.data.startswith(MAGIC):
             return None

@@ -102,13 +102,12 @@ def because_of(
     One that is entered late may make a later use one too many.
     """
     said = _labelled(treatments, rules, date.max)
-    twice = _twice([one for one, _ in said], rules.units)
-    in_a_row = [*twice, *_in_a_row(said, rules.units)]
+    of_several = [*_of_several(said, rules.units)]
     own = [(one, label) for one, label in said if one.batch == batch and one.on <= on]
-    of_own = [caution for caution in in_a_row if own and caution.batch == batch]
+    of_own = [caution for caution in of_several if own and caution.batch == batch]
     others = [(one, label) for one, label in said if one.batch != batch]
-    without = {caution.sentence for caution in _in_a_row(others, rules.units)}
-    added = [one for one in in_a_row if one.batch != batch and one.sentence not in without]
+    without = {caution.sentence for caution in _of_several(others, rules.units)}
+    added = [one for one in of_several if one.batch != batch and one.sentence not in without]
     return (*_urgent_first(own, of_own, rules, on), *_urgent_first([], added, rules, on))
 
 
@@ -136,6 +135,12 @@ def _urgent_first(
 def by_urgency(found: Iterable[Caution]) -> tuple[Caution, ...]:
     """Return cautions, the most urgent kind first; those of one kind stay in order."""
     return tuple(sorted(found, key=lambda one: _URGENT.index(one.kind)))
+
+
+def _of_several(said: Sequence[_Said], units: Units) -> Iterator[Caution]:
+    """Yield what to beware of because of several treatments: one recorded twice, or in a row."""
+    yield from _twice([one for one, _ in said], units)
+    yield from _in_a_row(said, units)
 
 
 def _twice(done: Iterable[KeptTreatment], units: Units) -> Iterator[Caution]:

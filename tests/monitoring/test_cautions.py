@@ -238,6 +238,9 @@ def test_one_spraying_that_may_be_recorded_twice_is_said_on_its_day(second, warn
     assert not [one for one in found(done, on=4) if one.kind == "twice"]
     of_second = because_of(done, 9, RulesToKeep((), None, time(6)), BEGINS + timedelta(30))
     assert [one.kind for one in of_second if one.kind == "twice"] == ["twice"] * warned
+    later = [*done, replace(treated(7, product="soap"), number=12, batch=12)]
+    of_later = because_of(later, 12, RulesToKeep((), None, time(6)), BEGINS + timedelta(30))
+    assert "twice" not in {one.kind for one in of_later}, "it is of others"
 
 
 def test_what_comes_after_the_day_is_not_looked_at():

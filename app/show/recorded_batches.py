@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import TYPE_CHECKING
 
-from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.infestation.inspections import RESULT_CODES
 from fieldmon.planning.members import person_key
 
 from ..words import texts
@@ -18,13 +18,12 @@ if TYPE_CHECKING:
 
 #: in `RESULTS_OF`: of a plant that could not be inspected as it is not there any more
 GONE = 3
-_CODES = {name: code for code, name in RESULT_NAMES.items()}
 
 
 def in_short(result: str) -> str:
     """Return the result of an inspection, as a season's file names it, in a word."""
-    known = result in _CODES  # another program may have written any
-    return texts.HISTORY_RESULTS[_CODES[result]] if known else texts.isolated(result)
+    known = result in RESULT_CODES  # another program may have written any
+    return texts.HISTORY_RESULTS[RESULT_CODES[result]] if known else texts.isolated(result)
 
 
 def last(choices: Choices, said: BatchContents) -> str:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 CLEAN, FOUND, SKIPPED = 0, 1, 2
 #: as files and people write them
 RESULT_NAMES = {CLEAN: "clean", FOUND: "found", SKIPPED: "skipped"}
+#: results by those names
+RESULT_CODES = {name: code for code, name in RESULT_NAMES.items()}
 
 _TYPES: dict[str, Any] = {column.name: column.dtype for column in COLUMNS}
 #: what a caller's array of each may be to numpy, and how a sentence calls it

@@ -16,7 +16,7 @@ import numpy as np
 
 from fieldmon.compute.digest import digest
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
-from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
+from fieldmon.infestation.inspections import RESULT_CODES, Inspections
 from fieldmon.monitoring import said_beside, schema
 from fieldmon.monitoring.geopackage import insert, unpacked
 
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     #: by the names of `Inspections`; dates as the season numbers its days
     Columns = dict[str, NDArray[Any]]
 
-_CODES = {name: code for code, name in RESULT_NAMES.items()}
 _DAY_S = 86_400
 # the row numbers that SQLite knows
 _LEAST, _MOST = -(1 << 63), (1 << 63) - 1
@@ -119,7 +118,7 @@ def _read(
             whole = said_beside.together(own, others[mark])
             for one in BESIDE:
                 said[one.name][k] = whole[one.kept]
-    said["result"] = [_CODES[name] for name in said["result"]]
+    said["result"] = [RESULT_CODES[name] for name in said["result"]]
     said["second"] = [second_of(text) for text in said["second"]]
     for one in (COUNT, *BESIDE):
         said[one.name] = _each(one, said[one.name])

@@ -13,7 +13,7 @@ from fieldmon.compute.ranges import DETECTS
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspection_columns import BESIDE, COUNT, IDENTIFYING
-from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, Inspections
+from fieldmon.infestation.inspections import FOUND, RESULT_CODES, RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
 from fieldmon.monitoring.replaced import COUNTS, as_it_was
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.plot.grid import PlantGrid, RowLabel
 
-_CODES = {name: code for code, name in RESULT_NAMES.items()}
 _DAY_S = 86_400
 # of a digest
 _LENGTH = 24
@@ -41,7 +40,7 @@ IDENTIFIED_BY = tuple(column.kept for column in IDENTIFYING)
 def ever_recorded(db: sqlite3.Connection) -> set[tuple[int, str, int]]:
     """Return plant, day and result of all that was ever recorded, also of what was undone."""
     wanted = "SELECT DISTINCT plant, date, result FROM inspections WHERE batch IS NOT NULL"
-    return {(plant, day, _CODES.get(said, -1)) for plant, day, said in db.execute(wanted)}
+    return {(plant, day, RESULT_CODES.get(said, -1)) for plant, day, said in db.execute(wanted)}
 
 
 def rows(
@@ -214,7 +213,7 @@ def in_words(inspections: Inspections, detects: list[float]) -> dict[str, object
     And which chances to see what is there were said with them, other than the season's own.
     """
     result, on = inspections.result, inspections.date
-    counts = {name: int(np.count_nonzero(result == code)) for name, code in _CODES.items()}
+    counts = {name: int(np.count_nonzero(result == code)) for name, code in RESULT_CODES.items()}
     days = {"from": str(on.min()), "to": str(on.max())}
     return {**counts, **days, **({"detects": detects} if detects else {})}
 

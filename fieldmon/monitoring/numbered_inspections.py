@@ -5,13 +5,11 @@ from __future__ import annotations
 from datetime import date
 from typing import TYPE_CHECKING, NamedTuple
 
-from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.infestation.inspections import RESULT_CODES
 from fieldmon.monitoring.inspection_lots import second_of
 
 if TYPE_CHECKING:
     import sqlite3
-
-_CODES = {name: code for code, name in RESULT_NAMES.items()}
 
 
 class NumberedInspection(NamedTuple):
@@ -42,7 +40,7 @@ def of_plant(db: sqlite3.Connection, plant: int) -> tuple[NumberedInspection, ..
     )
     return tuple(
         NumberedInspection(
-            fid, date.fromisoformat(str(day)[:10]), second_of(at), _CODES[result], who or ""
+            fid, date.fromisoformat(str(day)[:10]), second_of(at), RESULT_CODES[result], who or ""
         )
         for fid, day, at, result, who in db.execute(wanted, (plant,))
     )

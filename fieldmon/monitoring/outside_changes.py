@@ -14,7 +14,7 @@ import numpy as np
 from fieldmon.compute.wording import Worded, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
-from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
+from fieldmon.infestation.inspections import RESULT_CODES, Inspections
 from fieldmon.monitoring import (
     batches,
     inspection_lots,
@@ -39,7 +39,6 @@ _DONE = {
     "delete": worded("was deleted"),
     "insert": worded("was added"),
 }
-_CODES = {name: code for code, name in RESULT_NAMES.items()}
 #: columns that say what was seen
 SEEN = tuple(column.kept for column in COLUMNS)
 
@@ -304,7 +303,7 @@ def _inspection(row: tuple[object, ...]) -> Inspections:
     second = np.nan if said["time"] is None else inspection_lots.second_of(str(said["time"]))
     return Inspections.of(
         np.array([int(str(said["plant"]))]),
-        np.array([_CODES[str(said["result"])]]),
+        np.array([RESULT_CODES[str(said["result"])]]),
         np.datetime64(on, "D"),
         second=np.array([second]),
         **{

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.compute.ranges import DETECTS, MOST_COUNTED
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, ObservationError
-from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.infestation.inspections import RESULT_CODES
 from fieldmon.io.formats.signatures import HEAD_BYTES
 from fieldmon.io.import_report import Imported, ImportMessage, dropped
 from fieldmon.io.options import Source, Upload, source_name
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 #: as `unsent` of `app/scout_page/src/store.js` writes it
 KIND = "fieldmon findings"
-_CODES = {name: code for code, name in RESULT_NAMES.items()}
 #: how a phone names a finding or a photo
 ID = r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}"
 #: letters that a text of a finding may have, and the least and the most that a number may be
@@ -140,7 +139,7 @@ def fields_of(said: Mapping[str, Any]) -> dict[str, Any]:
         "id": said["id"],
         "at": moment(said["at"]),
         "plant": None if plant is None else int(plant),  # JSON's 3.0 is whole, too
-        "result": None if result is None else _CODES[result],
+        "result": None if result is None else RESULT_CODES[result],
         "count": said.get("count"),
         "stage": said.get("stage", ""),
         "leaves": said.get("leaves"),

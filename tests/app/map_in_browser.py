@@ -40,6 +40,12 @@ _BARE = """() => {
 }"""  # noqa: E501
 _DRESSED = """() => [document, ...[...document.querySelectorAll("*")].flatMap((one) => one.shadowRoot ?? [])]
   .forEach((root) => root.querySelector("style.bare")?.remove())"""  # noqa: E501
+# how far a map has come that is not drawn: its place, whether it was called, what it was to show
+_COME = """() => [...document.querySelectorAll(".stBidiComponent")].map((one) => {
+  const place = [...one.querySelectorAll("*")].map((each) => each.shadowRoot).find(Boolean);
+  const map = place?.mapPage, wanted = map?.data?.layers?.length;
+  return { place: Boolean(place), called: Boolean(place?.last), made: Boolean(map), turn: map?.turn, wanted };
+})"""  # noqa: E501
 _REST_MS = 180_000
 # maps ask for the next frame for as long as they are there, whether anything moves or not
 _ASLEEP = """() => {
@@ -69,7 +75,8 @@ def rest(page):
         page.wait_for_selector(DRAWN, timeout=240_000)  # compiled first
         page.wait_for_selector(IDLE, timeout=_REST_MS)
     except PlaywrightTimeout as late:
-        late.add_note(f"{page.url} says: {page.locator('body').inner_text()[:2000]}")
+        come = page.evaluate(_COME)
+        late.add_note(f"{page.url}: {come}: {page.locator('body').inner_text()[:2000]}")
         raise
 
 

@@ -10,6 +10,7 @@ from fieldmon.monitoring import photos_asked
 
 from ..show import plant_history
 from ..state import notices, wishes
+from ..state.folds import fold
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -30,7 +31,8 @@ def show(choices: Choices) -> None:
     asked = photos_asked.photos_asked(choices.season)
     if not plants and not asked:
         return
-    with st.expander(texts.ASK_PHOTOS.format(n=len(asked)), expanded=bool(plants)):
+    label = texts.ASK_PHOTOS.format(n=len(asked))
+    with fold(label, f"ask photos {choices.place}", is_open=bool(plants)):
         if plants:
             _show_asking(choices, plants)
         for one in asked[: -_MOST - 1 : -1]:

@@ -13,6 +13,7 @@ from fieldmon.io.readers.pest_file import shipped_pest
 from ..show import pest_figures
 from ..state import chosen_pest, notices, widget_memory
 from ..state.brought_files import brought
+from ..state.folds import fold
 from ..words import texts
 from . import bringing_files
 
@@ -26,7 +27,8 @@ def show(choices: Choices) -> None:
     """Show the pest and the weather; in a season, with a button that lets it take them."""
     season = choices.season
     kept = None if season is None else season.settings.pest
-    with st.expander(texts.PEST_AND_WEATHER, expanded=bool(widget_memory.value(chosen_pest.WHICH))):
+    is_chosen = bool(widget_memory.value(chosen_pest.WHICH))
+    with fold(texts.PEST_AND_WEATHER, chosen_pest.WHICH, is_open=is_chosen):
         st.caption(texts.PEST_NOTE)
         if season is not None:
             _say_kept(choices)

@@ -17,6 +17,7 @@ from ..show.map_view import Drawable, MapAnswers, MapContent
 from ..show.maps import colours, deck, legends, marks, plant_layers
 from ..state import cached, notices, rooms, row_settings, widget_memory
 from ..state.chosen_units import units
+from ..state.folds import fold
 from ..state.plot_edits import CUT, GATE, NO_GO, PATH, ROW, Edit, points_of
 from ..state.plot_files import draw, drawn, laid, laying
 from ..words import texts
@@ -118,7 +119,8 @@ def blocks(choices: Choices) -> None:
 def tools(choices: Choices) -> None:
     """Show what can be drawn, and undo."""
     drawing_plot.offer_again()
-    with st.expander(texts.DRAW, expanded=bool(_kind() or drawn(choices.plot_key))):
+    is_drawing = bool(_kind() or drawn(choices.plot_key))
+    with fold(texts.DRAW, f"draw {choices.plot_key}", is_open=is_drawing):
         st.caption(texts.DRAW_NOTE)
         kinds = [kind for kind in texts.DRAW_KINDS if kind != ROW or bending.can_bend(choices)]
         st.selectbox(texts.DRAW_KIND, kinds, key="draw_kind", filter_mode=None,

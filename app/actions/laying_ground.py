@@ -10,6 +10,7 @@ from fieldmon.errors import FieldmonError
 
 from ..state import ground, web_maps, widget_memory
 from ..state.brought_files import brought
+from ..state.folds import fold
 from ..state.kept_ground import Agreement, GroundPicture
 from ..words import texts
 from ..words.language import in_words, of_error
@@ -32,7 +33,7 @@ def show(choices: Choices) -> None:
     """Show the box for a file, and the maps that can be agreed to."""
     made, agreed = ground.of(choices), ground.agreement(choices.season)
     is_open = made is not None or agreed is not None or ground.GROUND in brought()
-    with st.expander(texts.GROUND, expanded=is_open):
+    with fold(texts.GROUND, f"ground {choices.plot_key}", is_open=is_open):
         st.caption(texts.GROUND_NOTE)
         _file(choices, made)
         web_map(choices.season, choices.today or choices.on, choices.units)

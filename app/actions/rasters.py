@@ -8,6 +8,7 @@ from fieldmon.infestation.raster_risk import RELATIVE
 
 from ..state import rasters, widget_memory
 from ..state.brought_files import brought
+from ..state.folds import fold
 from ..words import texts
 from . import bringing_files
 
@@ -20,7 +21,7 @@ def show() -> None:
 
 def show_missing() -> None:
     """Show the box for a raster of missing plants, and below which value no plant is there."""
-    with st.expander(texts.MISSING, expanded=rasters.MISSING in brought()):
+    with fold(texts.MISSING, rasters.MISSING, is_open=rasters.MISSING in brought()):
         st.caption(texts.MISSING_NOTE)
         bringing_files.show_raster(texts.MISSING_FILE, rasters.MISSING)
         widget_memory.show(st.number_input, texts.MISSING_BELOW, -1000.0, 100_000.0, step=0.1,
@@ -30,7 +31,7 @@ def show_missing() -> None:
 
 def show_risk() -> None:
     """Show the box for a raster of risk, and what its numbers mean."""
-    with st.expander(texts.RISK, expanded=rasters.RISK in brought()):
+    with fold(texts.RISK, rasters.RISK, is_open=rasters.RISK in brought()):
         st.caption(texts.RISK_NOTE)
         bringing_files.show_raster(texts.RISK_FILE, rasters.RISK)
         widget_memory.show(st.selectbox, texts.RISK_MEANS, [None, *texts.RISK_MEANINGS],

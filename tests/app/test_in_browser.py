@@ -329,7 +329,10 @@ def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_tha
     zoomed(page)
     assert len(asked) == n, "what is switched off is not asked for"
     page.get_by_role("button", name=re.compile("^Stop asking")).click()
-    agree.or_(page.get_by_role("combobox", name=texts.WEB_MAP)).first.wait_for(timeout=180_000)
+    again = agree.or_(page.get_by_role("combobox", name=texts.WEB_MAP)).first
+    again.wait_for(timeout=180_000)
+    still(page)
+    assert again.is_visible(), "the box is not folded under the hand"
     page.reload()
     rest(page)
     still(page)

@@ -74,6 +74,8 @@ def test_a_map_from_the_internet_is_asked_for_once_a_season_and_shown_only_when_
     go(other, "plot")
     tap(other, "web_map_back")
     assert "ground-map" not in ids(other)
+    (box,) = [one for one in other.expander if one.label == texts.GROUND]
+    assert box.proto.expanded, "it is not folded under the hand"
 
 
 def test_an_agreement_of_a_season_is_none_of_another_plot_s(other):

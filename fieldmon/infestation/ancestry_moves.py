@@ -13,7 +13,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import part
-from fieldmon.infestation.cell_squares import NOBODY, Squares, gather, leave, stand
+from fieldmon.infestation.cell_squares import (
+    AFTER,
+    CELL,
+    NOBODY,
+    SINCE,
+    UNTIL,
+    Squares,
+    by_cells_apart,
+    leave,
+    stand,
+    within,
+)
 from fieldmon.infestation.cells import cell_of, in_one_cell
 
 if TYPE_CHECKING:
@@ -127,10 +138,12 @@ class Worked(NamedTuple):
 
     Parameters
     ----------
+    kernel
+        The weights' by how far apart two cells are by their numbers, see `by_cells_apart`.
     by_parent, by_none
         What explains an infestation, as running sums over mornings: by a parent, and by none.
-    so_far
-        The same as a running sum over parents: those of ``squares.near``.
+    near, so_far
+        Its possible parents, and the same as a running sum over them.
     squares
         Where infestations stand.
     removable, rank
@@ -149,8 +162,10 @@ class Worked(NamedTuple):
         ``(3,)`` how many are removable, were near, and are open.
     """
 
+    kernel: Floats
     by_parent: Floats
     by_none: Floats
+    near: Ints
     so_far: Floats
     squares: Squares
     removable: Ints
@@ -171,9 +186,11 @@ _REMOVABLE, _NEAR, OPEN = range(3)
 def begin(infestations: Infestations, weights: Weights, worked: Worked) -> int:
     """Note where infestations stand and what may change; return how many were not found."""
     hidden = 0
+    by_cells_apart(worked.squares, weights.kernel, worked.kernel)
     for i in range(infestations.plant.size):
         if infestations.there[i]:
             stand(worked.squares, weights.cells, infestations.plant[i], i)
+            _date(infestations, i, infestations.begins[i], weights, worked)
             _note_removable(infestations, i, worked)
             if infestations.parent[i] != NOBODY:
                 _join(worked, infestations.parent[i], i)
@@ -209,13 +226,13 @@ def move(infestations: Infestations, i: int, weights: Weights, worked: Worked) -
         return
     when = (infestations.plant[i], earliest, latest, _row(infestations, i, weights))
     parent, alone = infestations.parent[i], _only_child(infestations, i)
-    total = _weigh(infestations, when, (i, NOBODY), weights, worked)
+    total = _weigh(when, (i, NOBODY), weights, worked)
     if alone:
-        infestations.begins[i] = _when_by(infestations, parent, when, weights, worked)
-        return
-    other, begins = _draw_origin(infestations, total, when, weights, worked)
-    _hang(infestations, i, other, worked)
-    infestations.begins[i] = begins
+        begins = _when_by(infestations, parent, when, weights, worked)
+    else:
+        other, begins = _draw_origin(infestations, total, when, weights, worked)
+        _hang(infestations, i, other, worked)
+    _date(infestations, i, begins, weights, worked)
 
 
 @part
@@ -243,7 +260,7 @@ def put_in(
     last = weights.roots.shape[1] - 1
     now = _explained(infestations, i, NOBODY, weights, worked)
     when = (plant, earliest, latest, plant)
-    total = _weigh(infestations, when, (i, NOBODY), weights, worked)
+    total = _weigh(when, (i, NOBODY), weights, worked)
     other, since = _draw_origin(infestations, total, when, weights, worked)
     removable = worked.many[_REMOVABLE] + 1
     if other != parent:
@@ -259,12 +276,13 @@ def put_in(
     place = _free(infestations)
     if place < 0:
         return
-    infestations.plant[place], infestations.begins[place] = plant, since
+    infestations.plant[place] = plant
     infestations.ends[place] = infestations.seen[place] = last
     infestations.earliest[place] = earliest
     infestations.found[place], infestations.there[place] = False, True
     infestations.parent[place], infestations.children[place] = NOBODY, 0
     stand(worked.squares, weights.cells, plant, place)
+    _date(infestations, place, since, weights, worked)
     at[plant] = place
     _hang(infestations, place, other, worked)
     _hang(infestations, i, place, worked)
@@ -288,14 +306,14 @@ def take_out(
     begins, plant = infestations.begins[child], infestations.plant[place]
     latest = int(weights.grown_by[begins - 1])
     when = (plant, infestations.earliest[place], latest, plant)
-    total = _weigh(infestations, when, (place, child), weights, worked)
+    total = _weigh(when, (place, child), weights, worked)
     now = _explained(infestations, child, place, weights, worked)
     many = in_one_cell(weights.cells, plant)
     loss = weights.sends[begins - 1] * many * total * worked.many[OPEN] * takes
     if np.random.random() * loss >= now * removable:  # noqa: NPY002
         return
     when = (infestations.plant[child], begins, begins, _row(infestations, child, weights))
-    total = _weigh(infestations, when, (child, place), weights, worked)
+    total = _weigh(when, (child, place), weights, worked)
     other, _ = _draw_origin(infestations, total, when, weights, worked)
     _hang(infestations, child, other, worked)
     _hang(infestations, place, NOBODY, worked)
@@ -342,7 +360,7 @@ def try_others(
         if likely == 0.0:
             continue
         when = (plant, max(0, last_find[plant] + 1), latest, plant)
-        total = _weigh(infestations, when, (i, NOBODY), weights, worked)
+        total = _weigh(when, (i, NOBODY), weights, worked)
         worked.likely[k] = likely * (_of_parent(parent, worked) if alone else total)
         sum_of += worked.likely[k]
     return sum_of
@@ -368,7 +386,7 @@ def go_to_one(
     plant, parent = worked.tried[k], infestations.parent[i]
     latest = _children(infestations, i, weights, worked)
     when = (plant, max(0, last_find[plant] + 1), latest, plant)
-    total = _weigh(infestations, when, (i, NOBODY), weights, worked)
+    total = _weigh(when, (i, NOBODY), weights, worked)
     if _only_child(infestations, i):
         begins = _when_by(infestations, parent, when, weights, worked)
     else:
@@ -376,15 +394,14 @@ def go_to_one(
     at[infestations.plant[i]] = NOBODY
     at[plant] = i
     infestations.plant[i], infestations.earliest[i] = plant, when[1]
-    infestations.begins[i] = begins
     leave(worked.squares, i)
     stand(worked.squares, weights.cells, plant, i)
+    _date(infestations, i, begins, weights, worked)
     _hang(infestations, i, parent, worked)
 
 
 @part
 def _weigh(
-    infestations: Infestations,
     when: tuple[int, int, int, int],
     without: tuple[int, int],
     weights: Weights,
@@ -396,27 +413,32 @@ def _weigh(
     `Weights.lasting`; `without` are two infestations from which it does not come.
     """
     plant, earliest, latest, row = when
-    worked.by_parent[0] = worked.by_none[0] = 0.0
-    for k in range(latest - earliest + 1):
-        begins = earliest + k
+    by_parent, by_none, places = worked.by_parent, worked.by_none, worked.squares.places
+    by_parent[: earliest + 1] = by_none[: earliest + 1] = 0.0
+    for begins in range(earliest, latest + 1):
         lasts = weights.lasting[row, begins]
         sends = weights.sends[begins - 1] if begins > 0 else 0.0
-        worked.by_parent[k + 1] = worked.by_parent[k] + lasts * sends
-        worked.by_none[k + 1] = worked.by_none[k] + lasts * weights.roots[plant, begins]
-    half, y, x = weights.kernel.shape[0] // 2, *cell_of(weights.cells, plant)
-    squares, total = worked.squares, 0.0
-    near = gather(squares, y, x, half)
-    for k in range(near):
-        j = squares.near[k]
-        first = max(weights.grown[infestations.begins[j]] + 1, earliest)
-        last = min(infestations.ends[j], latest)
-        if last >= first and j != without[0] and j != without[1]:
-            times = worked.by_parent[last - earliest + 1] - worked.by_parent[first - earliest]
-            across, along = y - squares.across[j] + half, x - squares.along[j] + half
-            total += times * weights.kernel[across, along]
-        worked.so_far[k] = total
+        by_parent[begins + 1] = by_parent[begins] + lasts * sends
+        by_none[begins + 1] = by_none[begins] + lasts * weights.roots[plant, begins]
+    by_parent[latest + 2 :] = by_parent[latest + 1]
+    y, x = cell_of(weights.cells, plant)
+    middle = y * worked.squares.width + x + worked.kernel.size // 2
+    total, near = 0.0, 0
+    begin_y, end_y, begin_x, end_x = within(worked.squares, y, x, weights.kernel.shape[0] // 2)
+    for square_y in range(begin_y, end_y):
+        for square_x in range(begin_x, end_x):
+            j = worked.squares.first[square_y, square_x]
+            while j != NOBODY:
+                times = by_parent[places[j, UNTIL]] - by_parent[places[j, SINCE]]
+                if j == without[0] or j == without[1]:
+                    times = 0.0
+                weight = max(times, 0.0) * worked.kernel[middle - places[j, CELL]]
+                total += weight
+                worked.near[near], worked.so_far[near] = j, total
+                near += 1 if weight > 0.0 else 0
+                j = places[j, AFTER]
     worked.many[_NEAR] = near
-    return float(total + worked.by_none[latest - earliest + 1])
+    return float(total + by_none[latest + 1])
 
 
 @part
@@ -424,7 +446,7 @@ def _of_parent(parent: int, worked: Worked) -> float:
     """Return how much of what was weighed is due to one parent."""
     of = before = 0.0
     for k in range(worked.many[_NEAR]):
-        if worked.squares.near[k] == parent:
+        if worked.near[k] == parent:
             of = worked.so_far[k] - before
             break
         before = worked.so_far[k]
@@ -440,19 +462,19 @@ def _draw_origin(
     worked: Worked,
 ) -> tuple[int, int]:
     """Return a parent and a beginning, drawn from what was weighed."""
-    _, earliest, latest, _ = when
+    earliest, latest = when[1:3]
     u, near = np.random.random() * total, worked.many[_NEAR]  # noqa: NPY002
     if near > 0 and u < worked.so_far[near - 1]:
         k = 0
         while worked.so_far[k] <= u:
             k += 1
-        parent = int(worked.squares.near[k])
+        parent = int(worked.near[k])
         return parent, _when_by(infestations, parent, when, weights, worked)
-    u = np.random.random() * worked.by_none[latest - earliest + 1]  # noqa: NPY002
-    k = 0
-    while earliest + k < latest and worked.by_none[k + 1] <= u:
-        k += 1
-    return NOBODY, earliest + k
+    u = np.random.random() * worked.by_none[latest + 1]  # noqa: NPY002
+    begins = earliest
+    while begins < latest and worked.by_none[begins + 1] <= u:
+        begins += 1
+    return NOBODY, begins
 
 
 @part
@@ -467,12 +489,22 @@ def _when_by(
     _, earliest, latest, _ = when
     first = max(weights.grown[infestations.begins[parent]] + 1, earliest)
     last = min(infestations.ends[parent], latest)
-    low, high = worked.by_parent[first - earliest], worked.by_parent[last - earliest + 1]
+    low, high = worked.by_parent[first], worked.by_parent[last + 1]
     u = low + np.random.random() * (high - low)  # noqa: NPY002
     begins = first
-    while begins < last and worked.by_parent[begins - earliest + 1] <= u:
+    while begins < last and worked.by_parent[begins + 1] <= u:
         begins += 1
     return int(begins)
+
+
+@part
+def _date(
+    infestations: Infestations, i: int, begins: int, weights: Weights, worked: Worked
+) -> None:
+    """Let an infestation begin on a morning."""
+    infestations.begins[i] = begins
+    places = worked.squares.places
+    places[i, SINCE], places[i, UNTIL] = weights.grown[begins] + 1, infestations.ends[i] + 1
 
 
 @part
@@ -482,7 +514,7 @@ def _explained(
     """Return how well an infestation that begins when it does is explained by all others."""
     begins, row = infestations.begins[i], _row(infestations, i, weights)
     when = (infestations.plant[i], begins, begins, row)
-    total = _weigh(infestations, when, (i, without), weights, worked)
+    total = _weigh(when, (i, without), weights, worked)
     return float(total / weights.lasting[row, begins])
 
 

@@ -124,9 +124,10 @@ def draw_ancestries(
     seed, sweeps, left_out = draws
     np.random.seed(seed)  # noqa: NPY002 - a compiled loop has no other
     mornings, places = weights.roots.shape[1], infestations.plant.size
-    squares = empty_squares(weights.cells, places)
+    squares = empty_squares(weights.cells, places, weights.kernel.shape[0] // 2)
     worked = Worked(
-        np.empty(mornings + 1), np.empty(mornings + 1), np.empty(places), squares,
+        np.zeros(squares.width**2), np.zeros(mornings + 1), np.zeros(mornings + 1),
+        np.zeros(places, np.int64), np.empty(places), squares,
         np.zeros(places, np.int64), np.full(places, -1), np.zeros(places, np.int64),
         np.zeros(TRIED, np.int64), np.zeros(TRIED), np.zeros(places, np.int64),
         np.full(places, NOBODY), np.full((2, places), NOBODY), np.zeros(3, np.int64),

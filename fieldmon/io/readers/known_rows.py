@@ -11,7 +11,7 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Severity, WrongRows, doubtful, seen
 from fieldmon.io.parse.columns import plain
-from fieldmon.io.parse.lengths import UNITS_M, metres
+from fieldmon.io.parse.lengths import UNITS_M, metres, unit_m, units_said
 from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.plot.planting import PLANTED
 
@@ -105,10 +105,10 @@ def _column(
 
 def _name_and_unit(column: str) -> tuple[str, float | None]:
     """Return a column's plain name, and the metres of the unit behind it; None: it is no length."""
-    bracket = re.search(r"[(\[]([^)\]]*)[)\]]\s*$", column)
-    if bracket:
-        unit = bracket[1].strip().casefold().rstrip(".")
-        return plain(column), 1.0 if unit in _NO_UNITS else UNITS_M.get(unit)
+    in_brackets = units_said(column)
+    if in_brackets and column.rstrip().endswith((")", "]")):
+        unit = in_brackets[-1]
+        return plain(column), 1.0 if unit in _NO_UNITS else unit_m(unit)
     stem, _, unit = column.casefold().replace(" ", "_").rpartition("_")
     if stem and unit in UNITS_M and unit != "m":
         return plain(stem), UNITS_M[unit]

@@ -97,9 +97,9 @@ def _column(
     """Return the column that has one of the known names, and how many metres its unit is."""
     read = [(*_name_and_unit(column), column) for column in columns]
     for name in map(plain, known):
-        for own, unit_m, column in read:
-            if name == own and (unit_m is not None or not in_metres):
-                return column, unit_m or 1.0
+        for own, metres_each, column in read:
+            if name == own and (metres_each is not None or not in_metres):
+                return column, metres_each or 1.0
     return None
 
 

@@ -506,7 +506,7 @@ def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None
 def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before: int = 0) -> None:
     """Say what a day came to, and write its tables; `before` were inspected in an earlier run."""
     from fieldmon.compute.wording import counted
-    from fieldmon.drive.account import day_table, in_words, stop_table, stops_path
+    from fieldmon.drive.day_tables import day_table, in_words, stop_table, stops_path
 
     who = f"{name}, {on}" if options.serial == name else f"{on}"
     typer.echo(f"{who}: {in_words(driven)}")
@@ -526,7 +526,7 @@ def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before
 
 def _refuse_written_over(season: Season | None, outputs: Iterable[Path | None]) -> None:
     """Refuse tables that cannot be written, or would replace what somebody filled in."""
-    from fieldmon.drive.account import is_driven_table, stops_path
+    from fieldmon.drive.day_tables import is_driven_table, stops_path
     from fieldmon.io.atomic_write import require_place
 
     files = [file for path in outputs if path is not None for file in (path, stops_path(path))]

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.unwatched import Since
+    from fieldmon.infestation.uninspected_days import Since
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.spread import Spread
     from fieldmon.infestation.tracing import Traces
-    from fieldmon.infestation.unwatched import Since
+    from fieldmon.infestation.uninspected_days import Since
     from fieldmon.pests.pest import Pest
 
 

@@ -19,8 +19,8 @@ from fieldmon.monitoring import (
     batches,
     inspection_lots,
     inspection_table,
-    replaced,
-    said_beside,
+    repeated_recordings,
+    rows_that_count,
     season_log,
     treatments,
 )
@@ -210,15 +210,15 @@ def correct(
 
 def is_kept(change: OutsideChange) -> bool:
     """Tell whether it is known what stood there before, and that it was recorded."""
-    return bool(change.before) and replaced.as_it_was(change.before)["digest"] is not None
+    return bool(change.before) and rows_that_count.as_it_was(change.before)["digest"] is not None
 
 
 def keep_before(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> None:
     """Keep what stood there before a change, until the correction is taken back."""
-    before = replaced.as_it_was(change.before)
+    before = rows_that_count.as_it_was(change.before)
     (before["geom"],) = point_blobs(grid.lonlat(np.array([before["plant"]])))
-    if before["undone"] == replaced.COUNTS:
-        before["undone"] = replaced.STANDS_BACK
+    if before["undone"] == rows_that_count.COUNTS:
+        before["undone"] = rows_that_count.STANDS_BACK
     # what was deleted leaves its number free
     before["fid"] = change.row if change.what == "delete" else None
     names = ("fid", *INSPECTIONS.names)
@@ -237,7 +237,7 @@ def in_words(db: sqlite3.Connection, change: OutsideChange) -> str:
     says, *values = row.fetchone()
     if change.what == "insert":
         return f"{says} was added"
-    before = replaced.as_it_was(change.before) if change.before else {}
+    before = rows_that_count.as_it_was(change.before) if change.before else {}
     parts = [
         f"{name} {value:g}" if isinstance(value, float) else f"{name} {value or 'none'}"
         for name, value in zip(SEEN, values, strict=True)
@@ -272,9 +272,9 @@ def take_row(
         ) from error
     values = dict(zip(INSPECTIONS.names, made, strict=True))
     del values["undone"]
-    was = replaced.as_it_was(change.before)["digest"] if change.before else None
+    was = rows_that_count.as_it_was(change.before)["digest"] if change.before else None
     if was != values["digest"]:  # others stay with what it was: what they say goes along
-        values |= said_beside.with_others(db, was, values)
+        values |= repeated_recordings.with_others(db, was, values)
     twice = db.execute(
         "SELECT fid FROM inspections WHERE digest = ? AND undone = 0 AND fid <> ?",
         (values["digest"], change.row),

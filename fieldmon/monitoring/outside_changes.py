@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from datetime import date
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -254,6 +254,27 @@ def take_row(
     batch: int,
 ) -> str:
     """Make one row of inspections what it says now, in every column; return its digest."""
+    values = _made_anew(db, change, plot, settings, batch)
+    was = rows_that_count.as_it_was(change.before)["digest"] if change.before else None
+    if was != values["digest"]:  # others stay with what it was: what they say goes along
+        values |= repeated_recordings.with_others(db, was, values)
+    _refuse_twice(db, change, values["digest"])
+    names = ", ".join(f"{name} = ?" for name in values)
+    db.execute(
+        f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours
+        (*values.values(), change.row),
+    )
+    return str(values["digest"])
+
+
+def _made_anew(
+    db: sqlite3.Connection,
+    change: OutsideChange,
+    plot: tuple[PlantGrid, RowLabel],
+    settings: MonitoringSettings,
+    batch: int,
+) -> dict[str, Any]:
+    """Return what every column of a row must say by what those say now that people fill in."""
     row = db.execute(
         f"SELECT {', '.join(SEEN)} FROM inspections WHERE fid = ?",  # noqa: S608 - names of ours
         (change.row,),
@@ -272,12 +293,14 @@ def take_row(
         ) from error
     values = dict(zip(INSPECTIONS.names, made, strict=True))
     del values["undone"]
-    was = rows_that_count.as_it_was(change.before)["digest"] if change.before else None
-    if was != values["digest"]:  # others stay with what it was: what they say goes along
-        values |= repeated_recordings.with_others(db, was, values)
+    return values
+
+
+def _refuse_twice(db: sqlite3.Connection, change: OutsideChange, mark: object) -> None:
+    """Refuse a row that says now what another one that counts says."""
     twice = db.execute(
         "SELECT fid FROM inspections WHERE digest = ? AND undone = 0 AND fid <> ?",
-        (values["digest"], change.row),
+        (mark, change.row),
     ).fetchone()
     if twice is not None:
         raise FileProblem(
@@ -288,12 +311,6 @@ def take_row(
                 twice=twice[0],
             )
         )
-    names = ", ".join(f"{name} = ?" for name in values)
-    db.execute(
-        f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours
-        (*values.values(), change.row),
-    )
-    return str(values["digest"])
 
 
 def _inspection(row: tuple[object, ...]) -> Inspections:

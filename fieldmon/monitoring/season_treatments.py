@@ -92,18 +92,7 @@ class SeasonTreatments(OpenSeason):
             If no plant was treated, or nothing tells how well it works.
         """
         said = Application(product) if application is None else application
-        if area is not None and plants is not None:
-            raise SettingError(
-                worded("A treatment is of an area or of plants, but both were given.")
-            )
-        place = self._treated(area) if plants is None else self._treated_one_by_one(plants)
-        if not place.plants.any():
-            raise SettingError(
-                worded(
-                    "The area treated must hold plants of this plot, but it holds none. Check its "
-                    "coordinates."
-                )
-            )
+        place = self._place(area, plants)
         works = self._efficacy(said.product) if efficacy is None else efficacy
         with self._writing() as db:
             before = self._read(db)
@@ -128,6 +117,24 @@ class SeasonTreatments(OpenSeason):
                 )  # fmt: skip
                 self._refresh(db, day, before)
         return Recorded(batch if new else None, new, 1 - new)
+
+    def _place(
+        self, area: MultiPolygon | None, plants: NDArray[np.generic] | Sequence[Any] | None
+    ) -> TreatedPlace:
+        """Return the place of a treatment, or raise `SettingError`."""
+        if area is not None and plants is not None:
+            raise SettingError(
+                worded("A treatment is of an area or of plants, but both were given.")
+            )
+        place = self._treated(area) if plants is None else self._treated_one_by_one(plants)
+        if not place.plants.any():
+            raise SettingError(
+                worded(
+                    "The area treated must hold plants of this plot, but it holds none. Check its "
+                    "coordinates."
+                )
+            )
+        return place
 
     def _treated(self, area: MultiPolygon | None) -> TreatedPlace:
         ground = self.plot.field.boundary if area is None else area

@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from fieldmon.compute.arguments import array_of
+from fieldmon.compute.arguments import plants_marked
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.decisions.labels import SAID_BY_HAND, label_for, plain_name, with_wait
@@ -40,6 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from datetime import date
 
+    import numpy as np
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
@@ -148,21 +147,15 @@ class SeasonTreatments(OpenSeason):
 
     def _each_plant(self, given: object) -> NDArray[np.bool_]:
         """Return a caller's mask of plants, or raise `SettingError`."""
-        grid = self.plot.grid
-        plants = array_of(
-            np.bool_, "The mask of treated plants", given,
-            f"Of plants by their numbers give np.isin(np.arange({len(grid)}), numbers).",
+        n = len(self.plot.grid)
+        return plants_marked(
+            "The mask of treated plants", given, n,
+            lambda size: worded(
+                "Whether it was treated must be said of each of the {n} plants, but it is of "
+                "{size}.",
+                n=n, size=size,
+            ),
         )  # fmt: skip
-        if plants.shape != (len(grid),):
-            raise SettingError(
-                worded(
-                    "Whether it was treated must be said of each of the {n} plants, but it is of "
-                    "{size}.",
-                    n=len(grid),
-                    size=plants.size,
-                )
-            )
-        return np.asarray(plants, bool)
 
     def _efficacy(self, product: str) -> float:
         """Return how well a product works, as the season learnt it."""

@@ -43,9 +43,13 @@ def metres(cells: NDArray[np.object_], unit_m: float = 1.0) -> Float:
     return _measured(cells, None, unit_m)
 
 
-def units_said(name: str) -> list[str]:
-    """Return what a column's name has in brackets, in their order, as `UNITS_M` writes units."""
-    return [_unit(each) for each in _BRACKETS.findall(name)]
+def units_said(name: str, *, at_end: bool = False) -> list[str]:
+    """Return what a column's name has in brackets, in their order, as `UNITS_M` writes units.
+
+    Only what is in brackets `at_end` of it, if that is asked for.
+    """
+    found = _BRACKETS.finditer(name)
+    return [_unit(one[1]) for one in found if not (at_end and name[one.end() :].strip())]
 
 
 def unit_m(said: str) -> float | None:

@@ -105,10 +105,9 @@ def _column(
 
 def _name_and_unit(column: str) -> tuple[str, float | None]:
     """Return a column's plain name, and the metres of the unit behind it; None: it is no length."""
-    in_brackets = units_said(column)
-    if in_brackets and column.rstrip().endswith((")", "]")):
-        unit = in_brackets[-1]
-        return plain(column), 1.0 if unit in _NO_UNITS else unit_m(unit)
+    if in_brackets := units_said(column, at_end=True):
+        (said,) = in_brackets
+        return plain(column), 1.0 if said in _NO_UNITS else unit_m(said)
     stem, _, unit = column.casefold().replace(" ", "_").rpartition("_")
     if stem and unit in UNITS_M and unit != "m":
         return plain(stem), UNITS_M[unit]

@@ -40,6 +40,8 @@ def test_a_column_may_say_the_unit_of_plain_numbers():
 )
 def test_what_a_column_has_in_brackets_is_read_as_units_are_written(name, units):
     assert units_said(name) == units
+    assert units_said(name, at_end=True) == units[-1:]
+    assert units_said(f"{name} of it", at_end=True) == []
 
 
 def test_a_unit_is_known_however_it_is_written_and_none_is_none():

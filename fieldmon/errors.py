@@ -127,7 +127,24 @@ class ObservationError(FieldmonError):
 
 
 class ContradictionError(ObservationError):
-    """Results contradict what is recorded of the same day: confirm them, or leave them out."""
+    """Results contradict what is recorded of the same day: confirm them, or leave them out.
+
+    `Season.contradictions` tells which; ``record(..., confirmed=True)`` lets both count, and
+    `Season.record_instead` those that come last.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
+    >>> season = fm.Season.create("of_contradictions.gpkg", plot, begins="2026-11-18")
+    >>> _ = season.record(fm.Inspections.of([7], [0], "2026-11-18"))
+    >>> found = fm.Inspections.of([7], [1], "2026-11-18")
+    >>> try:
+    ...     season.record(found)
+    ... except fm.ContradictionError:
+    ...     print(season.record_instead(found).corrected)
+    1
+    """
 
 
 class AccessError(FieldmonError):

@@ -37,9 +37,7 @@ FUNCTIONS = {
     "routes.best": fm.routes.best,
     "routes.bound": fm.routes.bound,
 }
-#: whose contradiction takes a season that was recorded, see tests/monitoring
-CLASSES = [name for name in fm.__all__ if inspect.isclass(getattr(fm, name))
-           and name != "ContradictionError"]  # fmt: skip
+CLASSES = [name for name in fm.__all__ if inspect.isclass(getattr(fm, name))]
 
 
 @pytest.fixture

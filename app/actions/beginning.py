@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 #: the box for what happens with a find
 _FINDS = "begin_finds"
 _FROM = "season begun from"
-# of one plot in one year
-_MOST_NAMED = 100
 
 
 def show(choices: Choices) -> None:
@@ -106,9 +104,9 @@ def _proposed(choices: Choices) -> str:
     name = f"{choices.plot.field.name} {choices.on.year}"
     if choices.season is not None:
         return name
-    names = (name, *(f"{name} ({n})" for n in range(2, _MOST_NAMED)))
     with suppress(SettingError):  # a name that no file can have is refused when it is used
-        return next((one for one in names if not seasons_folder.path_of(one).exists()), name)
+        seasons_folder.path_of(name)
+        return seasons_folder.path_of(seasons_folder.free_name(name)).stem
     return name
 
 

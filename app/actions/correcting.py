@@ -54,7 +54,6 @@ def _said(choices: Choices, one: NumberedInspection) -> str:
     """Return an inspection in words, and whose it is."""
     result = texts.HISTORY_RESULTS[one.result]
     line = plant_history.line_of(choices, one.on, one.second, result)
-    line = line.removeprefix("- ").replace("**", "")  # a list of a box has no marks
     return f"{line} · {texts.isolated(one.who)}" if one.who else line
 
 

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.scouts import Scout
     from fieldmon.planning.route import Route
+    from fieldmon.plot.robot import Robot
 
 # seven digits of a degree are a centimetre
 _DIGITS = 7
@@ -94,7 +95,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
     ahead = DayAhead.of(season, on)
     settings, plan, member = ahead.settings, ahead.plan_of(part), ahead.member(part)
     last_heard.note(season.path, scout.name, on, plan if has is None else has)
-    robot = season.plot.aisles.worked_by(settings.robot if member is None else member.robot)
+    robot = settings.robot if member is None else member.robot
     hours = work_hours(season, on, part)
     known = shown_states(history, settings.day(on))
     return {
@@ -106,13 +107,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "live": on == _today(season),
         "past": on < _today(season),
         "starts": f"{settings.starts:%H:%M}",
-        "robot": {
-            "hours": robot.hours,
-            "speed_m_s": robot.speed_m_s,
-            "row_change_s": robot.row_change_s,
-            "visit_s": robot.visit_s,
-            "returns": robot.returns,
-        },
+        "robot": _charged(season.plot.aisles.worked_by(robot)),
         "begins": _moment(season, on, hours.begins_s),
         "begun": hours.run,
         "seconds_left": hours.left_s,
@@ -134,6 +129,17 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "photos_asked": [one._asdict() for one in ahead.asked_of(part)],
         "closed": _closed(season, ahead, on, part),
         "left_out": _left_out(season, ahead, (on, part), route),
+    }
+
+
+def _charged(robot: Robot) -> dict[str, Any]:
+    """Return the hours of whoever inspects, and what its times are charged by."""
+    return {
+        "hours": robot.hours,
+        "speed_m_s": robot.speed_m_s,
+        "row_change_s": robot.row_change_s,
+        "visit_s": robot.visit_s,
+        "returns": robot.returns,
     }
 
 

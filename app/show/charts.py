@@ -299,14 +299,7 @@ def still_out(
             "high": [s.high for s in days],
         }
     )
-    base = alt.Chart(table).encode(
-        x=_days([named(on) for on in _dates(days)], axes[0]),
-        tooltip=[
-            alt.Tooltip("day", title=axes[0]),
-            alt.Tooltip("expected:Q", title=axes[1], format=".1f"),
-            alt.Tooltip("low", title=texts.LEAST), alt.Tooltip("high", title=texts.MOST),
-        ],
-    )  # fmt: skip
+    base = _expected(table, [named(on) for on in _dates(days)], axes, ".1f")
     # an edge, since the pale bar alone is next to nothing on a dark page
     band = base.mark_bar(
         fillOpacity=0.3, color=_COLOURS[0], stroke=_COLOURS[0], strokeWidth=1, width=10
@@ -315,6 +308,18 @@ def still_out(
         y=alt.Y("expected:Q", title=axes[1])
     )
     return alt.LayerChart(layer=[band, line]).properties(height=220)
+
+
+def _expected(table: pd.DataFrame, days: list[str], axes: tuple[str, str], shown: str) -> alt.Chart:
+    """Return a chart by days of how many are expected, which says them and their interval."""
+    return alt.Chart(table).encode(
+        x=_days(days, axes[0]),
+        tooltip=[
+            alt.Tooltip("day", title=axes[0]),
+            alt.Tooltip("expected:Q", title=axes[1], format=shown),
+            alt.Tooltip("low", title=texts.LEAST), alt.Tooltip("high", title=texts.MOST),
+        ],
+    )  # fmt: skip
 
 
 @_in_language
@@ -382,14 +387,7 @@ def ahead(
     table = pd.DataFrame(
         {"day": dates, "expected": forecast.expected, "low": forecast.low, "high": forecast.high}
     )
-    base = alt.Chart(table).encode(
-        x=_days(dates, axes[0]),
-        tooltip=[
-            alt.Tooltip("day", title=axes[0]),
-            alt.Tooltip("expected:Q", title=axes[1], format=".0f"),
-            alt.Tooltip("low", title=texts.LEAST), alt.Tooltip("high", title=texts.MOST),
-        ],
-    )  # fmt: skip
+    base = _expected(table, dates, axes, ".0f")
     band = base.mark_area(opacity=0.25, color=_COLOURS[1]).encode(y="low:Q", y2="high:Q")
     line = base.mark_line(color=_COLOURS[1], strokeWidth=2.5).encode(
         y=alt.Y("expected:Q", title=axes[1])

@@ -216,7 +216,7 @@ def _inspected(choices: Choices, done: Inspections, gone: NDArray[np.bool_]) -> 
         if not np.isnan(done.count[k]):
             result = texts.RESULT_COUNTED.format(result=result, n=number(done.count[k], ",g"))
         beside = [texts.written(said) for said in (done.notes[k], done.who[k]) if said]
-        lines.append(" · ".join([line_of(choices, day, second, result), *beside]))
+        lines.append(" · ".join([_listed(choices, day, second, result), *beside]))
     return lines
 
 
@@ -225,7 +225,11 @@ def _treated(choices: Choices, one: KeptTreatment) -> str:
     said = texts.HISTORY_SPRAYED
     if product := one.application.product:
         said = texts.HISTORY_SPRAYED_WITH.format(product=texts.isolated(product))
-    return line_of(choices, one.on, one.application.over_s, said)
+    return _listed(choices, one.on, one.application.over_s, said)
+
+
+def _listed(choices: Choices, on: date, second: float, what: str) -> str:
+    return f"- {line_of(choices, on, second, f'**{what}**')}"
 
 
 def line_of(choices: Choices, on: date, second: float, what: str) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 from fieldmon.planning.members import Teamwork
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run
-from fieldmon.simulation.paired import met_by_all, paired
+from fieldmon.simulation.paired_seasons import met_by_all, paired
 from fieldmon.simulation.statistics import half_interval, summary_statistics
 from fieldmon.simulation.study_plot import Combination
 from fieldmon.simulation.team_season import Team

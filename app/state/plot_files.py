@@ -18,7 +18,7 @@ from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.prepare import with_plants
 from fieldmon.io.prepared import Laid
 from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
-from fieldmon.io.unused import unused_of
+from fieldmon.io.unused_row_settings import unused_of
 
 from . import brought_files, cached, cached_files, rasters, sample_estate
 from .brought_files import File, FileMessage, LeftOut, answers, messages_of, settled

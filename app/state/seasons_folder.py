@@ -58,7 +58,7 @@ def path_of(name: str) -> Path:
         raise SettingError(texts.SEASON_NAMED.format(name=name))
     if len(name) > _LONGEST:
         raise SettingError(texts.SEASON_LONG.format(most=_LONGEST, n=len(name)))
-    path = folder() / f"{name}{_ENDING}"
+    path = _file(folder(), name)
     if not _lies_there(path):
         raise SettingError(texts.SEASON_NAMED.format(name=name))
     return path
@@ -105,7 +105,7 @@ def bring_back(name: str) -> str:
     """List a season again that is listed no more; return its name, another if that is taken."""
     path_of(name)  # or raise
     free = _free(folder(), name)
-    Store(folder() / REMOVED / f"{name}{_ENDING}").move(free)
+    Store(_file(folder() / REMOVED, name)).move(free)
     return free.stem
 
 
@@ -126,7 +126,19 @@ def take_in(data: bytes, name: str) -> str:
     return free.stem
 
 
-def _free(where: Path, name: str) -> Path:
-    """Return a file that is not there yet, of this name or with a number behind it."""
+def free_name(name: str, where: Path | None = None) -> str:
+    """Return a name that no season in a folder has yet: this one, or it with a number behind it.
+
+    None: the folder in which seasons live.
+    """
     names = chain((name,), (f"{name} ({n})" for n in count(2)))
-    return next(to for one in names if not (to := where / f"{one}{_ENDING}").exists())
+    return next(one for one in names if not _file(where or folder(), one).exists())
+
+
+def _free(where: Path, name: str) -> Path:
+    """Return the file of a season in a folder, by a name that none there has yet."""
+    return _file(where, free_name(name, where))
+
+
+def _file(where: Path, name: str) -> Path:
+    return where / f"{name}{_ENDING}"

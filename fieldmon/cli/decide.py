@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.advice import Advice
 
+_OF_PLANTS = "share of plants"
 _LEAVES_OF_PLANTS = (
     "--leaves, --counted and --presence answer a threshold of leaves, but {} is a share of the "
     "plants, which the season itself knows. Leave them out, or name a threshold of leaves."
@@ -228,7 +229,6 @@ def decide(
 
     Example: fieldmon decide season.gpkg --threshold 5% --per-ha 120 -o zones.xml.zip
     """
-    from fieldmon.decisions.leaves import of_leaves
     from fieldmon.decisions.thresholds import threshold_of
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.advice import AdviceSettings
@@ -236,7 +236,7 @@ def decide(
     threshold = threshold_of(asked.threshold, _own(asked.thresholds))
     for path in files.output or []:
         _check_name(path)
-    of_plants = threshold.measure == "share of plants"
+    of_plants = threshold.measure == _OF_PLANTS
     _refuse_idle(
         (of_plants and leaves.given(), _LEAVES_OF_PLANTS.format(asked.threshold)),
         *leaves.idle(),
@@ -244,27 +244,18 @@ def decide(
     )
     kept = Season(asked.season)
     when = day_meant(kept, day(asked.on))
-    level = {"level": threshold.level} if of_plants else {}
     learnt = kept.learnt_efficacy(when, files.product) if costs.works is None else None
-    advice = kept.advice(
-        when,
-        AdviceSettings(
-            sure=asked.sure,
-            sprayer=sprayer.sprayer(kept.plot.grid.row_spacing_m),
-            costs=costs.costs(None if learnt is None else learnt.efficacy),
-            rate_l_ha=files.rate,
-            learnt_of="" if learnt is None else learnt.product,
-            **level,
-        ),
+    settings = AdviceSettings(
+        sure=asked.sure,
+        sprayer=sprayer.sprayer(kept.plot.grid.row_spacing_m),
+        costs=costs.costs(None if learnt is None else learnt.efficacy),
+        rate_l_ha=files.rate,
+        learnt_of="" if learnt is None else learnt.product,
     )
     if of_plants:
-        said, short = [advice.headline(), *advice.reasons()], advice.in_short()
-    else:
-        named = "" if leaves.leaves else " (--leaves, --counted)"
-        said = [
-            of_leaves(threshold, leaves.leaves, leaves.counted, presence=leaves.presence) + named
-        ]
-        short = " ".join([*said, advice.zones.sentence()])
+        settings = replace(settings, level=threshold.level)
+    advice = kept.advice(when, settings)
+    said, short = _in_words(advice, threshold, leaves)
     where = advice.said_of_zones(above=of_plants)
     typer.echo("\n".join([f"{when}, after the day's work.", threshold.sentence(), *said, *where]))
     for caution in kept.cautions_if_treated(when, files.product, advice.sprayed):
@@ -273,6 +264,17 @@ def decide(
     kept.advise(when, short)
     if refused is not None:
         raise refused
+
+
+def _in_words(advice: Advice, threshold: Threshold, leaves: LeafOptions) -> tuple[list[str], str]:
+    """Return the answer to a threshold of plants or of leaves, line by line and in short."""
+    from fieldmon.decisions.leaves import of_leaves
+
+    if threshold.measure == _OF_PLANTS:
+        return [advice.headline(), *advice.reasons()], advice.in_short()
+    said = of_leaves(threshold, leaves.leaves, leaves.counted, presence=leaves.presence)
+    said += "" if leaves.leaves else " (--leaves, --counted)"
+    return [said], f"{said} {advice.zones.sentence()}"
 
 
 def _refuse_idle(*each: tuple[object, str]) -> None:

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from fieldmon.drive.vda5050.mqtt import RobotName
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.planning.members import TeamMember
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
@@ -300,17 +301,14 @@ def _team_day(
     options: DriveOptions, season: Season, on: date, settings: MonitoringSettings
 ) -> None:
     """Let a season's team drive what is left of its day, and write what came of it."""
-    from fieldmon.cli.team_files import files_of_each
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.team_season import TeamSeason, robots_of
     from fieldmon.drive.vda5050.mqtt import Broker
     from fieldmon.drive.vda5050.team import drive_team
 
-    asked = [path for path in (options.output, options.bag) if path is not None]
     robots = robots_of(settings.team)
-    files = files_of_each(asked, robots) if asked else [[] for _ in robots]
-    if options.output is not None:
-        _refuse_written_over(season, (first for first, *_ in files))
+    own = dict(zip((one.name for one in robots), _options_of_each(options, robots), strict=True))
+    _refuse_written_over(season, (each.output for each in own.values()))
     today = TeamSeason(season, on, options.manufacturer)
     tell_assumed(season.assumed(settings))
     tell_past_midnight(on, settings)
@@ -327,24 +325,35 @@ def _team_day(
     broker = Broker.of(options.broker)
     driven = drive_team(today, broker, _robot_name(options), _say, recordings)
     missing: dict[str, None] = {}
-    for one, paths in zip(today.robots, files, strict=True):
-        each = driven[one.name]
+    for name, mine in own.items():
+        each = driven[name]
         if each.broken:
             missing[each.broken] = None
             if not each.stops:
                 continue
-        own = [*paths]
-        output = own.pop(0) if options.output is not None else None
-        bag = own.pop(0) if options.bag is not None else None
-        mine = replace(options, output=output, bag=bag, serial=one.name)
-        _write_bag(recordings[one.name], begins[one.name], mine)
-        _write(each, on, mine, one.name, before[one.name])
+        _write_bag(recordings[name], begins[name], mine)
+        _write(each, on, mine, name, before[name])
     _tell_replanned(today.replanned - 1)
     if today.stops:
         _tell_stopped(season, on, today.batch)
         raise KeyboardInterrupt
     if missing:
         raise SettingError(" ".join(missing))
+
+
+def _options_of_each(
+    options: DriveOptions, robots: tuple[TeamMember, ...]
+) -> Iterator[DriveOptions]:
+    """Yield what each robot of a team is told: its own files, and its name as its serial."""
+    from fieldmon.cli.team_files import files_of_each
+
+    asked = [path for path in (options.output, options.bag) if path is not None]
+    files = files_of_each(asked, robots) if asked else [[] for _ in robots]
+    for one, paths in zip(robots, files, strict=True):
+        own = iter(paths)
+        output = next(own) if options.output is not None else None
+        bag = next(own) if options.bag is not None else None
+        yield replace(options, output=output, bag=bag, serial=one.name)
 
 
 def _tell_left_out(scouts: list[str]) -> None:
@@ -506,7 +515,7 @@ def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None
 def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before: int = 0) -> None:
     """Say what a day came to, and write its tables; `before` were inspected in an earlier run."""
     from fieldmon.compute.wording import counted
-    from fieldmon.drive.account import day_table, in_words, stop_table, stops_path
+    from fieldmon.drive.day_tables import day_table, in_words, stop_table, stops_path
 
     who = f"{name}, {on}" if options.serial == name else f"{on}"
     typer.echo(f"{who}: {in_words(driven)}")
@@ -526,7 +535,7 @@ def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before
 
 def _refuse_written_over(season: Season | None, outputs: Iterable[Path | None]) -> None:
     """Refuse tables that cannot be written, or would replace what somebody filled in."""
-    from fieldmon.drive.account import is_driven_table, stops_path
+    from fieldmon.drive.day_tables import is_driven_table, stops_path
     from fieldmon.io.atomic_write import require_place
 
     files = [file for path in outputs if path is not None for file in (path, stops_path(path))]

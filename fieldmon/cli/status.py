@@ -136,11 +136,21 @@ def _other_days(said: BatchContents, recorded: date) -> str:
 
 def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
-    from fieldmon.compute.wording import chance_figure, estimate, written
-    from fieldmon.infestation.learnt import worth_saying
-    from fieldmon.monitoring.day_figures import flagged_said
+    yield from _of_inspections(season, now)
+    yield from _planned_only(season, now.on)
+    yield from _of_infestation(now)
+    yield from _of_learnt(season, now)
+    yield from _told_otherwise(season, now.on)
+    if (taught := season.taught()) is not None:
+        yield f"  an earlier season      {taught}"
+    yield from _of_pest(season, now)
+    yield _of_hot_spots(now)
+    if len(records := season.records_known()):
+        yield f"  {'':22} {records.sentence()}"
 
-    still, ahead = now.infested, now.estimate
+
+def _of_inspections(season: Season, now: Status) -> Iterator[str]:
+    """Yield how much was inspected, what was found, and what could not be inspected."""
     yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
     yield f"  inspected that day     {now.inspected_today:6,}, {now.found_today:,} found infested"
     yield (
@@ -154,7 +164,14 @@ def lines(season: Season, now: Status) -> Iterator[str]:
             "out of the next day's plan"
         )
     yield from _gone(season, now)
-    yield from _planned_only(season, now.on)
+
+
+def _of_infestation(now: Status) -> Iterator[str]:
+    """Yield how many are believed infested still, and which share of them was found."""
+    from fieldmon.compute.wording import chance_figure, estimate
+    from fieldmon.monitoring.day_figures import flagged_said
+
+    still, ahead = now.infested, now.estimate
     yield (
         f"  still infested         {estimate(still.expected):>6} ({still.low:,} to {still.high:,} "
         "with a chance of 90 %)"
@@ -163,6 +180,13 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         yield f"  {'':22} {said}"
     yield f"  share found            {_share_found(now)}"
     yield f"  chance it is clean     {chance_figure(ahead.chance_clean, 1):>8}"
+
+
+def _of_learnt(season: Season, now: Status) -> Iterator[str]:
+    """Yield what the season's own inspections tell of the insects."""
+    from fieldmon.compute.wording import written
+    from fieldmon.infestation.learnt import worth_saying
+
     since = "learnt so far" if now.inspected else "believed at first"
     for number, learnt in enumerate(worth_saying(now.learnt)):
         yield f"  {'' if number else since:22} {learnt.sentence()}"
@@ -172,17 +196,17 @@ def lines(season: Season, now: Status) -> Iterator[str]:
         yield f"  {'':22} In brackets: intervals that hold with a chance of 90 %."
     else:
         yield "  finds are traced       to neighbours only; fieldmon change --trace goes farther"
-    yield from _told_otherwise(season, now.on)
-    if (taught := season.taught()) is not None:
-        yield f"  an earlier season      {taught}"
-    yield from _of_pest(season, now)
+
+
+def _of_hot_spots(now: Status) -> str:
+    """Return how many hot spots there are, and what was found in the first of them."""
+    from fieldmon.compute.wording import estimate
+
     spots = now.hot_spots
-    yield f"  hot spots              {len(spots):6d}" + "".join(
+    return f"  hot spots              {len(spots):6d}" + "".join(
         f"; {spots.found[h]} finds where {estimate(spots.expected[h])} were expected"
         for h in range(min(len(spots), 3))
     )
-    if len(records := season.records_known()):
-        yield f"  {'':22} {records.sentence()}"
 
 
 def _share_found(now: Status) -> str:

@@ -15,7 +15,7 @@ from fieldmon.compute.wording import LANGUAGES, worded
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
     from typing import TypeVar
 
     import numpy as np
@@ -148,6 +148,32 @@ def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDAr
         sentence = f"{what} must hold {held}, but {shown(given)} does not. {instead}"
         raise SettingError(sentence.rstrip())
     return array
+
+
+def plants_marked(
+    what: str, given: object, n: int, wrong: Callable[[int], str]
+) -> NDArray[np.bool_]:
+    """Return which of n plants are marked, ``(n,)``; raise `SettingError` for anything else.
+
+    Parameters
+    ----------
+    what
+        What is asked for: ``"The mask of treated plants"``.
+    given
+        What was handed over.
+    n
+        How many plants there are.
+    wrong
+        What to say where so many are marked or not, instead of n.
+    """
+    import numpy as np  # noqa: PLC0415 - names of samplers are known without it
+
+    marked = array_of(
+        np.bool_, what, given, f"Of plants by their numbers give np.isin(np.arange({n}), numbers)."
+    )
+    if marked.shape != (n,):
+        raise SettingError(wrong(marked.size))
+    return marked
 
 
 def entries_of(what: str, which: Any, n: int) -> Any:  # noqa: ANN401 - an array or a slice

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csc_array
 
-from fieldmon.compute.arguments import array_of
+from fieldmon.compute.arguments import plants_marked
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.wording import chance_figure, counted, joined, worded
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.unwatched import Since
+    from fieldmon.infestation.uninspected_days import Since
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
@@ -230,20 +230,14 @@ def verdict_of(
 
 def _asked(plants: object, n: int) -> NDArray[np.bool_]:
     """Return which plants are asked about, ``(n,)``."""
-    asked = array_of(
-        np.bool_, "The mask of plants asked about", plants,
-        f"Of plants by their numbers give np.isin(np.arange({n}), numbers).",
+    return plants_marked(
+        "The mask of plants asked about", plants, n,
+        lambda size: worded(
+            "Whether it is asked about must be said of each of the {n} plants, but it is of "
+            "{size}.",
+            n=n, size=size,
+        ),
     )  # fmt: skip
-    if asked.shape != (n,):
-        raise SettingError(
-            worded(
-                "Whether it is asked about must be said of each of the {n} plants, but it is of "
-                "{size}.",
-                n=n,
-                size=asked.size,
-            )
-        )
-    return asked
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 #: one position fix and one odometry in so many seconds, and while it stands one pose in as many
 _FIX_S = 1.0
 _TALL_M = 1.5
+# SPHERE_LIST of visualization_msgs/Marker
+_SPHERES = 7
 _FOUND = (0.84, 0.15, 0.12, 1.0)
 _CLEAN = (0.13, 0.44, 0.71, 1.0)
 _TOPICS = {
@@ -171,7 +173,7 @@ class _Pen:
         colours = [(0.25 + 0.6 * s, 0.5 - 0.25 * s, 0.2, 1.0) for s in share.tolist()]
         places = _places(grid.frame, grid.xy_m)
         wide = max(2 * half_canopy_m(grid), 0.1)
-        spheres = self._marker("plants", 0, 7, (wide, wide, _TALL_M), places, colours)
+        spheres = self._marker("plants", 0, (wide, wide, _TALL_M), places, colours)
         return self._make("visualization_msgs/MarkerArray", [spheres])
 
     def _find(self, recording: Recording, plant: int, found: bool | None) -> Any:  # noqa: ANN401, FBT001
@@ -179,18 +181,18 @@ class _Pen:
         colour = _FOUND if found else _CLEAN if found is False else (0.5, 0.5, 0.5, 1.0)
         places = _places(grid.frame, grid.xy_m[[plant]])
         wide = max(2.4 * half_canopy_m(grid), 0.2)
-        one = self._marker("finds", plant, 7, (wide, wide, _TALL_M + 0.2), places, [colour])
+        one = self._marker("finds", plant, (wide, wide, _TALL_M + 0.2), places, [colour])
         return self._make("visualization_msgs/MarkerArray", [one])
 
     def _marker(
         self,
         space: str,
         number: int,
-        kind: int,
         size: tuple[float, float, float],
         places: Float,
         colours: list[tuple[float, float, float, float]],
     ) -> Any:  # noqa: ANN401
+        """Return a marker of spheres of one size, one at each place in its colour."""
         make = self._make
         points = [self._point(x, y, _TALL_M / 2) for x, y in places.tolist()]
         tints = [make("std_msgs/ColorRGBA", *each) for each in colours]
@@ -198,7 +200,7 @@ class _Pen:
         no_mesh = make("visualization_msgs/MeshFile", "", np.zeros(0, np.uint8))
         return make(
             "visualization_msgs/Marker",
-            *(self._head(0.0), space, number, kind, 0, self._pose(0.0, 0.0, 0.0)),
+            *(self._head(0.0), space, number, _SPHERES, 0, self._pose(0.0, 0.0, 0.0)),
             *(self._vector(*size), make("std_msgs/ColorRGBA", *colours[0])),
             *(make("builtin_interfaces/Duration", 0, 0), False, points, tints, "", no_picture),
             *([], "", "", no_mesh, False),

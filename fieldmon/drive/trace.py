@@ -11,9 +11,9 @@ import numpy as np
 
 from fieldmon.compute.wording import counted, worded
 from fieldmon.compute.working_folder import working_folder
-from fieldmon.drive.account import STOP_COLUMNS
 from fieldmon.drive.bag import colour_says, east_north_yaw, read_bag
 from fieldmon.drive.day import place_m, way_m
+from fieldmon.drive.day_tables import STOP_COLUMNS
 from fieldmon.drive.recording import Noted, Recording
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring.history import BeliefSettings

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.spread import Spread
     from fieldmon.infestation.tracing import Traces
-    from fieldmon.infestation.unwatched import Since
+    from fieldmon.infestation.uninspected_days import Since
     from fieldmon.pests.pest import Pest
 
 
@@ -26,17 +26,24 @@ class Learning:
     Parameters
     ----------
     detection
-        Chance that an inspection finds what is there; ``(k,)`` for each where they differ.
+        Chance in 0..1 that an inspection finds what is there; ``(k,)`` for each of a day's
+        inspections, in their order, where they differ. The default is that of the usual `Robot`.
     beside_find
-        Chance that a plant next to a find is infested too, whatever was believed before
+        Chance in 0..1 that a plant next to a find is infested too, whatever was believed before
         (infestations come in clusters; our choice).
     treated
         Whether a find is destroyed at once (the thesis's rule), or only flagged.
 
+    Raises
+    ------
+    SettingError
+        If a chance is not in 0..1, or `detection` is neither one nor ``(k,)``.
+
     Examples
     --------
     >>> import fieldmon as fm
-    >>> fm.SimulationSettings(learning=fm.Learning(detection=0.7)).learning.detection
+    >>> flagging = fm.Learning(detection=0.7, treated=False)
+    >>> fm.SimulationSettings(learning=flagging).learning.detection
     0.7
     """
 

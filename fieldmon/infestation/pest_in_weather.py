@@ -16,7 +16,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.kernels import DistanceKernel
 from fieldmon.infestation.spread import Spread
 from fieldmon.pests.degree_days import Thresholds, degree_days_of_hours
-from fieldmon.pests.usual import LEAST_HOURS, UsualDays
+from fieldmon.pests.usual_days import LEAST_HOURS, UsualDays
 from fieldmon.pests.weather import HOUR_S
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from fieldmon.compute.wording import chance_figure, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.chance_bounds import KNOWN
 from fieldmon.infestation.pairs import pairs_of
-from fieldmon.infestation.unwatched import of_odds
+from fieldmon.infestation.uninspected_days import of_odds
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

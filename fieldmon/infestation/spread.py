@@ -46,6 +46,11 @@ class Spread:
     arrivals_per_day
         Chance per night that a clean plant is infested from outside the plot.
 
+    Raises
+    ------
+    SettingError
+        If a chance is not in 0..1 (``0.3``, not ``30``), or `to` is none of the three.
+
     Examples
     --------
     >>> import fieldmon as fm

@@ -59,7 +59,7 @@ from fieldmon.infestation.plot_estimate import drawn_numbers
 from fieldmon.infestation.prior import odds_ratio
 from fieldmon.infestation.traced_day import KernelRoom, TracedDay, learn_day
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
-from fieldmon.infestation.unwatched import Counted, Since, Unwatched
+from fieldmon.infestation.uninspected_days import Counted, Since, UninspectedDays
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -136,7 +136,7 @@ class TracedPairs:
     ancestry
         Who infested whom; None: the plot has too many plants, or infestations of the pest that was
         named end of themselves.
-    unwatched
+    uninspected
         The days without inspections until now.
     likely
         The logarithm of how likely it is that so many were infested as this map was told, and that
@@ -160,7 +160,7 @@ class TracedPairs:
     latency: Latency | None = None
     slope_sums: Floats = field(default_factory=no_inspections)
     ancestry: Ancestry | None = None
-    unwatched: Unwatched = field(default_factory=Unwatched)
+    uninspected: UninspectedDays = field(default_factory=UninspectedDays)
     likely: float = TOLD
     is_heavier: bool = False
     others: tuple[TracedPairs, ...] | None = None
@@ -283,7 +283,7 @@ class TracedPairs:
     @property
     def since_inspected(self) -> Since | None:
         """What the number may have become on days without inspections, see `Belief`."""
-        return self.unwatched.draws(self.arrivals_found)
+        return self.uninspected.draws(self.arrivals_found)
 
     @property
     def _in_doubt_besides(self) -> float:
@@ -291,7 +291,7 @@ class TracedPairs:
 
         And as another share than was told may be infested.
         """
-        left = float(np.sqrt(self.unwatched.left))
+        left = float(np.sqrt(self.uninspected.left))
         if self.is_heavier:
             left = float(np.hypot(left, IN_DOUBT))
         if not self.others:
@@ -302,7 +302,7 @@ class TracedPairs:
 
     @property
     def _variance_since_inspected(self) -> float:
-        return self.unwatched.variance(self.arrivals_found)
+        return self.uninspected.variance(self.arrivals_found)
 
     @property
     def _brought_so_far(self) -> Floats:
@@ -410,7 +410,7 @@ class TracedPairs:
             ancestry=ancestry and ancestry.learn(plants, found, told, treated=learning.treated),
             cohorts=self.cohorts and self.cohorts.inspected(plants, found, told),
             latency=self.latency and self.latency.inspected(plants, found, told),
-            unwatched=self.unwatched.inspected(
+            uninspected=self.uninspected.inspected(
                 self._expected_finds(plants, shown), self._variance_since_inspected
             ),
         )  # fmt: skip
@@ -507,7 +507,7 @@ class TracedPairs:
     def _in_doubt(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
         """Return the next morning with what is in doubt of it if nobody inspected today."""
         told = self.chance > KNOWN
-        known, counted = int(np.count_nonzero(told)), self.unwatched.counted
+        known, counted = int(np.count_nonzero(told)), self.uninspected.counted
         if counted is not None:  # others became likely only while nobody inspected
             known = min(known, counted.known)
         # of those of which it is not certain
@@ -515,11 +515,11 @@ class TracedPairs:
         anywhere, by_edge = self._from_outside(self.reach, spread)
         new = float(((1.0 - self.chance) * (anywhere + by_edge)).sum())
         sent = max(after - before - new, 0.0) * known / (known + before)
-        if self.unwatched.begins:
+        if self.uninspected.begins:
             drawn, none = drawn_numbers(self.grid, (self.chance, self.pair_chance), ~told)
             counted = Counted(drawn / before, none, before, self.doubt, known)
-        unwatched = self.unwatched.overnight(before, after, (new, sent), counted)
-        return replace(morning, unwatched=unwatched)
+        uninspected = self.uninspected.overnight(before, after, (new, sent), counted)
+        return replace(morning, uninspected=uninspected)
 
     def in_hindsight(self, spread: Spread) -> TracedPairs:
         """Return the same as the ancestry of finds has it by now, before the night of a `spread`.

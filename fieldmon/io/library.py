@@ -148,13 +148,40 @@ def read_plot(
 
 
 def read_plots(source: Source, **options: object) -> tuple[Field, ...]:
-    """Return the outlines of all plots of a file, without plants; as `read_plot` otherwise.
+    """Return the outlines of all plots of a file, without plants.
+
+    Parameters
+    ----------
+    source
+        Path of a shapefile, GeoPackage, GeoJSON, KML...; also zipped.
+    **options
+        What the file leaves open, as `read_plot` takes it: ``crs="EPSG:2039"``.
+
+    Returns
+    -------
+    tuple of Field
+        In the file's order; `Plot.of` lays plants on one.
+
+    Warns
+    -----
+    ImportDoubt
+        For everything that was guessed, dropped or is doubtful.
+
+    Raises
+    ------
+    ChoiceNeeded
+        If the file leaves a choice; the sentence says which option answers.
+    FileProblem
+        If it cannot be read.
 
     Examples
     --------
     >>> import fieldmon as fm
-    >>> [field.name for field in fm.read_plots("sample_data/paran_estate.zip")][:4]
+    >>> fields = fm.read_plots("sample_data/paran_estate.zip")
+    >>> [field.name for field in fields][:4]
     ['Gate', 'Pond', 'Wadi', 'Big field']
+    >>> fm.Plot.of(fields[0]).n_plants
+    3825
     """
     _must_be_file(source)
     chosen = _chosen(PlotOptions(), options)

@@ -33,7 +33,7 @@ from fieldmon.io.read import (
 )
 from fieldmon.io.readers.nearby import plants_on
 from fieldmon.io.sources import PlantingChoices
-from fieldmon.io.unused import unused_of
+from fieldmon.io.unused_row_settings import unused_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plants_outside import distance_m

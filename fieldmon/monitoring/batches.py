@@ -10,7 +10,7 @@ from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
 from fieldmon.io.parse.result_words import says_gone
-from fieldmon.monitoring import replaced, schema, treatments
+from fieldmon.monitoring import rows_that_count, schema, treatments
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.plot.local_clock import utc_text
 
@@ -269,8 +269,8 @@ def undo(
     table = _TABLE_OF[batch.kind]
     db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
     db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
-    replaced.undo_corrections(db, batch.number)
-    rows = treatments if batch.kind == "treatment" else replaced
+    rows_that_count.undo_corrections(db, batch.number)
+    rows = treatments if batch.kind == "treatment" else rows_that_count
     again = rows.count_again(db)
     touch(db, table)
     said = _undone(batch, contents(db, [batch.number]).get(batch.number), signs or {})
@@ -286,7 +286,7 @@ def to_undo(db: sqlite3.Connection, number: int | None) -> tuple[int, list[str]]
     rows = db.execute(
         "SELECT digest FROM inspections WHERE undone = ? AND digest NOTNULL AND batch = ? "
         "ORDER BY digest",
-        (replaced.TAKEN_BACK, batch.number),
+        (rows_that_count.TAKEN_BACK, batch.number),
     )
     return batch.number, [mark for (mark,) in rows]
 
@@ -344,13 +344,13 @@ def redo(
     of = f"batch = ? AND undone = ? AND coalesce(digest, '') NOT IN ({stays})"
     db.execute(
         f"UPDATE {table} SET undone = ? WHERE {of}",  # noqa: S608 - ours
-        (replaced.STANDS_BACK, number, replaced.TAKEN_BACK, *but),
+        (rows_that_count.STANDS_BACK, number, rows_that_count.TAKEN_BACK, *but),
     )
     db.execute("UPDATE batches SET undone = 0 WHERE fid = ?", (number,))
-    rows = treatments if batch.kind == "treatment" else replaced
+    rows = treatments if batch.kind == "treatment" else rows_that_count
     again = rows.count_again(db)
     touch(db, table)
-    elsewhere = rows.n_elsewhere(db, number, replaced.STANDS_BACK)
+    elsewhere = rows.n_elsewhere(db, number, rows_that_count.STANDS_BACK)
     said = contents(db, [number]).get(number)
     n = batch.rows - len(but) - elsewhere
     return {number, *again}, _counts_again(batch, said, (n, elsewhere), signs or {})
@@ -462,14 +462,16 @@ def undo_one(
     """Mark one inspection as undone; return the batches that changed, and what was done."""
     row = counting(db, inspection)
     db.execute("UPDATE inspections SET undone = 1 WHERE fid = ?", (inspection,))
-    before = replaced.undo_corrections(db, *row[4:])
-    again = replaced.count_again(db)
+    before = rows_that_count.undo_corrections(db, *row[4:])
+    again = rows_that_count.count_again(db)
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
     sign = (signs or {}).get(row[0], row[0])
     if counts := [one for mark in before if (one := _result_of(db, mark))]:
         return {row[4], *again}, _undone_correction(sign, row[1], row[2], counts[0])
-    return {row[4], *again}, _still(_undone_one(sign, *row[1:4]), replaced.n_counting(db, row[5]))
+    return {row[4], *again}, _still(
+        _undone_one(sign, *row[1:4]), rows_that_count.n_counting(db, row[5])
+    )
 
 
 def _result_of(db: sqlite3.Connection, mark: str) -> str:

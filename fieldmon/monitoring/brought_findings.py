@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.io.options import Upload, source_name
-from fieldmon.monitoring import findings, said_beside
+from fieldmon.monitoring import findings, repeated_recordings
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.transactions import MAGIC, connect, copy_season, is_season
 
@@ -63,7 +63,7 @@ def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Pa
     copy_season(season, copy)
     with closing(connect(copy)) as db:
         db.execute("BEGIN")
-        said_beside.write_out(db)
+        repeated_recordings.write_out(db)
         db.execute("DELETE FROM inspections WHERE undone <> 0")
         db.executemany("DELETE FROM inspections WHERE fid = ?", [(row,) for row in besides])
         db.execute("COMMIT")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import batches, outside_changes, replaced
+from fieldmon.monitoring import batches, outside_changes, rows_that_count
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS, OUTSIDE_CHANGES
 from fieldmon.plot.local_clock import utc_text
@@ -68,7 +68,7 @@ def take(
 
 def _as_here(db: sqlite3.Connection, one: OutsideChange) -> OutsideChange:
     """Return a deletion of the row that it has here: a season that was merged has other numbers."""
-    mark = replaced.as_it_was(one.before)["digest"]
+    mark = rows_that_count.as_it_was(one.before)["digest"]
     if one.what != "delete" or mark is None:
         return one
     same = "SELECT fid FROM inspections WHERE digest = ? ORDER BY undone <> 0, fid LIMIT 1"
@@ -95,7 +95,7 @@ def stand_back(db: sqlite3.Connection, one: OutsideChange, batch: int) -> None:
         raise _not_here(one)
     note(db, replace(one, before=as_it_is(db, one.row)), batch, None)
     stands_back = "UPDATE inspections SET undone = ? WHERE fid = ? AND undone = 0"
-    db.execute(stands_back, (replaced.STANDS_BACK, one.row))
+    db.execute(stands_back, (rows_that_count.STANDS_BACK, one.row))
 
 
 def as_it_is(db: sqlite3.Connection, row: int) -> str:

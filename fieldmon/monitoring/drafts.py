@@ -15,7 +15,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
-from fieldmon.monitoring import inspection_lots, inspection_table, said_beside
+from fieldmon.monitoring import inspection_lots, inspection_table, repeated_recordings
 from fieldmon.monitoring.geopackage import geometry, touch
 from fieldmon.monitoring.recorded_before import contradictions, said_before
 from fieldmon.monitoring.schema import INSPECTIONS
@@ -91,7 +91,7 @@ def read(
             one = _inspection(dict(zip(names, values, strict=True)), plot[0])
             inspection_table.rows(one, *plot, settings, (0, ""))  # whether it fits the season
             if said_before(one, held).any():
-                for more in said_beside.additions(one, held):
+                for more in repeated_recordings.additions(one, held):
                     known = held.take(np.array([more.held]))
                     drafts.append(Draft(row, one, "", known, more.is_note))
                 continue
@@ -121,7 +121,7 @@ def keep(
         if draft.known is None:
             news = news.and_those(draft.inspection)
         else:
-            values = said_beside.standing_back(db, draft.known, 0, made)
+            values = repeated_recordings.standing_back(db, draft.known, 0, made)
         names = ", ".join(f"{name} = ?" for name in values)
         db.execute(
             f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours

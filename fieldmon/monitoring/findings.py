@@ -25,7 +25,7 @@ from fieldmon.monitoring import (
     people,
     phone_tables,
     photos,
-    replaced,
+    rows_that_count,
     schema,
     scouts,
     season_log,
@@ -323,7 +323,7 @@ def _taken_back(season: Season, who: str, first: date, last: date) -> dict[str, 
             "WHERE i.undone = ? AND i.date BETWEEN ? AND ? AND NOT EXISTS (SELECT 1 FROM "
             "inspections WHERE digest = i.digest AND undone = 0) AND NOT EXISTS (SELECT 1 FROM "
             "tellings WHERE undoes = t.id) ORDER BY i.date, t.fid",
-            (replaced.TAKEN_BACK, str(first), str(last)),
+            (rows_that_count.TAKEN_BACK, str(first), str(last)),
         ).fetchall()
     days: dict[str, tuple[str, ...]] = {}
     for one, name, day in rows:

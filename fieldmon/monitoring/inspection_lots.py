@@ -17,7 +17,7 @@ import numpy as np
 from fieldmon.compute.digest import digest
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import RESULT_CODES, Inspections
-from fieldmon.monitoring import said_beside, schema
+from fieldmon.monitoring import repeated_recordings, schema
 from fieldmon.monitoring.geopackage import insert, unpacked
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def load(db: sqlite3.Connection, begins: date) -> Inspections:
             left -= len(data)
             if (columns := _columns(data)) is not None:
                 kept[lot] = columns
-    pieces, others = [], said_beside.of_others(db)
+    pieces, others = [], repeated_recordings.of_others(db)
     for rows, lot in _between(kept):
         pieces.append(_read(db, rows, others))
         if lot is not None:
@@ -73,7 +73,7 @@ def keep(db: sqlite3.Connection) -> None:
     """Keep lots that are full and not kept yet, within the transaction that changes the file."""
     (last,) = db.execute("SELECT max(fid) FROM inspections").fetchone()
     kept = [lot for (lot,) in db.execute("SELECT lot FROM inspection_lots ORDER BY lot")]
-    others = said_beside.of_others(db)
+    others = repeated_recordings.of_others(db)
     there = "SELECT DISTINCT fid >> ? FROM inspections WHERE fid >= ? AND fid <= ?"
     for rows, _ in [*_between(kept)]:
         for (lot,) in db.execute(there, (schema.LOT_BITS, *rows)).fetchall():
@@ -99,11 +99,13 @@ def _between(kept: Iterable[int]) -> Iterator[tuple[tuple[int, int], int | None]
 
 
 def _read(
-    db: sqlite3.Connection, rows: tuple[int, int], others: dict[str, list[said_beside.Beside]]
+    db: sqlite3.Connection,
+    rows: tuple[int, int],
+    others: dict[str, list[repeated_recordings.Beside]],
 ) -> Columns:
     """Return the inspections among some row numbers that count, as columns.
 
-    `others` is what is said beside them in other rows, see `said_beside.of_others`.
+    `others` is what is said beside them in other rows, see `repeated_recordings.of_others`.
     """
     found = db.execute(
         f"SELECT digest, {', '.join(_FROM.values())} FROM inspections "  # noqa: S608 - names of ours
@@ -115,7 +117,7 @@ def _read(
     for k, mark in enumerate(marks) if others else ():
         if mark in others:
             own = {one.kept: said[one.name][k] for one in BESIDE}
-            whole = said_beside.together(own, others[mark])
+            whole = repeated_recordings.together(own, others[mark])
             for one in BESIDE:
                 said[one.name][k] = whole[one.kept]
     said["result"] = [RESULT_CODES[name] for name in said["result"]]

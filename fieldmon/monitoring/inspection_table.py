@@ -16,7 +16,7 @@ from fieldmon.infestation.inspection_columns import BESIDE, COUNT, IDENTIFYING
 from fieldmon.infestation.inspections import FOUND, RESULT_CODES, RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import point_blobs, touch
-from fieldmon.monitoring.replaced import COUNTS, as_it_was
+from fieldmon.monitoring.rows_that_count import COUNTS, as_it_was
 from fieldmon.plot.grid import row_label
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def rows(
     `batch` is its number and whose inspections these are where they do not say. Who inspected,
     what was noted and what it finds of what is there is no part of what makes one the same as
     another: a file that comes back from somebody else, or with more notes, brings nothing new, but
-    may say more beside what is known (`said_beside`).
+    may say more beside what is known (`repeated_recordings`).
     """
     _check(inspections, grid)
     plants, dates = inspections.plant, inspections.date.tolist()

@@ -27,8 +27,8 @@ from fieldmon.errors import FileProblem
 from fieldmon.infestation import inspection_columns
 from fieldmon.monitoring import (
     phone_tables,
-    replaced,
-    said_beside,
+    repeated_recordings,
+    rows_that_count,
     schema,
     season_log,
     settings_log,
@@ -36,7 +36,7 @@ from fieldmon.monitoring import (
 )
 from fieldmon.monitoring.batches import close_if_empty, more_in_words
 from fieldmon.monitoring.geopackage import touch
-from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
+from fieldmon.monitoring.rows_that_count import COUNTS, STANDS_BACK, TAKEN_BACK
 from fieldmon.planning.members import person_key
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.geopackage import GeoPackageTable
-    from fieldmon.monitoring.replaced import Corrected
+    from fieldmon.monitoring.rows_that_count import Corrected
     from fieldmon.monitoring.treatments import Row
 
 #: what the batches of a copy are numbered now, by their numbers in it
@@ -200,7 +200,9 @@ def merge(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
         gone=undone,
         chosen=(*chosen, *other_labels),
         alike=tuple(_of_one_product(treated, held)),
-        noted=said_beside.n_noted(before.notes, after.notes, {*after.notes} - after.counting),
+        noted=repeated_recordings.n_noted(
+            before.notes, after.notes, {*after.notes} - after.counting
+        ),
     )
 
 
@@ -219,12 +221,12 @@ class _Standing(NamedTuple):
 
     counting: set[str]
     keys: dict[str, str]
-    notes: dict[str, said_beside.Notes]
+    notes: dict[str, repeated_recordings.Notes]
 
     @classmethod
     def of(cls, db: sqlite3.Connection, stay: int) -> _Standing:
         """Return it; inspections that `stay` are left out."""
-        return cls(_counting(db, stay), _keys(db), said_beside.notes(db, stay))
+        return cls(_counting(db, stay), _keys(db), repeated_recordings.notes(db, stay))
 
 
 def _read(db: sqlite3.Connection) -> dict[str, list[Row]]:
@@ -238,7 +240,7 @@ def _merge_changes(
     """Let `db` have what other programs changed in either copy; return what was corrected."""
     changes = _merged_changes(copies, batches)
     _write(db, schema.OUTSIDE_CHANGES, changes)
-    return replaced.corrected([row for row in changes if row["batch"] is not None])
+    return rows_that_count.corrected([row for row in changes if row["batch"] is not None])
 
 
 def _merge_treatments(
@@ -590,14 +592,16 @@ def _merged_rows(
             known["fid"] = min(known["fid"], row["fid"])
             for one in inspection_columns.BESIDE:  # what is no part of what makes it the same
                 if one.kept in row:
-                    known[one.kept] = said_beside.either(one, known[one.kept], row[one.kept])
+                    known[one.kept] = repeated_recordings.either(
+                        one, known[one.kept], row[one.kept]
+                    )
     drafts_last = max((now for batch_of in numbers for now in batch_of.values()), default=0) + 1
     rows = sorted(
         found.values(), key=lambda r: (r["batch"] or drafts_last, r["fid"], repr(r["digest"]))
     )
     for row in rows:
         stands_back = row["undone"] == STANDS_BACK
-        if stands_back and not replaced.may_count(gone, row["digest"], row["batch"]):
+        if stands_back and not rows_that_count.may_count(gone, row["digest"], row["batch"]):
             continue
         if row["digest"] is not None and row["undone"] != TAKEN_BACK:
             row["undone"] = STANDS_BACK if row["digest"] in counting else COUNTS

@@ -23,7 +23,7 @@ from fieldmon.infestation.origins import OriginCounts
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.infestation.unwatched import Unwatched
+from fieldmon.infestation.uninspected_days import UninspectedDays
 from fieldmon.monitoring import history as causes_of_a_morning
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import insert, unpacked
@@ -46,7 +46,7 @@ _ANCESTRY = "ancestry_"
 _OTHER, _WEIGHED = "other", "weighed"
 # and that are of how old infestations of a named pest are
 _COHORTS = "cohorts_"
-_UNWATCHED = "unwatched"
+_UNINSPECTED = "unwatched"
 
 
 class _KeptMorning(NamedTuple):
@@ -226,7 +226,7 @@ def _arrays(morning: Belief) -> Arrays | None:
         "counts": np.array([morning.counts.found, morning.counts.expected]),
         "at_start": morning.at_start,
         _WEIGHED: np.array([morning.likely, morning.is_heavier, morning.others is not None]),
-        _UNWATCHED: morning.unwatched.array,
+        _UNINSPECTED: morning.uninspected.array,
         **{f"{_LATENCY}{name}": values for name, values in latency.items()},
         **{f"{_ANCESTRY}{name}": values for name, values in ancestry.items()},
         **{f"{_COHORTS}{name}": values for name, values in _aged(morning).items()},
@@ -279,8 +279,8 @@ def _believed(first: Belief, arrays: dict[str, Any], others: list[Belief | None]
     of_ancestry = _taken_out(wanted, _ANCESTRY).keys()
     ages = _taken_out(wanted, _COHORTS).keys()
     # a day without inspections has more of it
-    unwatched = arrays.pop(_UNWATCHED, None)
-    if (unwatched is None) != (wanted.pop(_UNWATCHED, None) is None):
+    uninspected = arrays.pop(_UNINSPECTED, None)
+    if (uninspected is None) != (wanted.pop(_UNINSPECTED, None) is None):
         return None
     names = wanted.keys(), of_ancestry, ages
     if names != (arrays.keys(), ancestry.keys(), aged.keys()):
@@ -294,8 +294,8 @@ def _believed(first: Belief, arrays: dict[str, Any], others: list[Belief | None]
             "likely": likely, "is_heavier": bool(is_heavier),
             "others": tuple(others) if inspected else None,
         }  # fmt: skip
-    if unwatched is not None:
-        own["unwatched"] = Unwatched.of_array(unwatched)
+    if uninspected is not None:
+        own["uninspected"] = UninspectedDays.of_array(uninspected)
     return replace(first, **arrays, **own)  # type: ignore[type-var]
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from datetime import date
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,8 +19,8 @@ from fieldmon.monitoring import (
     batches,
     inspection_lots,
     inspection_table,
-    replaced,
-    said_beside,
+    repeated_recordings,
+    rows_that_count,
     season_log,
     treatments,
 )
@@ -210,15 +210,15 @@ def correct(
 
 def is_kept(change: OutsideChange) -> bool:
     """Tell whether it is known what stood there before, and that it was recorded."""
-    return bool(change.before) and replaced.as_it_was(change.before)["digest"] is not None
+    return bool(change.before) and rows_that_count.as_it_was(change.before)["digest"] is not None
 
 
 def keep_before(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> None:
     """Keep what stood there before a change, until the correction is taken back."""
-    before = replaced.as_it_was(change.before)
+    before = rows_that_count.as_it_was(change.before)
     (before["geom"],) = point_blobs(grid.lonlat(np.array([before["plant"]])))
-    if before["undone"] == replaced.COUNTS:
-        before["undone"] = replaced.STANDS_BACK
+    if before["undone"] == rows_that_count.COUNTS:
+        before["undone"] = rows_that_count.STANDS_BACK
     # what was deleted leaves its number free
     before["fid"] = change.row if change.what == "delete" else None
     names = ("fid", *INSPECTIONS.names)
@@ -237,7 +237,7 @@ def in_words(db: sqlite3.Connection, change: OutsideChange) -> str:
     says, *values = row.fetchone()
     if change.what == "insert":
         return f"{says} was added"
-    before = replaced.as_it_was(change.before) if change.before else {}
+    before = rows_that_count.as_it_was(change.before) if change.before else {}
     parts = [
         f"{name} {value:g}" if isinstance(value, float) else f"{name} {value or 'none'}"
         for name, value in zip(SEEN, values, strict=True)
@@ -254,6 +254,27 @@ def take_row(
     batch: int,
 ) -> str:
     """Make one row of inspections what it says now, in every column; return its digest."""
+    values = _made_anew(db, change, plot, settings, batch)
+    was = rows_that_count.as_it_was(change.before)["digest"] if change.before else None
+    if was != values["digest"]:  # others stay with what it was: what they say goes along
+        values |= repeated_recordings.with_others(db, was, values)
+    _refuse_twice(db, change, values["digest"])
+    names = ", ".join(f"{name} = ?" for name in values)
+    db.execute(
+        f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours
+        (*values.values(), change.row),
+    )
+    return str(values["digest"])
+
+
+def _made_anew(
+    db: sqlite3.Connection,
+    change: OutsideChange,
+    plot: tuple[PlantGrid, RowLabel],
+    settings: MonitoringSettings,
+    batch: int,
+) -> dict[str, Any]:
+    """Return what every column of a row must say by what those say now that people fill in."""
     row = db.execute(
         f"SELECT {', '.join(SEEN)} FROM inspections WHERE fid = ?",  # noqa: S608 - names of ours
         (change.row,),
@@ -272,12 +293,14 @@ def take_row(
         ) from error
     values = dict(zip(INSPECTIONS.names, made, strict=True))
     del values["undone"]
-    was = replaced.as_it_was(change.before)["digest"] if change.before else None
-    if was != values["digest"]:  # others stay with what it was: what they say goes along
-        values |= said_beside.with_others(db, was, values)
+    return values
+
+
+def _refuse_twice(db: sqlite3.Connection, change: OutsideChange, mark: object) -> None:
+    """Refuse a row that says now what another one that counts says."""
     twice = db.execute(
         "SELECT fid FROM inspections WHERE digest = ? AND undone = 0 AND fid <> ?",
-        (values["digest"], change.row),
+        (mark, change.row),
     ).fetchone()
     if twice is not None:
         raise FileProblem(
@@ -288,12 +311,6 @@ def take_row(
                 twice=twice[0],
             )
         )
-    names = ", ".join(f"{name} = ?" for name in values)
-    db.execute(
-        f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours
-        (*values.values(), change.row),
-    )
-    return str(values["digest"])
 
 
 def _inspection(row: tuple[object, ...]) -> Inspections:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.monitoring import replaced
+from fieldmon.monitoring import rows_that_count
 from fieldmon.monitoring.geopackage import GeoPackageTable, announce, create, insert, touch
 from fieldmon.planning.members import person_key
 
@@ -145,7 +145,7 @@ def move_photos(db: sqlite3.Connection, mark: str, told: str) -> None:
     db.execute(
         "UPDATE photos SET telling = ? WHERE telling IN (SELECT t.id FROM tellings t JOIN "
         "inspections i ON i.fid = t.inspection WHERE i.digest = ? AND i.undone = ?)",
-        (told, mark, replaced.TAKEN_BACK),
+        (told, mark, rows_that_count.TAKEN_BACK),
     )
 
 
@@ -246,9 +246,9 @@ def _inspection_of(db: sqlite3.Connection, told: set[tuple[str, ...]]) -> int | 
         "AND b.who = ?"
     )
     found = sorted(row for one in told for row in db.execute(wanted, one))
-    if not found or found[0][0] == replaced.COUNTS:
+    if not found or found[0][0] == rows_that_count.COUNTS:
         return int(found[0][1]) if found else None
-    marks = [mark for undone, _, mark in found if undone == replaced.STANDS_BACK]
+    marks = [mark for undone, _, mark in found if undone == rows_that_count.STANDS_BACK]
     counts = "SELECT fid FROM inspections WHERE digest = ? AND undone = 0"
     others = (fid for mark in marks for (fid,) in db.execute(counts, (mark,)))
     return int(next(others, found[0][1]))
@@ -268,7 +268,9 @@ def undo_as_told(db: sqlite3.Connection) -> list[tuple[int, int]]:
     rows = [row[:3] for row in rows if person_key(row[3]) == person_key(row[4])]
     db.executemany("UPDATE inspections SET undone = 1 WHERE fid = ?", [row[:1] for row in rows])
     others = [
-        (batch, day) for inspection, _, day in rows for batch in replaced.undo_same(db, inspection)
+        (batch, day)
+        for inspection, _, day in rows
+        for batch in rows_that_count.undo_same(db, inspection)
     ]
     return others + [(batch, day) for _, batch, day in rows]
 

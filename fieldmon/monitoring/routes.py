@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.route import Route
     from fieldmon.plot.grid import RowLabel
 
 # hexadecimal digits that a phone, too, counts exactly
@@ -48,21 +49,33 @@ def keep(
 
     It has a stop or more. The season's own is kept anew after that of another.
     """
-    day, route, notes = today.scene.day, today.route, today.route.notes
-    assert notes is not None  # noqa: S101 - whoever planned said
-    assert notes.start is not None  # noqa: S101 - when it begins
-    begin, clock = notes.start, grid_clock(route.aisles.grid)
-    last = kept_last(db, day).get(person_key(who))
     if is_kept(db, today, who):
         return False
-    line = route.line_lonlat()
-    row = {
+    last = kept_last(db, today.scene.day).get(person_key(who))
+    revision, line = 1 if last is None else last.revision + 1, today.route.line_lonlat()
+    row = _row(settings, today, line) | {"revision": revision, "who": who}
+    cursor = db.execute(
+        f"INSERT INTO routes ({', '.join(row)}) VALUES ({', '.join('?' * len(row))})",  # noqa: S608 - ours
+        tuple(row.values()),
+    )
+    insert(db, schema.STOPS, _stops(cursor.lastrowid, label, today.route))
+    bounds = (*line.min(axis=0).tolist(), *line.max(axis=0).tolist())
+    for table in (schema.ROUTES, schema.STOPS):
+        touch(db, table.name, bounds)
+    return True
+
+
+def _row(
+    settings: MonitoringSettings, today: DayPlan, line: NDArray[np.float64]
+) -> dict[str, object]:
+    """Return what the table of routes says of a day's route, whose driven line is given."""
+    day, route = today.scene.day, today.route
+    return {
         "geom": blob(LineString(line)) if len(line) > 1 else None,
         "day": day,
         "date": str(settings.date(day)),
-        "revision": 1 if last is None else last.revision + 1,
         "sampler": settings.sampler,
-        "starts": begin.isoformat(),
+        "starts": _start(route).isoformat(),
         "seconds": route.end_s,
         "drive_m": route.drive_m,
         "stops": len(route),
@@ -70,15 +83,15 @@ def keep(
         "at_plant": today.scene.at,
         "seconds_left": today.scene.seconds_left,
         "digest": _digest(today),
-        "who": who,
     }
-    cursor = db.execute(
-        f"INSERT INTO routes ({', '.join(row)}) VALUES ({', '.join('?' * len(row))})",  # noqa: S608 - ours
-        tuple(row.values()),
-    )
+
+
+def _stops(number: int | None, label: RowLabel, route: Route) -> list[tuple[object, ...]]:
+    """Return the rows of the stops of a route with a number."""
+    begin, clock = _start(route), grid_clock(route.aisles.grid)
     stops = zip(
         point_blobs(route.stops_lonlat()),
-        [cursor.lastrowid] * len(route),
+        [number] * len(route),
         range(1, len(route) + 1),
         route.plant.tolist(),
         label.line[route.plant].tolist(),
@@ -88,11 +101,14 @@ def keep(
         route.chance.tolist(),
         strict=True,
     )
-    insert(db, schema.STOPS, list(stops))
-    bounds = (*line.min(axis=0).tolist(), *line.max(axis=0).tolist())
-    for table in (schema.ROUTES, schema.STOPS):
-        touch(db, table.name, bounds)
-    return True
+    return list(stops)
+
+
+def _start(route: Route) -> datetime:
+    """Return when a planned route begins."""
+    assert route.notes is not None  # noqa: S101 - whoever planned said
+    assert route.notes.start is not None  # noqa: S101 - when it begins
+    return route.notes.start
 
 
 def in_words(settings: MonitoringSettings, today: DayPlan) -> dict[str, Any]:

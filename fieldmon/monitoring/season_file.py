@@ -154,22 +154,9 @@ class Season(SeasonPlans, SeasonFrames):
             If what is handed over is something else or cannot be worked with, or an earlier season
             did not end before.
         """
-        if settings is None:
-            today = local_clock(plot.field).today()
-            settings = settings_from({"begins": today} | chosen)
-        elif chosen:
-            raise SettingError(
-                worded(
-                    "A season's settings must be given as one or one by one, but beside settings "
-                    "there is {names}. Put it into them: dataclasses.replace(settings, ...).",
-                    names=", ".join(chosen),
-                )
-            )
+        settings = _chosen_for(plot, settings, chosen)
         if observations is None:
             observations = Observations.none()
-        _must_work(settings, plot.field)
-        if settings.belief.earlier is not None:
-            settings.belief.earlier.must_end_before(settings.begins)
         begins = np.datetime64(settings.begins, "D")
         if messages is None:
             warn_of_left_out(observations, begins)
@@ -364,6 +351,27 @@ class Season(SeasonPlans, SeasonFrames):
         """Write all layers that follow from the causes anew."""
         with self._lock, self.store.writing() as db:
             self._refresh(db, 0)
+
+
+def _chosen_for(
+    plot: Plot, settings: MonitoringSettings | None, chosen: dict[str, Any]
+) -> MonitoringSettings:
+    """Return the settings of a new season, given as one or one by one; raise if none can be."""
+    if settings is None:
+        today = local_clock(plot.field).today()
+        settings = settings_from({"begins": today} | chosen)
+    elif chosen:
+        raise SettingError(
+            worded(
+                "A season's settings must be given as one or one by one, but beside settings "
+                "there is {names}. Put it into them: dataclasses.replace(settings, ...).",
+                names=", ".join(chosen),
+            )
+        )
+    _must_work(settings, plot.field)
+    if settings.belief.earlier is not None:
+        settings.belief.earlier.must_end_before(settings.begins)
+    return settings
 
 
 def _must_work(

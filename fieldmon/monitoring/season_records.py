@@ -16,8 +16,8 @@ from fieldmon.monitoring import (
     batches,
     cautions,
     copy_corrections,
+    corrections,
     drafts,
-    held_instead,
     inspection_lots,
     inspection_table,
     label_table,
@@ -25,7 +25,7 @@ from fieldmon.monitoring import (
     numbered_inspections,
     outside_changes,
     phone_tables,
-    said_beside,
+    repeated_recordings,
     scouts,
     season_log,
     tables,
@@ -228,7 +228,7 @@ class SeasonRecords(OpenSeason):
             taken: tuple[str, ...] = ()
             if len(holding):
                 said = settings_of(db), (source, who)
-                taken = held_instead.take(db, holding, plot, *said)
+                taken = corrections.take(db, holding, plot, *said)
                 self._corrected(db, taken, who)
             elif done.batch is not None:
                 day = settings_of(db).day((others if done.more else news).date.min().item())
@@ -258,10 +258,10 @@ class SeasonRecords(OpenSeason):
         new = inspection_table.store(db, inspection_table.rows(told, *how))
         news, told = told.take(new), inspections.take(known).and_those(told.take(~new))
         held = held.and_those(news)
-        more = said_beside.additions(told, held)
+        more = repeated_recordings.additions(told, held)
         told = told.take(np.array([one.brought for one in more], np.intp))
         made = inspection_table.rows(told, *how)
-        said_beside.keep(db, held, zip([one.held for one in more], made, strict=True))
+        repeated_recordings.keep(db, held, zip([one.held for one in more], made, strict=True))
         by = ", ".join(sorted({*map(str, news.who), *map(str, told.who)} - {""}))
         if into is None:
             batches.name(db, batch, by)
@@ -410,7 +410,7 @@ class SeasonRecords(OpenSeason):
                 settings.day(on)
                 self._must_have_come(on, at)
             who, when = written_in(db, who), (on, None if at is None else seconds(at))
-            said = held_instead.retime(db, inspection, when, plot, settings, who)
+            said = corrections.retime(db, inspection, when, plot, settings, who)
             self._corrected(db, said, who)
         return said[0]
 

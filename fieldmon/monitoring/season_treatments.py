@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from fieldmon.compute.arguments import array_of
+from fieldmon.compute.arguments import plants_marked
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.decisions.labels import SAID_BY_HAND, label_for, plain_name, with_wait
@@ -40,6 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from datetime import date
 
+    import numpy as np
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
@@ -92,18 +91,7 @@ class SeasonTreatments(OpenSeason):
             If no plant was treated, or nothing tells how well it works.
         """
         said = Application(product) if application is None else application
-        if area is not None and plants is not None:
-            raise SettingError(
-                worded("A treatment is of an area or of plants, but both were given.")
-            )
-        place = self._treated(area) if plants is None else self._treated_one_by_one(plants)
-        if not place.plants.any():
-            raise SettingError(
-                worded(
-                    "The area treated must hold plants of this plot, but it holds none. Check its "
-                    "coordinates."
-                )
-            )
+        place = self._place(area, plants)
         works = self._efficacy(said.product) if efficacy is None else efficacy
         with self._writing() as db:
             before = self._read(db)
@@ -129,6 +117,24 @@ class SeasonTreatments(OpenSeason):
                 self._refresh(db, day, before)
         return Recorded(batch if new else None, new, 1 - new)
 
+    def _place(
+        self, area: MultiPolygon | None, plants: NDArray[np.generic] | Sequence[Any] | None
+    ) -> TreatedPlace:
+        """Return the place of a treatment, or raise `SettingError`."""
+        if area is not None and plants is not None:
+            raise SettingError(
+                worded("A treatment is of an area or of plants, but both were given.")
+            )
+        place = self._treated(area) if plants is None else self._treated_one_by_one(plants)
+        if not place.plants.any():
+            raise SettingError(
+                worded(
+                    "The area treated must hold plants of this plot, but it holds none. Check its "
+                    "coordinates."
+                )
+            )
+        return place
+
     def _treated(self, area: MultiPolygon | None) -> TreatedPlace:
         ground = self.plot.field.boundary if area is None else area
         plants = self._inside(ground)
@@ -141,21 +147,15 @@ class SeasonTreatments(OpenSeason):
 
     def _each_plant(self, given: object) -> NDArray[np.bool_]:
         """Return a caller's mask of plants, or raise `SettingError`."""
-        grid = self.plot.grid
-        plants = array_of(
-            np.bool_, "The mask of treated plants", given,
-            f"Of plants by their numbers give np.isin(np.arange({len(grid)}), numbers).",
+        n = len(self.plot.grid)
+        return plants_marked(
+            "The mask of treated plants", given, n,
+            lambda size: worded(
+                "Whether it was treated must be said of each of the {n} plants, but it is of "
+                "{size}.",
+                n=n, size=size,
+            ),
         )  # fmt: skip
-        if plants.shape != (len(grid),):
-            raise SettingError(
-                worded(
-                    "Whether it was treated must be said of each of the {n} plants, but it is of "
-                    "{size}.",
-                    n=len(grid),
-                    size=plants.size,
-                )
-            )
-        return np.asarray(plants, bool)
 
     def _efficacy(self, product: str) -> float:
         """Return how well a product works, as the season learnt it."""

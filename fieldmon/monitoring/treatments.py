@@ -18,7 +18,7 @@ from fieldmon.monitoring import schema
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.geopackage import blob, geometry, touch, unpacked
 from fieldmon.monitoring.history import Treatment
-from fieldmon.monitoring.replaced import COUNTS, STANDS_BACK, TAKEN_BACK
+from fieldmon.monitoring.rows_that_count import COUNTS, STANDS_BACK, TAKEN_BACK
 from fieldmon.monitoring.waiting_periods import WaitingPeriod, end_of
 from fieldmon.plot.local_clock import LocalClock
 
@@ -254,7 +254,7 @@ def count_again(db: sqlite3.Connection) -> list[int]:
 def n_elsewhere(db: sqlite3.Connection, batch: int, only: int | None = None) -> int:
     """Return how many treatments of a batch do not count, but another row of the same does.
 
-    `only` as in `replaced.n_elsewhere`.
+    `only` as in `rows_that_count.n_elsewhere`.
     """
     counted = frozenset().union(*counting(db))
     which = f"undone <> {COUNTS}" if only is None else f"undone = {only:d}"

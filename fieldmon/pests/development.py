@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.pests.degree_days import Thresholds, degree_days, degree_days_of_hours
-from fieldmon.pests.usual import LEAST_HOURS, UsualDays
+from fieldmon.pests.usual_days import LEAST_HOURS, UsualDays
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -63,6 +63,12 @@ class Weather:
     zone
         Name of the place's time zone, by which days begin; empty: UTC.
 
+    Raises
+    ------
+    SettingError
+        If columns differ in length, a step is neither of the two, there is no such zone, or a value
+        is none on earth.
+
     Examples
     --------
     >>> import fieldmon as fm

@@ -36,11 +36,24 @@ _NEAR_M = 0.01
 
 @checked
 def cut_blocks(field: Field, line: LineString | MultiLineString) -> tuple[Block, ...]:
-    """Return the blocks of a plot, those that a line ``(lon, lat)`` passes through in two.
+    """Return the blocks of a plot, those that a line passes through in two.
 
     A plot without blocks is one that is cut. Both parts keep what was stated of the block, but
     its direction: each has the rows that suit it. What was said of rows by hand is no part of a
     field: say it again, as below.
+
+    Parameters
+    ----------
+    field
+        The plot as it is known, with or without blocks. It stays as it is.
+    line
+        Where to cut, degrees ``(lon, lat)``; it may end a little short of the edge.
+
+    Returns
+    -------
+    tuple of Block
+        All blocks of the plot, for ``replace(field, blocks=...)``; parts are called ``north 1``,
+        ``north 2``.
 
     Raises
     ------

@@ -60,6 +60,15 @@ class Field:
     in_rows
         Whether plants stand in rows. If not, measured ones are visited by nearness.
 
+    Raises
+    ------
+    PlotError
+        If the boundary is empty or no valid area; `read_plot` repairs what files have.
+    ObservationError
+        If the gate or a plant is no position on earth.
+    SettingError
+        If something is of another kind.
+
     Examples
     --------
     >>> import fieldmon as fm, shapely

@@ -21,6 +21,7 @@ from fieldmon.plot.rounding import doubts_of_rounding
 if TYPE_CHECKING:
     from geopandas import GeoDataFrame, GeoSeries
     from numpy.typing import NDArray
+    from pandas import Series
 
     from fieldmon.plot.grid import PlantGrid
 
@@ -71,6 +72,25 @@ def boundary_and_plants(
     PlotError
         If it is empty, holds several areas, or anything but areas and points.
     """
+    _must_say_where(frame)
+    there = np.flatnonzero(_placed(frame.geometry.to_numpy()))
+    shapes = frame.geometry.iloc[there].to_crs(_DEGREES)
+    kinds = shapes.geom_type.str.removeprefix("Multi")
+    boundary, points = _area_of(shapes, kinds), shapes[kinds == "Point"]
+    places = points.to_numpy()
+    which = np.repeat(there[kinds == "Point"], shapely.get_num_coordinates(places))
+    said, names = _of_no_place(frame, there), _names_in(frame, which)
+    xy = shapely.get_coordinates(frame.geometry.iloc[there][kinds == "Point"].to_numpy())
+    lonlat = shapely.get_coordinates(places)
+    step_m = step_of(xy) * metres_per_unit(frame.crs)
+    said += doubts_of_rounding(lonlat, step_m, names.row, PlotError)
+    if doubles := near_doubles(lonlat):
+        said.append(doubles.sentence)
+    return boundary, lonlat, names, said
+
+
+def _must_say_where(frame: GeoDataFrame | GeoSeries) -> None:
+    """Raise `SettingError` unless this is a frame whose geometry has a coordinate system."""
     import geopandas  # noqa: PLC0415 - as above
 
     must_be(
@@ -88,11 +108,12 @@ def boundary_and_plants(
             "A GeoDataFrame must say its coordinate system, but its crs is None. "
             "Set it first: gdf.set_crs(4326), for instance."
         )
-    there = np.flatnonzero(_placed(frame.geometry.to_numpy()))
-    shapes = frame.geometry.iloc[there].to_crs(_DEGREES)
-    kinds = shapes.geom_type.str.removeprefix("Multi")
-    areas, points = shapes[kinds == "Polygon"], shapes[kinds == "Point"]
-    if not len(shapes) or len(areas) + len(points) < len(shapes):
+
+
+def _area_of(shapes: GeoSeries, kinds: Series) -> MultiPolygon | None:
+    """Return the one area among shapes; raise `PlotError` for several, or for other kinds."""
+    areas = shapes[kinds == "Polygon"]
+    if not len(shapes) or not kinds.isin(["Polygon", "Point"]).all():
         found = ", ".join(sorted(set(kinds))) or "nothing"
         raise PlotError(
             f"A plot must be an area, measured plants as points, or both, but the GeoDataFrame "
@@ -103,17 +124,7 @@ def boundary_and_plants(
             f"One area must be the plot, but the GeoDataFrame holds {len(areas)}. Choose a row, "
             "gdf.iloc[[0]], or join its parts, gdf.dissolve()."
         )
-    boundary = MultiPolygon(list(shapely.get_parts(areas.iloc[0]))) if len(areas) else None
-    places = points.to_numpy()
-    which = np.repeat(there[kinds == "Point"], shapely.get_num_coordinates(places))
-    said, names = _of_no_place(frame, there), _names_in(frame, which)
-    xy = shapely.get_coordinates(frame.geometry.iloc[there][kinds == "Point"].to_numpy())
-    lonlat = shapely.get_coordinates(places)
-    step_m = step_of(xy) * metres_per_unit(frame.crs)
-    said += doubts_of_rounding(lonlat, step_m, names.row, PlotError)
-    if doubles := near_doubles(lonlat):
-        said.append(doubles.sentence)
-    return boundary, lonlat, names, said
+    return MultiPolygon(list(shapely.get_parts(areas.iloc[0]))) if len(areas) else None
 
 
 def _placed(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:

@@ -55,6 +55,11 @@ class Viewpoints:
     longer
         Chance for any time longer than the last step.
 
+    Raises
+    ------
+    SettingError
+        If there is no step, seconds are not above 0 and rising, or a chance falls or is above 1.
+
     Examples
     --------
     >>> import fieldmon as fm
@@ -156,12 +161,23 @@ class Robot:
         take on the plot, unless its seconds are said; see `Aisles.worked_by`. None: it turns on
         the spot. Needs a width.
 
+    Raises
+    ------
+    SettingError
+        If speed, looking or hours are not above 0, hours above 24, seconds below 0, `detection` no
+        chance, or there is a length or turning radius without a width.
+
     Examples
     --------
     >>> import fieldmon as fm
     >>> robot = fm.Robot(hours=4, look_s=30)
     >>> robot.detects, robot.visit_s
     (0.69, 31.13)
+    >>> try:
+    ...     fm.Robot(turning_radius_m=2.0)
+    ... except fm.SettingError as problem:
+    ...     print(problem)
+    A robot whose turning radius is known must have a width too. Give both.
     """
 
     speed_m_s: float = 2.5 / 3.6
@@ -263,13 +279,22 @@ class Robot:
 
 
 def scout() -> Robot:
-    """Return a person on foot with a hand lens (our choice: 4 km/h, 30 s a plant, 4 h).
+    """Return a person on foot with a hand lens.
+
+    The numbers are our choice: 4 km/h, 30 s at a plant (69 % of what is there is found), 5 s for
+    each stop, 3 s for another row, 2 s to turn about, 4 h a day.
+
+    Returns
+    -------
+    Robot
+        With other numbers: ``replace(scout(), look_s=60)``.
 
     Examples
     --------
     >>> import fieldmon as fm
-    >>> fm.scout().with_hours(2).day_s
-    7200.0
+    >>> ann = fm.scout().with_hours(2)
+    >>> ann.day_s, ann.visit_s, ann.detects
+    (7200.0, 35.0, 0.69)
     """
     return Robot(4.0 / 3.6, *SCOUT_TIMES, look_s=30.0, hours=4.0)
 
@@ -280,11 +305,17 @@ def rover() -> Robot:
     It is the robot of `fieldmon drive --robot mujoco`; docs/drive tells how its times were found.
     Its mast looks to both sides, and it drives as well backwards: it need not turn in an aisle.
 
+    Returns
+    -------
+    Robot
+        The usual numbers, 0.58 m wide and 0.8 m long: aisles too narrow for it are not driven.
+
     Examples
     --------
     >>> import fieldmon as fm
-    >>> fm.rover().width_m
-    0.58
+    >>> small = fm.rover()
+    >>> small.width_m, small.length_m, small.hours == fm.Robot().hours
+    (0.58, 0.8, True)
     """
     return Robot(width_m=0.58, length_m=0.8)
 

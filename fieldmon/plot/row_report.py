@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import counted, worded
+from fieldmon.compute.wording import Worded, counted, worded
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.strands import row_deviations
 
@@ -281,26 +281,8 @@ def row_report(
     # what bends was only taken since plants stand in it; of straight lines that is not known
     straight = grid.aisles_m is None and "hardly" in found.how
     scattered = straight or typical_m > _NO_ROWS * grid.row_spacing_m
-    n_rows = counted(int(grid.row_line.max()) + 1, "row")
-    blocks = (
-        worded(
-            " of {n_blocks}",
-            n_blocks=counted(grid.n_blocks, "block"),
-        )
-        if grid.n_blocks > 1
-        else ""
-    )
-    bend = worded(", as they bend") if grid.aisles_m is not None else ""
-    how = worded(
-        "{counted} in {n_rows}{blocks}{bend}, {typical_m:.2f} m beside their lines",
-        counted=counted(len(faces), "plant"),
-        n_rows=n_rows,
-        blocks=blocks,
-        bend=bend,
-        typical_m=typical_m,
-    )
     return RowReport(
-        how,
+        _how(grid, len(faces), typical_m),
         typical_m,
         float(np.mean(alone_m > _OFF * grid.row_spacing_m)),
         said.label is not None or not scattered,
@@ -315,6 +297,23 @@ def row_report(
         _said_otherwise(grid, told, "row_spacing_m"),
         _said_otherwise(grid, told, "plant_spacing_m"),
         _nearer_share(grid),
+    )
+
+
+def _how(grid: PlantGrid, n_plants: int, typical_m: float) -> Worded:
+    """Return in words how many plants stand in how many rows, and how far beside their lines."""
+    blocks = bend = ""
+    if grid.n_blocks > 1:
+        blocks = worded(" of {n_blocks}", n_blocks=counted(grid.n_blocks, "block"))
+    if grid.aisles_m is not None:
+        bend = worded(", as they bend")
+    return worded(
+        "{counted} in {n_rows}{blocks}{bend}, {typical_m:.2f} m beside their lines",
+        counted=counted(n_plants, "plant"),
+        n_rows=counted(int(grid.row_line.max()) + 1, "row"),
+        blocks=blocks,
+        bend=bend,
+        typical_m=typical_m,
     )
 
 

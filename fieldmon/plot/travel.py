@@ -19,11 +19,11 @@ from fieldmon.plot.clear_lanes import clear_lanes, hidden_plants
 from fieldmon.plot.clearance import Clearance, hidden_sentence, narrow_sentence, robot_on
 from fieldmon.plot.driven_line import Lanes, driven_line, shortest_nodes
 from fieldmon.plot.ends_within import ROOM_M, opened
+from fieldmon.plot.line_warnings import line_said
 from fieldmon.plot.obstacles import off_limits
 from fieldmon.plot.road_network import RoadNetwork, find_roads
 from fieldmon.plot.travel_table import TravelTable
 from fieldmon.plot.way_joining import CutOffError
-from fieldmon.plot.ways_said import line_said
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

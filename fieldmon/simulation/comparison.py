@@ -20,7 +20,7 @@ from fieldmon.samplers.answers import Checked, must_name_plants
 from fieldmon.samplers.own import label_of
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run
-from fieldmon.simulation.paired import SameInsects, met_by_all, paired
+from fieldmon.simulation.paired_seasons import SameInsects, met_by_all, paired
 from fieldmon.simulation.season import SimulationSettings
 from fieldmon.simulation.statistics import paired_ratio, too_few_sentence
 from fieldmon.simulation.treating import WHOLE

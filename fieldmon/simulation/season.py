@@ -79,6 +79,11 @@ class SimulationSettings:
         Days from one visit to the next, the first on the first day; 1: a visit a day. On the days
         between, nobody inspects or treats.
 
+    Raises
+    ------
+    SettingError
+        If `n_days` or `visit_every` are not 1 to 3650, or `hidden_nights` not 0 to 3650.
+
     Examples
     --------
     >>> import fieldmon as fm

@@ -28,7 +28,12 @@ class Start:
     infested
         ``(n,)`` the truth, which no sampler sees.
     chance
-        ``(n,)`` chance of infestation as believed.
+        ``(n,)`` chance of infestation as believed, in 0..1.
+
+    Raises
+    ------
+    SettingError
+        If both are not of as many plants, or a chance is not in 0..1.
 
     Examples
     --------

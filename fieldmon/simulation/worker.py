@@ -16,7 +16,7 @@ from fieldmon.plot.robot import USUAL_TIMES, Robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.own import label_of
 from fieldmon.simulation.metrics import DETECTION_LEVELS_PCT
-from fieldmon.simulation.paired import SameInsects
+from fieldmon.simulation.paired_seasons import SameInsects
 from fieldmon.simulation.season import SimulationSettings
 from fieldmon.simulation.team_season import ONE
 

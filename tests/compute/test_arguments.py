@@ -20,6 +20,7 @@ from fieldmon.compute.arguments import (
     must_be_shaped,
     must_be_zone,
     must_hold_shapes,
+    plants_marked,
     shown,
 )
 from fieldmon.compute.ranges import AllowedRange
@@ -158,3 +159,11 @@ def test_chances_are_taken_as_a_list_and_refused_unless_they_are_one_for_each_pl
     for wrong, said in (([0.1], "shape"), ([0.1, 0.3, 2.0], "0..1"), ("soon", "numbers")):
         with pytest.raises(SettingError, match=said):
             chances_of(wrong, 3)
+
+
+def test_plants_are_marked_each_or_it_is_said_how_many_were():
+    assert plants_marked("The mask", [True, False], 2, str).tolist() == [True, False]
+    with pytest.raises(SettingError, match=r"^Not 2 but 3$"):
+        plants_marked("The mask", [True] * 3, 2, lambda size: f"Not 2 but {size}")
+    with pytest.raises(SettingError, match=r"The mask must hold True .* np.isin\(np.arange\(2\), "):
+        plants_marked("The mask", [0, 1], 2, str)

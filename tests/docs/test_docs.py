@@ -140,6 +140,13 @@ def test_every_name_of_the_library_is_on_its_page():
     assert set(fieldmon.__all__) - {"__version__"} <= told
 
 
+def test_what_a_season_can_be_asked_is_there_each_once():
+    table = PAGES["docs/api.md"].partition("| of a season |")[2].partition("\n\n")[0]
+    named = re.findall(r"`(\w+)`", table)
+    assert [name for name in named if not hasattr(fieldmon.Season, name)] == []
+    assert len(named) == len(set(named)) > 30
+
+
 def test_every_pest_that_comes_along_has_its_line():
     table = PAGES["docs/pests.md"].partition("\n## Included pests\n")[2].partition("\n## ")[0]
     assert sorted(re.findall(r"^\| `([\w-]+)` \|", table, re.MULTILINE)) == sorted(pest_names())

@@ -6,10 +6,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fieldmon.drive.account import stop_table
 from fieldmon.drive.bag import write_bag
 from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
+from fieldmon.drive.day_tables import stop_table
 from fieldmon.drive.recording import Recording
 from fieldmon.drive.trace import (
     believed_on_the_way,

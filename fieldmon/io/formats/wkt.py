@@ -13,13 +13,11 @@ from shapely.errors import GEOSException
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.formats.wkb import closed
+from fieldmon.io.formats.wkb import closed, understood
 from fieldmon.io.import_report import ImportMessage, dropped, guessed, seen
 from fieldmon.io.sandbox import limits
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
 _WKT = re.compile(
@@ -73,11 +71,11 @@ def with_shapes(layer: Layer, stated: str | None) -> Layer:
     if curved:
         raise _about_curves(layer.name, name, curved[0])
     there = np.array([cell is not None for cell in cells], dtype=bool)
+    as_text, as_bytes = (
+        np.array([cell and cell[part] for cell in cells], dtype=object) for part in (0, 1)
+    )
     try:
-        geometry = _geometry(cells, "ignore")
-        lost = shapely.is_missing(geometry) & there
-        geometry[lost] = _geometry([cell for cell, is_lost in zip(cells, lost, strict=True)
-                                    if is_lost], "fix")  # fmt: skip
+        geometry, mended = understood(as_bytes, as_text)
         shapely.get_coordinates(geometry[shapely.get_type_id(geometry) == _COLLECTION])
     except (NotImplementedError, GEOSException):  # curves in a collection
         raise _about_curves(layer.name, name, int(np.flatnonzero(there)[0])) from None
@@ -86,7 +84,7 @@ def with_shapes(layer: Layer, stated: str | None) -> Layer:
     )
     messages = [
         seen(worded("Shapes are in column {name!r}.", name=name)),
-        *_about(layer, name, geometry, lost),
+        *_about(layer, name, geometry, int(mended.sum())),
     ]
     systems = {cell.srid for cell in cells if cell and cell.srid}
     crs = f"EPSG:{systems.pop()}" if len(systems) == 1 else stated
@@ -127,18 +125,6 @@ def _read(cell: str) -> _Cell | None:
     return _Cell(None, None if (code & _KIND) % 1000 in _CURVED else raw, srid)
 
 
-def _geometry(
-    cells: Sequence[_Cell | None], on_invalid: Literal["ignore", "fix"]
-) -> NDArray[np.object_]:
-    """Return the shapes of cells ``(n,)``, None where there is none or it is none."""
-    as_text = np.array([cell and cell.wkt for cell in cells], dtype=object)
-    as_bytes = np.array([cell and cell.wkb for cell in cells], dtype=object)
-    geometry = shapely.from_wkt(as_text, on_invalid=on_invalid)
-    in_bytes = as_bytes != None  # noqa: E711 - each of them
-    geometry[in_bytes] = shapely.from_wkb(as_bytes[in_bytes], on_invalid=on_invalid)
-    return np.asarray(geometry, dtype=object)
-
-
 def _about_curves(file: str, column: str, record: int) -> FileProblem:
     return FileProblem(
         worded(
@@ -153,12 +139,11 @@ def _about_curves(file: str, column: str, record: int) -> FileProblem:
 
 
 def _about(
-    layer: Layer, name: str, geometry: NDArray[np.object_], lost: NDArray[np.bool_]
+    layer: Layer, name: str, geometry: NDArray[np.object_], n_closed: int
 ) -> list[ImportMessage]:
-    missing = shapely.is_missing(geometry)
-    messages = [closed(n)] if (n := int((lost & ~missing).sum())) else []
+    messages = [closed(n_closed)] if n_closed else []
     said = np.array([bool(text(v)) for v in layer.columns[name]], dtype=bool)
-    if (n := int((missing & said).sum())) > 0:
+    if (n := int((shapely.is_missing(geometry) & said).sum())) > 0:
         messages.append(
             dropped(worded("{n} {n:shape|shapes} cannot be understood; left out.", n=n), name)
         )

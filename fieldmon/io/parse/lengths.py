@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _SHOWN = 3
 #: only what has a unit, or a mark before it, is more than a number
 _WITH_UNIT = re.compile(r"(?=[±~≈]|.*\D$)[±~≈]?\s*([-+]?[\d.,]*\d)\s*([^\s\d.,].*)?")
+_BRACKETS = re.compile(r"[(\[]([^)\]]*)[)\]]")
 #: metres of each unit, by what it is called
 UNITS_M = {
     **dict.fromkeys(("m", "mt", "mts", "metre", "metres", "meter", "meters", "metern"), 1.0),
@@ -42,6 +43,20 @@ def metres(cells: NDArray[np.object_], unit_m: float = 1.0) -> Float:
     return _measured(cells, None, unit_m)
 
 
+def units_said(name: str, *, at_end: bool = False) -> list[str]:
+    """Return what a column's name has in brackets, in their order, as `UNITS_M` writes units.
+
+    Only what is in brackets `at_end` of it, if that is asked for.
+    """
+    found = _BRACKETS.finditer(name)
+    return [_unit(one[1]) for one in found if not (at_end and name[one.end() :].strip())]
+
+
+def unit_m(said: str) -> float | None:
+    """Return how many metres a unit is; None: it is no length."""
+    return UNITS_M.get(_unit(said))
+
+
 def accuracies(
     cells: NDArray[np.object_], column: str, decimal: str | None = None
 ) -> tuple[Float, list[ImportMessage]]:
@@ -49,8 +64,8 @@ def accuracies(
 
     Of cells without a unit the column may say it in brackets: ``accuracy (ft)``.
     """
-    unit = re.search(r"[(\[]\s*([^)\]]*?)\.?\s*[)\]]", column)
-    stated = _measured(cells, decimal, 1.0 if unit is None else UNITS_M.get(_plain(unit[1]), 1.0))
+    usual_m = UNITS_M.get(next(iter(units_said(column)), ""), 1.0)
+    stated = _measured(cells, decimal, usual_m)
     wrong = [k for k in np.flatnonzero(~np.isfinite(stated)).tolist() if not is_missing(cells[k])]
     known = np.where(stated > 0, stated, np.nan)
     if not wrong:
@@ -73,10 +88,14 @@ def _measured(cells: NDArray[np.object_], decimal: str | None, usual_m: float) -
     for k, cell in enumerate(map(text, cells)):
         if found := _WITH_UNIT.fullmatch(_plain(cell)):
             value = number(found[1], decimal or ("," if "," in found[1] else "."))
-            unit_m = UNITS_M.get(found[2].rstrip("."), np.nan) if found[2] else usual_m
-            stated[k] = value * unit_m
+            own_m = unit_m(found[2]) if found[2] else usual_m
+            stated[k] = np.nan if own_m is None else value * own_m
     return stated
 
 
 def _plain(cell: str) -> str:
     return cell.strip().casefold()
+
+
+def _unit(said: str) -> str:
+    return _plain(said).rstrip(".").rstrip()

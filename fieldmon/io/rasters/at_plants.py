@@ -10,8 +10,8 @@ from fieldmon.compute.wording import joined, share_figure, worded
 from fieldmon.infestation.raster_risk import RELATIVE, meaning_of, risk_chance
 from fieldmon.io.import_report import doubtful, seen
 from fieldmon.io.options import source_name
-from fieldmon.io.rasters.alike import doubts_of_alike
 from fieldmon.io.rasters.read import read_raster
+from fieldmon.io.rasters.shared_values import doubts_of_alike
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -129,21 +129,23 @@ def _placed(tif: DatasetReader, path: Path, name: str, options: RasterOptions) -
                 system=crs.name,
             )
         )
+    said = (*messages, *_about_lines(to_map), *through.messages())
+    return OpenRaster(tif, name, to_map, crs, through, said)
+
+
+def _about_lines(to_map: Affine) -> list[ImportMessage]:
+    """Return what to say of lines of pixels that do not run eastward, the first in the north."""
     a, b, _, d, e, _ = to_map
     if abs(b) > 1e-6 * abs(a) or abs(d) > 1e-6 * abs(e):
-        turn = math.degrees(math.atan2(d, a))
-        messages.append(
-            seen(
-                worded(
-                    "The raster is turned by {turn:.4g} degrees; positions follow it.", turn=turn
-                )
-            )
+        said = worded(
+            "The raster is turned by {turn:.4g} degrees; positions follow it.",
+            turn=math.degrees(math.atan2(d, a)),
         )
     elif e > 0:
-        messages.append(
-            seen(worded("The raster's first line lies in the south; positions follow it."))
-        )
-    return OpenRaster(tif, name, to_map, crs, through, (*messages, *through.messages()))
+        said = worded("The raster's first line lies in the south; positions follow it.")
+    else:
+        return []
+    return [seen(said)]
 
 
 def _check_shape(tif: DatasetReader, name: str) -> None:

@@ -13,7 +13,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import ReadOptions
 from fieldmon.io.parse.crs import Transformation, system, transformation_from
-from fieldmon.io.rasters.smooth import smoothly
+from fieldmon.io.rasters.interpolated_projection import smoothly
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

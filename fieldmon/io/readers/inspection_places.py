@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.plot.grid import PlantGrid
 
+    #: what the rows or the plants of records are called
+    Names = NDArray[np.str_]
+
 _NEIGHBOURS = 13  # plants among which the nearest and its rivals are: two rings, or both faces
 _FARTHEST_DEG = 1.0
 _TOUCH_M = 1e-3
@@ -130,21 +133,47 @@ def by_name(
     own = (grid.line_called, grid.line_named, grid.plant_called, grid.plant_named)
     if rows.row_called is None or rows.plant_called is None or all(one is None for one in own):
         return rows, {}, ()
-    called, plants, blocks = CalledRows(grid), CalledPlants(grid), called_blocks(grid)
-    plant, line, number = rows.plant.copy(), rows.line.copy(), rows.number.copy()
-    problems: dict[int, str] = {}
-    open_yet = ~np.isfinite(rows.lonlat.sum(axis=1))
-    alone = (line == UNSAID) & open_yet
-    alone &= (rows.row_called == "") & (rows.plant_called != "")
+    names = rows.row_called, rows.plant_called
+    rows, messages = _by_plant_alone(rows, names, grid)
+    rows, problems = _by_row_and_plant(rows, names, grid)
+    return rows, problems, messages
+
+
+def _by_plant_alone(
+    rows: InspectionRows, names: tuple[Names, Names], grid: PlantGrid
+) -> tuple[InspectionRows, tuple[ImportMessage, ...]]:
+    """Return records with the plants that they name without a row, and what to say of these."""
+    row_called, plant_called = names
+    plants, plant = CalledPlants(grid), rows.plant.copy()
+    alone = (rows.line == UNSAID) & _has_no_place(rows)
+    alone &= (row_called == "") & (plant_called != "")
     for i in np.flatnonzero(alone).tolist():
-        found = plants.plant(str(rows.plant_called[i]))
+        found = plants.plant(str(plant_called[i]))
         alone[i] = found is not None
         if found is not None:
             plant[i] = found
-    label = row_label(grid, plant[alone])
+    if not alone.any():
+        return rows, ()
+    line, number, label = rows.line.copy(), rows.number.copy(), row_label(grid, plant[alone])
     line[alone], number[alone] = label.line, label.number
-    for i in np.flatnonzero((rows.row_called != "") & (rows.plant < 0)).tolist():
-        row, said = str(rows.row_called[i]), str(rows.plant_called[i])
+    said = worded(
+        "{n} {n:record names a plant|records name plants} alone: taken as the plot's file "
+        "calls {n:it|them}.",
+        n=int(alone.sum()),
+    )
+    return replace(rows, plant=plant, line=line, number=number), (guessed(said),)
+
+
+def _by_row_and_plant(
+    rows: InspectionRows, names: tuple[Names, Names], grid: PlantGrid
+) -> tuple[InspectionRows, dict[int, str]]:
+    """Return records with the rows and plants that they name as numbers, and why some are none."""
+    row_called, plant_called = names
+    called, plants, blocks = CalledRows(grid), CalledPlants(grid), called_blocks(grid)
+    line, number, open_yet = rows.line.copy(), rows.number.copy(), _has_no_place(rows)
+    problems: dict[int, str] = {}
+    for i in np.flatnonzero((row_called != "") & (rows.plant < 0)).tolist():
+        row, said = str(row_called[i]), str(plant_called[i])
         of = str(rows.block[i]) if grid.n_blocks > 1 else ""
         meant = called.meant(row, blocks.get(key(of), 0) if of else None)
         if len(meant) > 1:
@@ -160,15 +189,11 @@ def by_name(
             line[i], number[i] = labels[0]
         elif labels or (open_yet[i] and not (row.isdecimal() and said.isdecimal())):
             problems[i] = _unknown(called, row, said, [which for _, which in labels])
-    messages: tuple[ImportMessage, ...] = ()
-    if alone.any():
-        said_alone = worded(
-            "{n} {n:record names a plant|records name plants} alone: taken as the plot's file "
-            "calls {n:it|them}.",
-            n=int(alone.sum()),
-        )
-        messages = (guessed(said_alone),)
-    return replace(rows, plant=plant, line=line, number=number), problems, messages
+    return replace(rows, line=line, number=number), problems
+
+
+def _has_no_place(rows: InspectionRows) -> NDArray[np.bool_]:
+    return np.asarray(~np.isfinite(rows.lonlat.sum(axis=1)), dtype=bool)
 
 
 def _unknown(called: CalledRows, row: str, plant: str, numbers: list[int]) -> str:

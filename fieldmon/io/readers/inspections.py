@@ -37,7 +37,7 @@ from fieldmon.io.import_report import (
     guessed,
     seen,
 )
-from fieldmon.io.parse.noted import joined_notes
+from fieldmon.io.parse.joined_notes import joined_notes
 from fieldmon.io.read import read_inspection_rows
 from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
 from fieldmon.io.readers.inspection_options import InspectionOptions

@@ -11,7 +11,7 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Severity, WrongRows, doubtful, seen
 from fieldmon.io.parse.columns import plain
-from fieldmon.io.parse.lengths import UNITS_M, metres
+from fieldmon.io.parse.lengths import UNITS_M, metres, unit_m, units_said
 from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.plot.planting import PLANTED
 
@@ -97,18 +97,17 @@ def _column(
     """Return the column that has one of the known names, and how many metres its unit is."""
     read = [(*_name_and_unit(column), column) for column in columns]
     for name in map(plain, known):
-        for own, unit_m, column in read:
-            if name == own and (unit_m is not None or not in_metres):
-                return column, unit_m or 1.0
+        for own, metres_each, column in read:
+            if name == own and (metres_each is not None or not in_metres):
+                return column, metres_each or 1.0
     return None
 
 
 def _name_and_unit(column: str) -> tuple[str, float | None]:
     """Return a column's plain name, and the metres of the unit behind it; None: it is no length."""
-    bracket = re.search(r"[(\[]([^)\]]*)[)\]]\s*$", column)
-    if bracket:
-        unit = bracket[1].strip().casefold().rstrip(".")
-        return plain(column), 1.0 if unit in _NO_UNITS else UNITS_M.get(unit)
+    if in_brackets := units_said(column, at_end=True):
+        (said,) = in_brackets
+        return plain(column), 1.0 if said in _NO_UNITS else unit_m(said)
     stem, _, unit = column.casefold().replace(" ", "_").rpartition("_")
     if stem and unit in UNITS_M and unit != "m":
         return plain(stem), UNITS_M[unit]

@@ -123,23 +123,35 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
                 where=where,
             )
         )
-    number = {
+    numbers = {
         name: _number(values[name], name, where)
         for name in (*SETTINGS, "lon", "lat")
         if values.get(name)
     }
-    if ("lon" in number) != ("lat" in number):
+    gate, settings = _gate(numbers, where), _settings(numbers, where)
+    start = values.get("start") or None
+    return StatedMember(values["name"], who == "scout", settings, start, gate, where)
+
+
+def _gate(numbers: dict[str, float], where: str) -> tuple[float, float] | None:
+    """Return the gate that a line states, ``(lon, lat)``; None: none."""
+    if ("lon" in numbers) != ("lat" in numbers):
         raise FileProblem(
             worded(
                 "{where}: a gate must have lon and lat, but it has one of them.",
                 where=where,
             )
         )
-    gate = (number.pop("lon"), number.pop("lat")) if "lon" in number else None
+    return (numbers["lon"], numbers["lat"]) if "lon" in numbers else None
+
+
+def _settings(numbers: dict[str, float], where: str) -> dict[str, float]:
+    """Return what a line states of who works, by the names of `Robot`'s fields."""
+    settings = {}
     for column, (setting, units, _) in SETTINGS.items():
-        if column not in number:
+        if column not in numbers:
             continue
-        value = number.pop(column)
+        value = numbers[column]
         if rule := broken_rule(setting, value, units):
             raise FileProblem(
                 worded(
@@ -150,9 +162,8 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
                     value=value,
                 )
             )
-        number[setting] = value / units
-    start = values.get("start") or None
-    return StatedMember(values["name"], who == "scout", number, start, gate, where)
+        settings[setting] = value / units
+    return settings
 
 
 def _number(text: str, name: str, where: str) -> float:

@@ -60,6 +60,8 @@ if TYPE_CHECKING:
     from fieldmon.io.formats.layer import Layer
     from fieldmon.io.options import Source
     from fieldmon.io.readers.weather_options import WeatherOptions
+    from fieldmon.io.readers.weather_services import WeatherService
+    from fieldmon.io.readers.weather_times import TimesRead
     from fieldmon.io.sandbox.workroom import Workroom
     from fieldmon.pests.weather import Floats, Weather
 
@@ -134,10 +136,26 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     taken |= {*filter(_is_forecast, layer.columns), *([telling] if telling else [])}
     must_be_one_station(layer, timed.at, taken)
     messages += timed.messages
-    measured, step_s = {}, _step_s(timed.at)
-    if step_s > HOUR_S:
+    if _step_s(timed.at) > HOUR_S:
         messages += _about_one_extreme(columns)
+    measured, said = _measured(layer, columns, timed, service, options)
+    messages += said
+    forecast, said = _forecast(layer, telling)
+    messages += said
+    return WeatherRows(timed.at, measured, forecast, timed.zone, options.zone or ""), messages
+
+
+def _measured(
+    layer: Layer,
+    columns: list[WeatherColumn],
+    timed: TimesRead,
+    service: WeatherService,
+    options: WeatherOptions,
+) -> tuple[dict[str, Floats], list[ImportMessage]]:
+    """Return what columns measure, in our units, by our names; and what to say of it."""
+    measured: dict[str, Floats] = {}
     cells: dict[WeatherColumn, Floats] = {}
+    messages: list[ImportMessage] = []
     for column in columns:
         if column.measure == "wind_from_deg":
             measured[column.measure] = _directions(layer, column, options)
@@ -153,13 +171,11 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     unit_of, said = _units_of(cells, options)
     messages += said
     for column, unit in unit_of.items():
-        measured[column.measure] = UNITS[unit].ours(cells[column], step_s)
+        measured[column.measure] = UNITS[unit].ours(cells[column], _step_s(timed.at))
     if service.tenths and "rain_mm" in measured:
         # -1 is less than could be measured
         measured["rain_mm"] = np.maximum(measured["rain_mm"], 0.0)
-    forecast, said = _forecast(layer, telling)
-    messages += said
-    return WeatherRows(timed.at, measured, forecast, timed.zone, options.zone or ""), messages
+    return measured, messages
 
 
 def _first_table(layer: Layer) -> tuple[Layer, list[ImportMessage]]:

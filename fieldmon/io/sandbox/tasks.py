@@ -59,7 +59,7 @@ def crews(
 
 def treated(folder: str, source: Source, options: PlotOptions) -> Imported[MultiPolygon]:
     """Return the area that a source says was treated."""
-    from fieldmon.io.readers.treated import treated_of  # noqa: PLC0415
+    from fieldmon.io.readers.treated_areas import treated_of  # noqa: PLC0415
 
     return treated_of(open_layer(source, options, Workroom(Path(folder))), options)
 

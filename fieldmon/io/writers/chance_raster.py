@@ -13,7 +13,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.infestation.raster_risk import CHANCE_BAND
 from fieldmon.io.atomic_write import write_whole
-from fieldmon.io.rasters.smooth import smoothly
+from fieldmon.io.rasters.interpolated_projection import smoothly
 from fieldmon.io.sandbox import limits
 
 if TYPE_CHECKING:

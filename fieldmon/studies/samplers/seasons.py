@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.simulation.metrics import season_metrics
-from fieldmon.simulation.paired import paired
+from fieldmon.simulation.paired_seasons import paired
 from fieldmon.simulation.season import simulated_days
 from fieldmon.studies.samplers.contenders import (
     CLAIRVOYANT,

@@ -21,7 +21,7 @@ from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler as sampler_of
-from fieldmon.simulation.paired import SameInsects, paired
+from fieldmon.simulation.paired_seasons import SameInsects, paired
 from fieldmon.simulation.season import SimulationSettings
 
 if TYPE_CHECKING:

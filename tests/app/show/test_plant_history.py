@@ -133,6 +133,16 @@ def test_a_chance_of_nothing_after_a_find_is_explained(said, season, monkeypatch
     assert texts.HISTORY_TREATED not in why
 
 
+def test_a_line_of_a_box_is_the_same_facts_without_the_marks_of_a_list(said, season):
+    choices = in_season(season, BEGINS)
+    tap(choices, PLANT)
+    plant_history.show(choices)
+    plain = plant_history.line_of(choices, BEGINS + timedelta(days=2), 36_060.0, "found")
+    assert "*" not in plain
+    when, _, result = plain.rpartition(" ")
+    assert f"- {when} **{result}**" in said[-1].splitlines()
+
+
 def test_a_plant_never_inspected_says_so(said, season):
     choices = in_season(season, BEGINS)
     tap(choices, PLANT + 1)

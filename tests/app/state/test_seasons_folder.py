@@ -91,3 +91,13 @@ def test_the_file_of_a_season_is_taken_in_under_a_name_that_it_can_have(tmp_path
     assert names == ["North", "North (2)", "a-b- c", "season", "x" * 75]
     assert folder.names() == sorted(names)
     assert Season(folder.path_of("North")).plot.n_plants
+
+
+@pytest.mark.usefixtures("seasons_folder")
+def test_a_name_that_is_free_has_a_number_behind_it_where_others_have_it(tmp_path):
+    assert folder.free_name("North 1.5") == "North 1.5"
+    for name in ("North 1.5", "North 1.5 (2)", "South"):
+        folder.new_path(name).touch()
+    assert folder.free_name("North 1.5") == "North 1.5 (3)"
+    assert folder.free_name("South") == "South (2)"
+    assert folder.free_name("South", tmp_path) == "South"

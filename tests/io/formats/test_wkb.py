@@ -5,7 +5,7 @@ import struct
 import numpy as np
 from shapely import box
 
-from fieldmon.io.formats.wkb import shapes
+from fieldmon.io.formats.wkb import shapes, understood
 from fieldmon.io.import_report import Severity
 
 SQUARE = box(0, 0, 2, 2)
@@ -16,10 +16,14 @@ def wkb(*corners):
     return struct.pack("<BIII", 1, 3, 1, len(corners)) + points
 
 
-def read(*cells):
-    column = np.empty(len(cells), dtype=object)
-    column[:] = cells
-    return shapes(column)
+def cells(*values):
+    column = np.empty(len(values), dtype=object)
+    column[:] = values
+    return column
+
+
+def read(*values):
+    return shapes(cells(*values))
 
 
 def test_good_shapes_and_missing_ones_say_nothing():
@@ -40,3 +44,12 @@ def test_what_is_no_ring_is_left_out_and_named():
     geometry, (said,) = read(SQUARE.wkb, wkb((0, 0)))
     assert geometry[1] is None
     assert (said.severity, said.feature) == (Severity.DROPPED, "feature 2")
+
+
+def test_shapes_in_bytes_and_in_text_are_understood_and_mended_alike():
+    as_bytes = cells(SQUARE.wkb, None, wkb((0, 0), (2, 0), (2, 2), (0, 2)), None, None, wkb((0, 0)))
+    opened = "POLYGON ((0 0, 2 0, 2 2, 0 2))"
+    as_text = cells(None, SQUARE.wkt, None, opened, None, None)
+    geometry, mended = understood(as_bytes, as_text)
+    assert [one is not None and one.equals(SQUARE) for one in geometry] == [True] * 4 + [False] * 2
+    assert mended.tolist() == [False, False, True, True, False, False]

@@ -78,6 +78,7 @@ def test_what_no_rows_are_is_doubted_with_its_column_and_its_value():
         ("row_spacing_cm", 250, 2.5),
         ("Row spacing (cm)", 250, 2.5),
         ("row spacing [ft]", "10", 3.048),
+        ("row spacing (mean) (cm)", 250, 2.5),
         ("row_dist_ft", "3 m", 3.0),
         ("row_spacing_metres", 3, 3.0),
     ],

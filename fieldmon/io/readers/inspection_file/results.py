@@ -76,42 +76,10 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
     if columns.marks is not None:
         said = results_in_names(layer, columns.marks, options)
         return _put_together(said, [_SILENT] * len(said), [])
-    by_result, by_count = [_SILENT] * len(layer), [_SILENT] * len(layer)
-    messages: list[ImportMessage] = []
-    if columns.result is not None:
-        cells = [text(v) for v in layer.column(columns.result)]
-        words = ResultWords(cells, options)
-        mark, guess = _mark(layer, columns.result, cells, options)
-        known = {cell: _of_word(cell, mark, words) for cell in set(cells)}
-        known |= {cell: _NOT_INSPECTED for cell in known if is_gone(cell, options.gone)}
-        by_result = [known[cell] for cell in cells]
-        messages += [
-            seen(worded("Results are in column {result!r}.", result=columns.result)),
-            *guess,
-            *_unread(cells, known),
-        ]
-        messages += about_minus(cells, words)
-        numbers = (counted(cell, mark).number for cell in known)
-        messages += about_fractions(columns.result, numbers, is_usual=False)
-    if columns.number_found is not None:
-        cells = [text(v) for v in layer.column(columns.number_found)]
-        mark, guess = _mark(layer, columns.number_found, cells, options)
-        known = {cell: _of_count(cell, mark) for cell in set(cells)}
-        by_count = [known[cell] for cell in cells]
-        messages += [
-            seen(
-                worded("Counts are in column {number_found!r}.", number_found=columns.number_found)
-            ),
-            *guess,
-            *about_fractions(
-                columns.number_found,
-                [one.how_many for one in by_count],
-                is_usual=bool(recognised([columns.number_found])),
-            ),
-            *_unread(cells, known),
-        ]
+    by_result, of_results = _by_result(layer, columns.result, options)
+    by_count, of_counts = _by_count(layer, columns.number_found, options)
     taken = (columns.result, columns.number_found, *dict(options.columns).values())
-    messages += about_confidences(layer.columns, taken)
+    messages = [*of_results, *of_counts, *about_confidences(layer.columns, taken)]
     seen_so = _put_together(by_result, by_count, messages)
     others = about_other_counts(layer, options, columns.number_found, columns, seen_so.result)
     doubt = np.where(seen_so.doubt == "", others.doubt, seen_so.doubt)
@@ -121,6 +89,46 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
     column = layer.column(columns.result)
     gone = np.array([is_gone(text(v), options.gone) for v in column], np.bool_)
     return seen_so._replace(gone=gone & (seen_so.result == UNKNOWN))
+
+
+def _by_result(
+    layer: Layer, column: str | None, options: InspectionOptions
+) -> tuple[list[CellResult], list[ImportMessage]]:
+    """Return what the cells of a column for results say, and what to say of them."""
+    if column is None:
+        return [_SILENT] * len(layer), []
+    cells = [text(v) for v in layer.column(column)]
+    words = ResultWords(cells, options)
+    mark, guess = _mark(layer, column, cells, options)
+    known = {cell: _of_word(cell, mark, words) for cell in set(cells)}
+    known |= {cell: _NOT_INSPECTED for cell in known if is_gone(cell, options.gone)}
+    numbers = (counted(cell, mark).number for cell in known)
+    return [known[cell] for cell in cells], [
+        seen(worded("Results are in column {result!r}.", result=column)),
+        *guess,
+        *_unread(cells, known),
+        *about_minus(cells, words),
+        *about_fractions(column, numbers, is_usual=False),
+    ]
+
+
+def _by_count(
+    layer: Layer, column: str | None, options: InspectionOptions
+) -> tuple[list[CellResult], list[ImportMessage]]:
+    """Return what the cells of a column for counts say, and what to say of them."""
+    if column is None:
+        return [_SILENT] * len(layer), []
+    cells = [text(v) for v in layer.column(column)]
+    mark, guess = _mark(layer, column, cells, options)
+    known = {cell: _of_count(cell, mark) for cell in set(cells)}
+    by_count = [known[cell] for cell in cells]
+    numbers = [one.how_many for one in by_count]
+    return by_count, [
+        seen(worded("Counts are in column {number_found!r}.", number_found=column)),
+        *guess,
+        *about_fractions(column, numbers, is_usual=bool(recognised([column]))),
+        *_unread(cells, known),
+    ]
 
 
 def results_in_names(layer: Layer, name: str, options: RecordOptions) -> list[CellResult]:

@@ -1,4 +1,7 @@
-"""Results that hold in place of what they contradict: corrections, a batch of their own."""
+"""Corrections, a batch of their own: results that hold in place of others, or another day or time.
+
+Those that other programs make are in `outside_changes` and `copy_corrections`.
+"""
 
 from __future__ import annotations
 

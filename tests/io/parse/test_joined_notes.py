@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.io.parse.noted import in_both, joined_notes, note_of, parts
+from fieldmon.io.parse.joined_notes import in_both, joined_notes, note_of, parts
 from fieldmon.io.parse.result_words import says_gone
 
 

@@ -12,7 +12,7 @@ from fieldmon.errors import ImportDoubt
 from fieldmon.io.library import read_plot
 from fieldmon.io.prepare import lay, prepare, prepare_estate
 from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
-from fieldmon.io.unused import unused_of
+from fieldmon.io.unused_row_settings import unused_of
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.projection import Frame

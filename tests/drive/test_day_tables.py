@@ -5,8 +5,8 @@ import io
 from datetime import date
 from pathlib import Path
 
-from fieldmon.drive.account import day_table, in_words, is_driven_table, stop_table, stops_path
 from fieldmon.drive.day import DrivenDay, DrivenStop
+from fieldmon.drive.day_tables import day_table, in_words, is_driven_table, stop_table, stops_path
 from fieldmon.drive.errand import Visit
 from fieldmon.monitoring.monitor import PlantToInspect
 

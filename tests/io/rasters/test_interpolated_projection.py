@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pyproj import Transformer
 
-from fieldmon.io.rasters.smooth import smoothly
+from fieldmon.io.rasters.interpolated_projection import smoothly
 from fieldmon.plot.projection import Frame
 
 

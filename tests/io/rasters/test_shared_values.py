@@ -5,9 +5,9 @@ import pytest
 
 from fieldmon.infestation.raster_risk import RiskSettings
 from fieldmon.io.import_report import Severity
-from fieldmon.io.rasters.alike import doubts_of_alike
 from fieldmon.io.rasters.at_plants import read_missing, read_risk
 from fieldmon.io.rasters.read import RasterOptions
+from fieldmon.io.rasters.shared_values import doubts_of_alike
 from fieldmon.io.rasters.values import Raster
 from fieldmon.plot.plot import Plot
 from tests.io.rasters.raster_files import PLOT, UTM, corner, ramp, said, write

@@ -137,7 +137,7 @@ def _whole(mean: Floats, places: NDArray[np.floating[Any]]) -> Floats:
     return np.where(mean < _FEW, np.maximum(np.ceil(few), 0.0), mean)
 
 
-class Unwatched(NamedTuple):
+class UninspectedDays(NamedTuple):
     """Days without inspections until now, and what of earlier ones is still in doubt.
 
     Parameters
@@ -197,12 +197,12 @@ class Unwatched(NamedTuple):
         now /= max(1.0 - self.sent, _LEAST)
         return Since(self.counted, grew, came, now)
 
-    def inspected(self, found: float, variance: float) -> Unwatched:
+    def inspected(self, found: float, variance: float) -> UninspectedDays:
         """Return the same after inspections that were expected to find so many.
 
         Each find that was to be expected tells as much of the number as in a Poisson law.
         """
-        return Unwatched(left=variance / (1.0 + variance * found), looked=True)
+        return UninspectedDays(left=variance / (1.0 + variance * found), looked=True)
 
     @property
     def begins(self) -> bool:
@@ -215,7 +215,7 @@ class Unwatched(NamedTuple):
         after: float,
         new: tuple[float, float] = (0.0, 0.0),
         counted: Counted | None = None,
-    ) -> Unwatched:
+    ) -> UninspectedDays:
         """Return the same after a night in which so many become so many.
 
         `new` are how many of these come from outside, and how many are sent out by plants of which
@@ -223,14 +223,14 @@ class Unwatched(NamedTuple):
         days without inspections.
         """
         if self.looked:
-            return Unwatched(left=self.left)
+            return UninspectedDays(left=self.left)
         others = max(after - new[1], _LEAST)
         share, by_known = min(new[0] / others, 1.0), min(new[1] / after, 1.0)
         arrived = share + self.arrived * (1.0 - share)
         sent = by_known + self.sent * (1.0 - by_known)
         grown = self.grown + float(np.log(others / before))
         counted = self.counted if counted is None else counted
-        return Unwatched(self.days + 1, grown, self.left, arrived, sent, counted=counted)
+        return UninspectedDays(self.days + 1, grown, self.left, arrived, sent, counted=counted)
 
     @property
     def array(self) -> Floats:
@@ -239,7 +239,7 @@ class Unwatched(NamedTuple):
         return np.concatenate([self[:5], *(np.atleast_1d(part) for part in counted[::-1])])
 
     @classmethod
-    def of_array(cls, kept: Floats) -> Unwatched:
+    def of_array(cls, kept: Floats) -> UninspectedDays:
         """Return what such an array has kept."""
         days, grown, left, arrived, sent = map(float, kept[:5])
         counted = None

@@ -8,7 +8,7 @@ from fieldmon.samplers import sampler
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run
 from fieldmon.simulation.library import draw_start, simulate
-from fieldmon.simulation.paired import SameInsects, met_by_all, paired
+from fieldmon.simulation.paired_seasons import SameInsects, met_by_all, paired
 from fieldmon.simulation.season import SimulationSettings
 from fieldmon.simulation.team_season import Team
 from tests.simulation.test_library import CHANCE, PLOT, ROBOT

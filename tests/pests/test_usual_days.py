@@ -9,7 +9,7 @@ from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.pests.degree_days import Thresholds
 from fieldmon.pests.development import daily_warmth
 from fieldmon.pests.pest import Pest
-from fieldmon.pests.usual import UsualDays
+from fieldmon.pests.usual_days import UsualDays
 from fieldmon.pests.weather import DAY_S, weather_of
 
 

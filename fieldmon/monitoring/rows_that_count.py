@@ -1,4 +1,4 @@
-"""Rows that stand back for another one, and count again once that one no longer does.
+"""Which rows count: others stand back for them, and count again once those no longer do.
 
 Two people who worked apart may record the same result of the same plant and time: the first of
 them counts, the other stands back. It was not taken back: whoever undoes the first one's file

@@ -11,7 +11,7 @@ from fieldmon.infestation.forecast import forecast
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.infestation.unwatched import LEVEL_DOUBT, RATE_DOUBT, Unwatched
+from fieldmon.infestation.uninspected_days import LEVEL_DOUBT, RATE_DOUBT, UninspectedDays
 from fieldmon.plot.layout import rectangle
 
 GRID = rectangle(20, 20)
@@ -48,7 +48,7 @@ def test_a_season_that_is_inspected_daily_is_in_no_more_doubt(evening):
     belief = evening
     for _ in range(3):
         morning = belief.overnight(NIGHT)
-        assert morning.unwatched.variance() == 0.0
+        assert morning.uninspected.variance() == 0.0
         assert morning.since_inspected is None
         belief = inspected(morning)
 
@@ -61,10 +61,10 @@ def test_nothing_is_learnt_from_no_inspections(evening):
 
 def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
     mornings = [nights(evening, number) for number in range(1, 6)]
-    more = [one.unwatched.variance() for one in mornings]
+    more = [one.uninspected.variance() for one in mornings]
     grown = [np.log(one.chance.sum() / mornings[0].chance.sum()) for one in mornings]
     assert more[0] == 0.0
-    shares = [one.unwatched.arrived for one in mornings]
+    shares = [one.uninspected.arrived for one in mornings]
     assert more[1:] == pytest.approx(
         [
             LEVEL_DOUBT**2 + (RATE_DOUBT * g) ** 2 + share**2 / 0.35
@@ -79,7 +79,7 @@ def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
 
 @pytest.mark.parametrize(("found", "left"), [(0.0, 1.0), (1 / 0.13, 0.5), (1e9, 0.0)])
 def test_inspections_take_the_doubt_as_far_as_finds_were_to_be_expected(found, left):
-    idle = Unwatched(days=1, grown=0.4)
+    idle = UninspectedDays(days=1, grown=0.4)
     assert idle.variance() == pytest.approx(0.13)
     after = idle.inspected(found, idle.variance())
     assert after.variance() == pytest.approx(0.13 * left, abs=1e-6)
@@ -110,14 +110,14 @@ def test_plants_that_are_known_to_be_infested_tell_nothing_of_the_number(evening
     known = evening.learn(EVERY_PLANT[:9], np.ones(9, np.bool_), Learning(0.8, treated=False))
     morning = nights(known, 3)
     again = morning.learn(EVERY_PLANT[:9], np.ones(9, np.bool_), Learning(0.8, treated=False))
-    before, after = (each.unwatched.variance() for each in (morning, again))
+    before, after = (each.uninspected.variance() for each in (morning, again))
     assert after == before > LEVEL_DOUBT**2
     unknown = known.chance < 0.99
     first = nights(known, 1)
     grown = np.log(morning.chance[unknown].sum() / first.chance[unknown].sum())
     # what the known sent out is none of what others became
-    own = morning.unwatched.grown
-    assert own - np.log(1.0 - morning.unwatched.sent) == pytest.approx(grown, rel=0.05)
+    own = morning.uninspected.grown
+    assert own - np.log(1.0 - morning.uninspected.sent) == pytest.approx(grown, rel=0.05)
     assert 0.5 * grown < own < 0.95 * grown
 
 
@@ -142,7 +142,7 @@ def test_of_a_plot_that_is_told_to_be_infested_nothing_is_in_doubt():
 
 def test_it_is_kept_with_a_morning(evening):
     morning = nights(evening, 3)
-    again = replace(morning, unwatched=Unwatched.of_array(morning.unwatched.array))
+    again = replace(morning, uninspected=UninspectedDays.of_array(morning.uninspected.array))
     assert told(again) == told(morning)
     assert again.since_inspected is not None
 
@@ -154,7 +154,7 @@ def test_on_a_plot_that_was_clean_it_may_be_that_nothing_came():
     )
     morning = nights(clean, 25)
     now = told(morning)
-    assert morning.unwatched.arrived > 0.85
+    assert morning.uninspected.arrived > 0.85
     assert now.expected > 3.0
     assert now.low == 0 < 4 * now.expected < now.high
     assert now.chance_clean > 0.05

@@ -12,7 +12,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections
-from fieldmon.monitoring import Season, inspection_lots, said_beside, schema
+from fieldmon.monitoring import Season, inspection_lots, repeated_recordings, schema
 from fieldmon.monitoring.brought_findings import read_brought
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
 from tests.monitoring.test_merging import content
@@ -243,7 +243,7 @@ def test_lots_hold_what_others_say_and_are_made_anew_when_it_is_taken_back(seaso
 
 def test_what_others_say_is_found_by_an_index(season):
     with season.store.reading() as db:
-        plan = db.execute(f"EXPLAIN QUERY PLAN {said_beside._OF_OTHERS}").fetchall()
+        plan = db.execute(f"EXPLAIN QUERY PLAN {repeated_recordings._OF_OTHERS}").fetchall()
     assert any("inspections_beside" in row[-1] for row in plan)
 
 

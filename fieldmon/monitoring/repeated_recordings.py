@@ -1,9 +1,9 @@
 """What several recordings of the same inspection say beside it: kept together, each part once.
 
-Of recordings that say the same one counts; the others stand back (`replaced`), and keep their own
-notes and names. What counts is read with what those say: what it leaves open is taken from them,
-and notes that differ are joined. So it does not matter which of them counts, and a recording that
-is taken back takes its notes with it.
+Of recordings that say the same one counts; the others stand back (`rows_that_count`), and keep
+their own notes and names. What counts is read with what those say: what it leaves open is taken
+from them, and notes that differ are joined. So it does not matter which of them counts, and a
+recording that is taken back takes its notes with it.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fieldmon.infestation.inspection_columns import BESIDE
-from fieldmon.io.parse.noted import in_both, note_of, parts
+from fieldmon.io.parse.joined_notes import in_both, note_of, parts
 from fieldmon.io.parse.result_words import GONE
 from fieldmon.monitoring.geopackage import insert
 from fieldmon.monitoring.inspection_table import IDENTIFIED_BY, identity, mark_of, time_text
-from fieldmon.monitoring.replaced import STANDS_BACK, as_it_was
+from fieldmon.monitoring.rows_that_count import STANDS_BACK, as_it_was
 from fieldmon.monitoring.schema import INSPECTIONS
 from fieldmon.planning.members import person_key
 

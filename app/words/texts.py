@@ -555,7 +555,7 @@ TODAY_DONE = Plural(
     by="inspected",
 )
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
-COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
+COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
 
 # -- what stands beside a thing on the map that is pointed at

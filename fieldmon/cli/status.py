@@ -136,7 +136,7 @@ def _other_days(said: BatchContents, recorded: date) -> str:
 
 def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
-    from fieldmon.compute.wording import chance_figure, estimate, written
+    from fieldmon.compute.wording import chance_figure, estimate, share_figure
     from fieldmon.infestation.learnt import worth_saying
     from fieldmon.monitoring.day_figures import flagged_said
 
@@ -145,7 +145,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     yield f"  inspected that day     {now.inspected_today:6,}, {now.found_today:,} found infested"
     yield (
         f"  inspected so far       {now.inspected:6,} of {now.plants:,} plants "
-        f"({100 * now.inspected / now.plants:.0f} %), {now.found:,} found infested"
+        f"({share_figure(now.inspected / now.plants)}), {now.found:,} found infested"
         + (f" ({now.finds:,} finds: some again)" if now.finds > now.found else "")
     )
     if now.skipped:
@@ -167,7 +167,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     for number, learnt in enumerate(worth_saying(now.learnt)):
         yield f"  {'' if number else since:22} {learnt.sentence()}"
         if learnt.name == "detection":
-            yield from _of_who_inspects(season, now, written(learnt.value, ".0%"))
+            yield from _of_who_inspects(season, now, str(chance_figure(learnt.value)))
     if now.learnt:
         yield f"  {'':22} In brackets: intervals that hold with a chance of 90 %."
     else:
@@ -189,8 +189,12 @@ def _share_found(now: Status) -> str:
     """Return which share of the infested plants was found; of no inspections none is known."""
     if not now.inspected:
         return "not known: nothing was inspected yet"
-    least, most = now.detection_range_pct
-    return f"{now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %) of found and not found yet"
+    from fieldmon.compute.wording import chance_figure
+
+    share, least, most = (
+        chance_figure(pct / 100) for pct in (now.detection_pct, *now.detection_range_pct)
+    )
+    return f"{share:>8} ({least} to {most}) of found and not found yet"
 
 
 def _of_pest(season: Season, now: Status) -> Iterator[str]:

@@ -262,7 +262,7 @@ class ZoneVerdicts:
     enough: float
 
     def __repr__(self) -> str:
-        return f"<ZoneVerdicts: {counted(len(self.zones), 'zone')}, enough: {self.enough:.0%}>"
+        return f"<ZoneVerdicts: {counted(len(self.zones), 'zone')}, enough: {chance_figure(self.enough, drawn=True)}>"
 
 
 def zone_verdicts(

@@ -209,8 +209,8 @@ def _share_found(status: Status) -> KeyFigure:
     if not status.inspected:
         return KeyFigure(words.SHARE_FOUND, NO_ROW, words.NOTHING_INSPECTED)
     low, high = status.detection_range_pct
-    interval = worded(words.INTERVAL, low=figure(low, ".0f"), high=figure(high, ".0f", " %"))
-    return KeyFigure(words.SHARE_FOUND, figure(status.detection_pct, ".0f", " %"), interval)
+    interval = worded(words.INTERVAL, low=chance_figure(low / 100), high=chance_figure(high / 100))
+    return KeyFigure(words.SHARE_FOUND, chance_figure(status.detection_pct / 100), interval)
 
 
 def _rows_seen(facts: _Facts) -> Iterator[str]:
@@ -283,7 +283,7 @@ def _days(facts: _Facts) -> Table:
         (
             facts.units.day(one.on), figure(one.inspected), figure(one.found),
             worded("{n} ({low:,}–{high:,})", n=estimate(one.expected), low=one.low, high=one.high),
-            figure(found_pct(found, one.expected), ".0f", " %") if inspected else NO_ROW,
+            chance_figure(found_pct(found, one.expected) / 100) if inspected else NO_ROW,
         )
         for one, found, inspected in zip(facts.days, facts.found_by.tolist(), so_far, strict=True)
     ]  # fmt: skip

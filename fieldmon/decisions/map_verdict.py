@@ -262,7 +262,8 @@ class ZoneVerdicts:
     enough: float
 
     def __repr__(self) -> str:
-        return f"<ZoneVerdicts: {counted(len(self.zones), 'zone')}, enough: {chance_figure(self.enough, drawn=True)}>"
+        enough = chance_figure(self.enough, drawn=True)
+        return f"<ZoneVerdicts: {counted(len(self.zones), 'zone')}, enough: {enough}>"
 
 
 def zone_verdicts(

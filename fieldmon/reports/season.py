@@ -249,6 +249,7 @@ def _went(facts: _Facts) -> Iterator[Block]:
     )
     found = np.array([one.found for one in facts.days], np.float64)
     inspected = np.array([one.inspected for one in facts.days], np.float64)
+    share[np.cumsum(inspected) == 0] = np.nan  # of no inspections none is known
     charts = {
         words.CHART_FOUND: DayChart(on, found, facts.units),
         words.CHART_SHARE: DayChart(
@@ -257,6 +258,8 @@ def _went(facts: _Facts) -> Iterator[Block]:
         words.CHART_STILL: DayChart(on, still, facts.units, low, high, marks=_treated(facts)),
         words.CHART_INSPECTED: DayChart(on, inspected, facts.units),
     }
+    if np.isnan(share).all():
+        del charts[words.CHART_SHARE]
     for title, chart in charts.items():
         yield Illustration(title, worded(words.CHART_ALT, title=title), chart.draw, (28.0, 46.0))
     plans = [facts.season.planned_and_done(one.on) for one in facts.days if one.inspected]

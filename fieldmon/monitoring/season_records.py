@@ -393,7 +393,7 @@ class SeasonRecords(OpenSeason):
         inspection
             Its number (fid) in the season's file.
         at
-            The local time that is right; None: as it is.
+            The local time that is right, none to come; None: as it is.
         who
             Who corrects.
         on
@@ -402,13 +402,14 @@ class SeasonRecords(OpenSeason):
         Raises
         ------
         SettingError
-            If there is no such inspection that counts, or no such day yet.
+            If there is no such inspection that counts, or no such day or time yet.
         """
         with self._writing() as db:
             plot, settings = (self.plot.grid, self.label), settings_of(db)
             if on is not None:
                 settings.day(on)
-                self._must_have_come(on, at)
+            day, held_at = held_instead.made(db, inspection)
+            self._must_have_come(on or day, at or held_at)
             who, when = written_in(db, who), (on, None if at is None else seconds(at))
             said = held_instead.retime(db, inspection, when, plot, settings, who)
             self._corrected(db, said, who)
@@ -422,7 +423,7 @@ class SeasonRecords(OpenSeason):
                 worded(
                     "An inspection must be of a moment that has come, but {day} has not: on the "
                     "plot it is {now}.",
-                    day=str(on) if at is None else f"{on} {at:%H:%M}",
+                    day=str(on) if at is None or on > now.date() else f"{on} {at:%H:%M}",
                     now=f"{now:%Y-%m-%d %H:%M}",
                 )
             )

@@ -880,7 +880,7 @@ RECORD_FILE_IN = (
 TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
 RESULT, COUNT, RESULTS_OF = "Result", "Count", {
-    0: "clean", 1: "found", 2: "could not inspect", 3: "gone (pulled out)",
+    0: "clean", 1: "found", 2: "could not inspect", 3: "gone",
 }  # fmt: skip
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
 NOTED = Plural("{n} note added to what was known.", "{n} notes added to what was known.")

@@ -213,8 +213,20 @@ def _of_pest(season: Season, now: Status) -> Iterator[str]:
 
 def _gone(season: Season, now: Status) -> Iterator[str]:
     """Yield how many plants do not stand there any more, if any."""
+    from fieldmon.monitoring.plant_states import gone_by_note_alone
+
     if n := int(season.history.gone(now.day).sum()):
-        yield f"  gone                   {n:6,} pulled out: plans leave them out"
+        stand = "does not stand there any more: plans leave it out" if n == 1 else (
+            "do not stand there any more: plans leave them out"
+        )  # fmt: skip
+        yield f"  gone                   {n:6,} {stand}"
+    by_note, note = gone_by_note_alone(season.history, now.day)
+    if by_note:
+        are, stands = ("is", "it still stands") if by_note == 1 else ("are", "one still stands")
+        yield (
+            f"  {'':22} Of these, {by_note:,} {are} gone by a note alone ({note!r}), which counted "
+            f"as skipped before version 0.2. If {stands}, inspect it again."
+        )
 
 
 def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:

@@ -185,6 +185,28 @@ def test_a_season_all_of_which_lies_ahead_is_told_as_of_its_last_day(season, mon
         assert kept.day_meant() == meant
 
 
+def test_plants_that_are_gone_by_a_note_of_before_are_said_to_count_so(tmp_path):
+    kept = a_season(tmp_path / "s.gpkg")
+    begins = kept.settings.begins
+    notes = np.array(["gone: burnt", "tree is dead", "thorns"], object)
+    skipped = np.full(3, SKIPPED)
+    kept.record(Inspections.of(np.array([3, 4, 5]), skipped, begins, notes=notes), "x")
+    told = list(lines(kept, kept.status(begins)))
+    (at,) = (k for k, one in enumerate(told) if one.startswith("  gone "))
+    assert (
+        told[at]
+        == "  gone                        2 do not stand there any more: plans leave them out"
+    )
+    assert told[at + 1].strip() == (
+        "Of these, 1 is gone by a note alone ('tree is dead'), which counted as skipped before "
+        "version 0.2. If it still stands, inspect it again."
+    )
+    kept.record(Inspections.of(np.array([4]), np.array([0]), begins + timedelta(days=1)), "y")
+    told = list(lines(kept, kept.status(begins + timedelta(days=1))))
+    assert "1 does not stand there any more" in "\n".join(told)
+    assert not any("note alone" in one for one in told)
+
+
 def test_plants_that_could_not_be_inspected_are_counted_with_those_left_out(tmp_path):
     kept = a_season(tmp_path / "s.gpkg")
     begins = kept.settings.begins

@@ -329,6 +329,11 @@ SEASON_GONE_UNKEPT = (
     "meanwhile. Choose it above by its new name, or bring it back where a plot's file goes, and "
     "do it again."
 )
+SEASON_RENAMED = "The season {name} is called {new} now. Choose it above by that name."
+SEASON_RENAMED_UNKEPT = (
+    "What you just did was not kept: the season {name} is called {new} now. Choose it above by "
+    "that name, and do it again."
+)
 HELD = "Another program holds the season {name} (QGIS, a backup?). Waiting until it is free:"
 HELD_FOR = Plural("{n} second.", "{n} seconds.")
 HELD_STILL = (

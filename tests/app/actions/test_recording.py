@@ -680,16 +680,21 @@ def test_what_is_recorded_into_a_season_that_was_renamed_meanwhile_is_said_not_t
     season_app.run()
     seasons_folder.rename("Gate 2026", "Kumeu 2")
     season_app.button(key="record_one").click().run()
-    name = "\u2068Gate 2026\u2069"
+    name, new = "\u2068Gate 2026\u2069", "\u2068Kumeu 2\u2069"
     for _ in range(2):
         (said,) = season_app.error
-        assert said.value == texts.SEASON_GONE_UNKEPT.format(name=name)
+        assert said.value == texts.SEASON_RENAMED_UNKEPT.format(name=name, new=new)
         season_app.run()
     seasons_folder.rename("Kumeu 2", "Gate 2026")
     season_app.run()
     assert not season_app.error
     assert not len(season().history.inspections)
     seasons_folder.rename("Gate 2026", "Kumeu 2")
+    season_app.run()
+    (said,) = season_app.error
+    assert said.value == texts.SEASON_RENAMED.format(name=name, new=new)
+    # off the list it has no name to choose
+    seasons_folder.set_aside("Kumeu 2")
     season_app.run()
     (said,) = season_app.error
     assert said.value == texts.SEASON_GONE.format(name=name)

@@ -293,9 +293,9 @@ class SeasonRecords(OpenSeason):
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
         """Take a `batch` back (None: the last one), or one `inspection`; nothing is deleted.
 
-        Both are numbers; `who` takes it back, for the log. `redo` lets a batch count again, but
-        none of corrections, and no inspection alone: that is recorded anew. Return a sentence that
-        says what was undone. Raise `SettingError` if there is nothing, or both are given.
+        Both are numbers; `who` takes it back, for the log. `redo` lets a batch count again, but no
+        inspection alone: that is recorded anew. Return a sentence that says what was undone. Raise
+        `SettingError` if there is nothing, or both are given.
         """
         return self.take_back(batch, inspection, who).said
 
@@ -339,7 +339,8 @@ class SeasonRecords(OpenSeason):
         """Let a `batch` that was undone count again; `who` does so, for the log.
 
         What was taken back of it before, one by one or on a phone, stays so. Return a sentence that
-        says what counts again. Raise `SettingError` if the batch was not undone.
+        says what counts again. Raise `SettingError` if the batch was not undone, or what it
+        corrected is not as it was before.
         """
         with self._lock, self.store.writing() as db:
             but = season_log.left_out_of(db, batch)

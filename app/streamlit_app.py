@@ -33,6 +33,11 @@ st.html(_HERE / "style" / "every_page.css")
 st.html(_HERE / "style" / ("dark.css" if browser.is_dark() else "light.css"))
 if language.is_right_to_left():
     st.html(_HERE / "style" / "right_to_left.css")
+if language.current() != language.ENGLISH:  # a box for files speaks English alone
+    st.html(_HERE / "style" / "words_of_files.css")
+    size = texts.isolated(f"{st.get_option('server.maxUploadSize')} MB")
+    most = texts.UPLOAD_MOST.format(size=size)
+    st.html(f'<style>:root{{--upload:"{texts.UPLOAD_BUTTON}";--upload-most:"{most}"}}</style>')
 # a slider's knob goes by the browser's own language, its bar always from the left
 side = "right" if browser.language() in language.RIGHT_TO_LEFT else "left"
 st.html(_HERE / "style" / f"slider_from_{side}.css")

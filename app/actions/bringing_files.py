@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import ChoiceNeeded
+from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.import_report import Severity
 
 from ..show import answers_map
@@ -16,11 +17,12 @@ from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS, answers, 
 from ..state.tried_answers import tried_of_records
 from ..words import texts
 from ..words.answers import in_short
-from ..words.language import in_words, of_error
+from ..words.language import in_words, of_error, unformatted
 from . import bringing_seasons
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
+    from fieldmon.io.import_report import Remedy
 
     from ..state.brought_files import FileMessage
     from ..state.choices import Choices
@@ -36,6 +38,8 @@ _ICONS = {
 # questions that a box of their own answers: for another file, or beside the file
 _OWN_BOXES = frozenset({"kind", "plots", "plants", "meaning"})
 _MOST_BUTTONS = 12
+# what a word for a result may mean, and the option that takes it so
+_MEANINGS = {FOUND: "found", CLEAN: "clean"}
 
 
 # -- boxes
@@ -240,10 +244,39 @@ def _show_message(number: int, one: FileMessage) -> None:
     mark = f"{_ICONS[message.severity]} **{texts.SEVERITIES[message.severity]}**"
     st.markdown(f"{mark} · {place}{in_words(message.sentence)}")
     remedy = message.remedy
-    if remedy is not None:
+    if remedy is not None and remedy.option == "found":
+        _ask_of_words(number, one.asked, remedy)
+    elif remedy is not None:
         key = f"remedy {number} {one.asked} {remedy.option} {remedy.value}"
         st.button(in_words(remedy.label), key=key, on_click=brought_files.answer,
                   args=(one.asked, remedy.option, remedy.value))  # fmt: skip
+
+
+def _ask_of_words(number: int, asked: str, remedy: Remedy) -> None:
+    """Ask of each word that says neither what it means, all at once."""
+    known = {word for said in _words_said(asked).values() for word in said}
+    words = [word for word in remedy.value.split(",") if word not in known][:_MOST_BUTTONS]
+    keys = {word: f"word {number} {asked} {word}" for word in words}
+    for word, key in keys.items():
+        st.segmented_control(unformatted(word), _MEANINGS, key=key,
+                             format_func=texts.HISTORY_RESULTS.__getitem__)  # fmt: skip
+    st.button(texts.WORDS_TAKE, key=f"words {number} {asked}", on_click=_take_words,
+              args=(asked, keys))  # fmt: skip
+
+
+def _words_said(asked: str) -> dict[str, list[str]]:
+    """Return the words that were said to mean found, and clean, in answers about a file."""
+    said = dict(answers(asked))  # the last of each counts
+    return {name: said[name].split(",") if name in said else [] for name in _MEANINGS.values()}
+
+
+def _take_words(asked: str, keys: dict[str, str]) -> None:
+    """Take what was chosen of words as answers about a file, beside those that were given."""
+    said = _words_said(asked)
+    for result, name in _MEANINGS.items():
+        new = [word for word, key in keys.items() if st.session_state.get(key) == result]
+        if new:
+            brought_files.answer(asked, name, ",".join([*said[name], *new]))
 
 
 def show_messages(said: tuple[FileMessage, ...]) -> None:

@@ -521,18 +521,18 @@ def _show_more(choices: Choices) -> None:
 
 def _show_batch(choices: Choices, batch: Batch, contents: BatchContents | None) -> None:
     said = recorded_batches.line(choices, batch, contents)
-    why, for_good = recorded_batches.why_to_ask(choices, batch, contents), batch.is_undone_for_good
+    why = recorded_batches.why_to_ask(choices, batch, contents)
     n, asked = batch.number, _undo_asked(choices) == batch.number and not batch.undone
     # side by side, not in columns: a button takes what its word needs in each language
     with st.container(horizontal=True, vertical_alignment="center", key=f"batch_{n}"):
         st.markdown(said, width="stretch")
-        if batch.can_be_redone:
+        if batch.undone:
             st.button(texts.REDO, key=f"redo {n}", on_click=redo, help=said, args=(choices, n))
-        elif not batch.undone and not asked:
-            act = _ask_undo if why or for_good else undo
+        elif not asked:
+            act = _ask_undo if why else undo
             st.button(texts.UNDO, key=f"undo {n}", on_click=act, help=said, args=(choices, n))
     if asked:
-        st.warning(" ".join([texts.UNDO_ASK_FOR_GOOD if for_good else texts.UNDO_ASK, *why]))
+        st.warning(" ".join([texts.UNDO_ASK, *why]))
         with st.container(horizontal=True, key=f"undo_asked_{n}"):
             st.button(texts.UNDO_YES, key=f"undo_yes {n}", on_click=undo, args=(choices, n))
             st.button(texts.UNDO_NO, key=f"undo_no {n}", on_click=_ask_no_undo)

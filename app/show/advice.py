@@ -18,7 +18,7 @@ from fieldmon.plot.grid import row_ends, row_label
 
 from ..state import assumptions, cached
 from ..words import texts
-from ..words.language import about, in_words, number
+from ..words.language import about, in_words
 from . import map_layers
 from .map_view import Switch
 from .maps import colours, legends
@@ -108,7 +108,7 @@ def table(advice: Advice) -> pd.DataFrame:
             texts.DECIDE_ZONE: [k + 1 for k in range(len(mine))],
             texts.DECIDE_ROWS: [_rows(advice.grid, label.line[plants]) for plants in mine],
             texts.DECIDE_PLANTS: [_span(label.number[plants]) for plants in mine],
-            texts.DECIDE_INFESTED: [number(one.share, ".0%") for one in said],
+            texts.DECIDE_INFESTED: [in_words(share_figure(one.share)) for one in said],
             texts.DECIDE_ITSELF: [texts.DECIDE_VERDICTS[one.verdict] for one in said],
             texts.DECIDE_WRONG: [in_words(chance_figure(one.wrong, drawn=True)) for one in said],
         }

@@ -50,7 +50,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
         texts.COLUMN_ARRIVE: [f"{shown.at(s):%H:%M:%S}" for s in route.arrive_s.tolist()],
         **row_column(choices.plot.grid, label.line),
         texts.COLUMN_PLANT: label.number,
-        texts.COLUMN_CHANCE: (100 * route.chance).round(1),
+        texts.COLUMN_CHANCE: [in_words(chance_figure(p, 1)) for p in route.chance.tolist()],
     }
     if shown.worked:
         done = choices.open_season.history.inspections.on(choices.on)
@@ -158,7 +158,7 @@ def figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
     """Show a season's figures as they stand on a day."""
     plants = len(choices.plot.grid)
     shares = now.share_found_pct(progress.found)
-    detected, least, most = (number(one, ".0f") for one in shares)
+    detected, least, most = (in_words(chance_figure(pct / 100)) for pct in shares)
     star = " *" if assumptions.of(choices) else ""
     with st.container(horizontal=True):
         still = chosen_day.still_infested(choices, choices.day)
@@ -167,7 +167,7 @@ def figures(choices: Choices, now: DayFigures, progress: Progress) -> None:
         st.metric(f"{texts.EXPECTED_LEFT}{star}", expected,
                   help=texts.EXPECTED_HELP, width="content")  # fmt: skip
         st.metric(texts.FOUND_EVER, number(progress.found, ","), width="content")
-        share = texts.IN_PERCENT.format(value=f"{detected} ({least}–{most})")
+        share = f"{detected} ({least}–{most})"
         if not progress.inspected:
             share = texts.NOT_KNOWN_YET
         st.metric(f"{texts.DETECTED}{star}", share, help=texts.DETECTED_HELP, width="content")

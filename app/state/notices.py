@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.errors import FieldmonError
+from fieldmon.errors import FieldmonError, SettingError
 
 from ..words import texts
 from ..words.language import of_error
-from . import season_held
+from . import opened_seasons, season_held, seasons_folder
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,13 +41,19 @@ def warn() -> None:
 
 
 def gone(season: str) -> str:
-    """Return that a season is not there, and that what was just done in it was not kept, if so.
+    """Return that a season is not there, its new name, and whether what was done was not kept.
 
     It says so until a season is found again.
     """
-    is_unkept = st.session_state.get(_UNKEPT) == season
+    is_unkept, name = st.session_state.get(_UNKEPT) == season, texts.isolated(season)
+    new = None
+    with suppress(SettingError):  # an address may name what is no name
+        new = opened_seasons.called_now(seasons_folder.path_of(season))
+    if new is not None:
+        said = texts.SEASON_RENAMED_UNKEPT if is_unkept else texts.SEASON_RENAMED
+        return said.format(name=name, new=texts.isolated(new))
     said = texts.SEASON_GONE_UNKEPT if is_unkept else texts.SEASON_GONE
-    return said.format(name=texts.isolated(season))
+    return said.format(name=name)
 
 
 def found() -> None:

@@ -31,6 +31,20 @@ def is_open(path: Path) -> bool:
     return opening is not None and opening.done()
 
 
+def called_now(path: Path) -> str | None:
+    """Return the name that the file of a season has now that was open here as `path`, if any.
+
+    A file keeps its inode where it is renamed within its folder.
+    """
+    with _LOCK:
+        inodes = [inode for known, inode in _OPEN if known == path and inode]
+    for file in path.parent.glob(f"*{path.suffix}") if inodes else ():
+        with suppress(OSError):
+            if file.stat().st_ino == inodes[-1]:
+                return file.stem
+    return None
+
+
 def opened(path: Path) -> Season:
     """Return a season that all share; each call of it reads what is new in its file."""
     file = _file(path)

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from fieldmon.infestation.inspections import CLEAN, FOUND
+
 from . import texts
+
+# options that take words for a result
+_RESULTS = {"found": FOUND, "clean": CLEAN}
 
 
 def in_short(answer: str, option: str) -> str:
@@ -13,6 +18,8 @@ def in_short(answer: str, option: str) -> str:
     >>> str(in_short("present=", "columns")), in_short("plot=North", "where")
     ('Every record is a find', 'plot: North')
     """
+    if option in _RESULTS:
+        return f"{', '.join(answer.split(','))}: {texts.HISTORY_RESULTS[_RESULTS[option]]}"
     key, is_pair, value = answer.partition("=")
     if not is_pair or option not in {"columns", "where"}:
         return answer

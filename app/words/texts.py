@@ -166,6 +166,8 @@ MESSAGES_NONE = "The files were read as they are."
 RECORDS_OF_BEGIN = "Of the records, as known on {day}, when the season began:"
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
+UPLOAD_BUTTON, UPLOAD_MOST = "Upload", "{size} at most"
+WORDS_TAKE = "Take them so"
 THESE_ARE_PLANTS = "These are the plants"
 CHOOSE_ON_MAP = "Which of these is your plot? Click it on the map, or choose here."
 CHOOSE_OTHER, AT_SEA = "Another answer", "in the sea"
@@ -328,6 +330,11 @@ SEASON_GONE_UNKEPT = (
     "What you just did was not kept: the season {name} was renamed or taken off the list "
     "meanwhile. Choose it above by its new name, or bring it back where a plot's file goes, and "
     "do it again."
+)
+SEASON_RENAMED = "The season {name} is called {new} now. Choose it above by that name."
+SEASON_RENAMED_UNKEPT = (
+    "What you just did was not kept: the season {name} is called {new} now. Choose it above by "
+    "that name, and do it again."
 )
 HELD = "Another program holds the season {name} (QGIS, a backup?). Waiting until it is free:"
 HELD_FOR = Plural("{n} second.", "{n} seconds.")
@@ -555,7 +562,7 @@ TODAY_DONE = Plural(
     by="inspected",
 )
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
-COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance %"
+COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
 
 # -- what stands beside a thing on the map that is pointed at
@@ -880,7 +887,7 @@ RECORD_FILE_IN = (
 TAKE_DOUBTFUL = "Take doubtful positions too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
 RESULT, COUNT, RESULTS_OF = "Result", "Count", {
-    0: "clean", 1: "found", 2: "could not inspect", 3: "gone (pulled out)",
+    0: "clean", 1: "found", 2: "could not inspect", 3: "gone",
 }  # fmt: skip
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
 NOTED = Plural("{n} note added to what was known.", "{n} notes added to what was known.")
@@ -931,7 +938,6 @@ COUNTS_ELSEWHERE = "counts in another recording"
 BATCHES_MORE = "Show {n} more"
 REDO, REDONE_BEFORE = "Redo", "This counts again already. Nothing changed."
 UNDO_ASK = "Take this back? It can be redone here."
-UNDO_ASK_FOR_GOOD = "Take these corrections back? That cannot be redone: they are made anew."
 UNDO_ASK_WHO = "{who} recorded it; a phone that has it is told so."
 UNDO_ASK_DAY = "It is of {days}, and this page is about {day}."
 UNDO_YES, UNDO_NO = "Take it back", "Leave it"

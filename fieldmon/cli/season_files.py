@@ -99,7 +99,7 @@ def learnt_of_each(season: Season, on: date) -> Iterator[tuple[str, str, str]]:
 
     Of a team they are those who were told alike; empty: all who inspect on a day.
     """
-    from fieldmon.compute.wording import written
+    from fieldmon.compute.wording import chance_figure
 
     settings = season.planned_by(on)
     names: dict[float, list[str]] = {}
@@ -109,7 +109,7 @@ def learnt_of_each(season: Season, on: date) -> Iterator[tuple[str, str, str]]:
         by = f" by {', '.join(whose)}" * (len(names) > 1)
         for one in season.learnt(on, detects):
             if one.name == "detection":
-                yield by, written(detects, ".0%"), written(one.value, ".0%")
+                yield by, str(chance_figure(detects)), str(chance_figure(one.value))
 
 
 def refuse_what_was_chosen(context: typer.Context, takes: Collection[str]) -> None:

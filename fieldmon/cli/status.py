@@ -151,11 +151,13 @@ def lines(season: Season, now: Status) -> Iterator[str]:
 
 def _of_inspections(season: Season, now: Status) -> Iterator[str]:
     """Yield how much was inspected, what was found, and what could not be inspected."""
+    from fieldmon.compute.wording import share_figure
+
     yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
     yield f"  inspected that day     {now.inspected_today:6,}, {now.found_today:,} found infested"
     yield (
         f"  inspected so far       {now.inspected:6,} of {now.plants:,} plants "
-        f"({100 * now.inspected / now.plants:.0f} %), {now.found:,} found infested"
+        f"({share_figure(now.inspected / now.plants)}), {now.found:,} found infested"
         + (f" ({now.finds:,} finds: some again)" if now.finds > now.found else "")
     )
     if now.skipped:
@@ -184,14 +186,14 @@ def _of_infestation(now: Status) -> Iterator[str]:
 
 def _of_learnt(season: Season, now: Status) -> Iterator[str]:
     """Yield what the season's own inspections tell of the insects."""
-    from fieldmon.compute.wording import written
+    from fieldmon.compute.wording import chance_figure
     from fieldmon.infestation.learnt import worth_saying
 
     since = "learnt so far" if now.inspected else "believed at first"
     for number, learnt in enumerate(worth_saying(now.learnt)):
         yield f"  {'' if number else since:22} {learnt.sentence()}"
         if learnt.name == "detection":
-            yield from _of_who_inspects(season, now, written(learnt.value, ".0%"))
+            yield from _of_who_inspects(season, now, str(chance_figure(learnt.value)))
     if now.learnt:
         yield f"  {'':22} In brackets: intervals that hold with a chance of 90 %."
     else:
@@ -213,8 +215,12 @@ def _share_found(now: Status) -> str:
     """Return which share of the infested plants was found; of no inspections none is known."""
     if not now.inspected:
         return "not known: nothing was inspected yet"
-    least, most = now.detection_range_pct
-    return f"{now.detection_pct:6.0f} % ({least:.0f} to {most:.0f} %) of found and not found yet"
+    from fieldmon.compute.wording import chance_figure
+
+    share, least, most = (
+        chance_figure(pct / 100) for pct in (now.detection_pct, *now.detection_range_pct)
+    )
+    return f"{share:>8} ({least} to {most}) of found and not found yet"
 
 
 def _of_pest(season: Season, now: Status) -> Iterator[str]:
@@ -233,8 +239,20 @@ def _of_pest(season: Season, now: Status) -> Iterator[str]:
 
 def _gone(season: Season, now: Status) -> Iterator[str]:
     """Yield how many plants do not stand there any more, if any."""
+    from fieldmon.monitoring.plant_states import gone_by_note_alone
+
     if n := int(season.history.gone(now.day).sum()):
-        yield f"  gone                   {n:6,} pulled out: plans leave them out"
+        stand = "does not stand there any more: plans leave it out" if n == 1 else (
+            "do not stand there any more: plans leave them out"
+        )  # fmt: skip
+        yield f"  gone                   {n:6,} {stand}"
+    by_note, note = gone_by_note_alone(season.history, now.day)
+    if by_note:
+        are, stands = ("is", "it still stands") if by_note == 1 else ("are", "one still stands")
+        yield (
+            f"  {'':22} Of these, {by_note:,} {are} gone by a note alone ({note!r}), which counted "
+            f"as skipped before version 0.2. If {stands}, inspect it again."
+        )
 
 
 def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:

@@ -137,10 +137,10 @@ def share_figure(share: float) -> Worded:
 
     Examples
     --------
-    >>> share_figure(0.156), share_figure(0.00234), share_figure(0)
-    ('16 %', '0.23 %', '0 %')
+    >>> share_figure(0.156), share_figure(0.00234), share_figure(0), share_figure(0.9999)
+    ('16 %', '0.23 %', '0 %', 'over 99 %')
     """
-    return figure(100 * share, ".2g", " %") if 0 < share < 0.01 else figure(share, ".0%")
+    return figure(100 * share, ".2g", " %") if 0 < share < 0.01 else chance_figure(share)
 
 
 def chance_figure(chance: float, digits: int = 0, *, drawn: bool = False) -> Worded:

@@ -256,7 +256,8 @@ class ZoneVerdicts:
     enough: float
 
     def __repr__(self) -> str:
-        return f"<ZoneVerdicts: {counted(len(self.zones), 'zone')}, enough: {self.enough:.0%}>"
+        enough = chance_figure(self.enough, drawn=True)
+        return f"<ZoneVerdicts: {counted(len(self.zones), 'zone')}, enough: {enough}>"
 
 
 def zone_verdicts(

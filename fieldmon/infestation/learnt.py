@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import chance_figure, estimate, figure, worded
+from fieldmon.compute.wording import chance_figure, estimate, worded
 from fieldmon.infestation.jump_reach import kernel_means
 from fieldmon.infestation.origins import (
     ANYWHERE,
@@ -58,7 +58,7 @@ class Learnt:
     def sentence(self) -> Worded:
         """Return it in words, the interval in brackets."""
         value, low, high = (
-            figure(one, ".0%") if self.is_share else estimate(one)
+            chance_figure(one) if self.is_share else estimate(one)
             for one in (self.value, self.low, self.high)
         )
         if self.name == "detection":
@@ -102,7 +102,7 @@ class Learnt:
             return worded(
                 "Far more was found than was told: the map goes on as if {value} of the plants had "
                 "been told.",
-                value=figure(self.value, ".0%"),
+                value=chance,
             )
         return worded("Insects jump beyond the next plant with a chance of {value}.", value=chance)
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from fieldmon.compute.units import distance_figure
-from fieldmon.compute.wording import first_few, worded
+from fieldmon.compute.wording import first_few, joined, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import with_rows
@@ -150,22 +150,26 @@ def refuse_far_gate(gate: tuple[float, float] | None, field: Field) -> None:
 
 def _refuse_wrong_rows(field: Field, by_hand: PlantingChoices, hearing: _Hearing) -> None:
     """Raise `FileProblem` where a column says what no rows are, unless it is said by hand."""
+    each, file = [], ""
     for said in hearing.messages:
         wrong = said.message
         if not isinstance(wrong, WrongRows) or wrong.setting in by_hand.given():
             continue
         if (wrong.feature or "").split(" / ")[0] == field.name:
-            raise FileProblem(
+            file = file or said.source
+            each.append(
                 worded(
-                    "{file}: of plot {name!r}, column {column!r} must be {rule}, but it is "
-                    "{value:g}. Correct it, or say it by hand.",
-                    file=said.source,
-                    name=field.name,
-                    column=wrong.column,
-                    rule=wrong.rule,
-                    value=wrong.value,
+                    "column {column!r} must be {rule}, but it is {value:g}",
+                    column=wrong.column, rule=wrong.rule, value=wrong.value,
                 )
+            )  # fmt: skip
+    if each:
+        raise FileProblem(
+            worded(
+                "{file}: of plot {name!r}, {each}. Correct it, or say it by hand.",
+                file=file, name=field.name, each=joined("; ", each),
             )
+        )  # fmt: skip
 
 
 def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Estate:

@@ -54,16 +54,6 @@ class Batch:
     rows: int
     undone: bool
 
-    @property
-    def can_be_redone(self) -> bool:
-        """Whether it can count again: it was undone, and that was not for good."""
-        return self.undone and not self.is_undone_for_good
-
-    @property
-    def is_undone_for_good(self) -> bool:
-        """Whether it cannot count again once it is undone, as corrections cannot."""
-        return self.kind == "corrections"
-
     def by(self, said: BatchContents | None) -> str:
         """Return who inspected, as its inspections say, or else who recorded it."""
         named = "" if said is None or self.kind != "findings" else said.who
@@ -310,7 +300,7 @@ def _waiting(db: sqlite3.Connection, number: int | None) -> Batch:
 
 def to_redo(db: sqlite3.Connection, changed: set[int]) -> int | None:
     """Return which of the batches that an undo changed can be redone; None: none of them."""
-    numbers = (one.number for one in all_of(db) if one.number in changed and one.can_be_redone)
+    numbers = (one.number for one in all_of(db) if one.number in changed and one.undone)
     return next(numbers, None)
 
 
@@ -331,11 +321,12 @@ def redo(
                 batch=number,
             )
         )
-    if not batch.can_be_redone:
+    before = rows_that_count.redo_corrections(db, number, but)
+    if before is None:
         raise SettingError(
             worded(
-                "Corrections that were undone cannot count again, and batch {batch} is of them. "
-                "Change the inspections anew, and take that with: fieldmon correct",
+                "What batch {batch} corrected must stand there as it did before, but it was "
+                "corrected anew or taken back since. Undo that first, or correct it anew.",
                 batch=number,
             )
         )
@@ -353,7 +344,7 @@ def redo(
     elsewhere = rows.n_elsewhere(db, number, rows_that_count.STANDS_BACK)
     said = contents(db, [number]).get(number)
     n = batch.rows - len(but) - elsewhere
-    return {number, *again}, _counts_again(batch, said, (n, elsewhere), signs or {})
+    return {number, *before, *again}, _counts_again(batch, said, (n, elsewhere), signs or {})
 
 
 def _counts_again(
@@ -372,7 +363,9 @@ def _counts_again(
             row=signs.get(said.row, said.row), plant=said.plant, date=date_or_text(said.first),
             result=_RESULTS.get(said.result, said.result),
         )  # fmt: skip
-    noun = {"findings": "inspection", "treatment": "treatment"}[batch.kind]
+    noun = {"findings": "inspection", "corrections": "correction", "treatment": "treatment"}[
+        batch.kind
+    ]
     again = worded("Batch {batch} counts again: {what}.", batch=batch.number, what=counted(n, noun))
     if not elsewhere:
         return again

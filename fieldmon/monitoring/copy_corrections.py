@@ -83,7 +83,8 @@ def _is_taken(db: sqlite3.Connection, theirs: sqlite3.Connection, one: OutsideCh
     names = ", ".join(outside_changes.SEEN)
     row = theirs.execute(f"SELECT {names} FROM inspections WHERE fid = ?", (one.row,)).fetchone()  # noqa: S608 - ours
     same = " AND ".join(f"coalesce({name}, '') = coalesce(?, '')" for name in outside_changes.SEEN)
-    held = db.execute(f"SELECT 1 FROM inspections WHERE undone = 0 AND {same}", row)  # noqa: S608 - ours
+    says = outside_changes.as_kept(row)
+    held = db.execute(f"SELECT 1 FROM inspections WHERE undone = 0 AND {same}", says)  # noqa: S608 - ours
     return held.fetchone() is not None
 
 

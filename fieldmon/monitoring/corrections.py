@@ -6,6 +6,7 @@ Those that other programs make are in `outside_changes` and `copy_corrections`.
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import date, time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +21,6 @@ from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
 if TYPE_CHECKING:
     import sqlite3
-    from datetime import date
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -76,6 +76,14 @@ def take(
     return tuple(outside_changes.in_words(db, one) for one in taken)
 
 
+def made(db: sqlite3.Connection, row: int) -> tuple[date, time | None]:
+    """Return when one inspection that counts was made, by the clock; None: no time is known."""
+    batches.counting(db, row)
+    wanted = "SELECT date, time FROM inspections WHERE fid = ?"
+    day, at = db.execute(wanted, (row,)).fetchone()
+    return date.fromisoformat(day[:10]), None if at is None else time.fromisoformat(at)
+
+
 def retime(
     db: sqlite3.Connection,
     row: int,
@@ -89,7 +97,6 @@ def retime(
     `when` are the day and the seconds since its midnight; None: as it is.
     """
     day, second = when
-    batches.counting(db, row)
     (was,) = db.execute(_WAS, (row,)).fetchone()
     batch = batches.begin(db, "corrections", "", who)
     on, at = day and day.isoformat(), None if second is None else time_text(second)

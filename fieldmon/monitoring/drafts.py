@@ -13,8 +13,9 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
-from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.io.parse.result_words import GONE, gone_note
 from fieldmon.monitoring import inspection_lots, inspection_table, repeated_recordings
 from fieldmon.monitoring.geopackage import geometry, touch
 from fieldmon.monitoring.recorded_before import contradictions, said_before
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 SOURCE = "added by another program"
 # by the index of digests that count, which is small where nothing waits
 _DRAFTS = "digest IS NULL AND undone = 0"
-_SAID = {"found": PRESENT, "clean": ABSENT, "skipped": UNKNOWN}
+_SAID = {"found": PRESENT, "clean": ABSENT, "skipped": UNKNOWN, GONE: UNKNOWN}
 
 
 class Draft(NamedTuple):
@@ -142,7 +143,9 @@ def _inspection(said: dict[str, Any], grid: PlantGrid) -> Inspections:
     if on in {None, ""}:
         raise ValueError("it has no date")
     if result not in _SAID:
-        raise ValueError(f"its result is none of {', '.join(RESULT_NAMES.values())}")
+        raise ValueError(f"its result is none of {', '.join(_SAID)}")
+    if result == GONE:
+        said = {**said, "notes": gone_note(str(said["notes"] or ""))}
     day = np.datetime64(str(on)[:10], "D")
     second = np.nan if at in {None, ""} else inspection_lots.second_of(str(at))
     when = np.datetime64("NaT", "s")

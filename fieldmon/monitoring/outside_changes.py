@@ -14,7 +14,8 @@ import numpy as np
 from fieldmon.compute.wording import Worded, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
-from fieldmon.infestation.inspections import RESULT_CODES, Inspections
+from fieldmon.infestation.inspections import RESULT_CODES, RESULT_NAMES, SKIPPED, Inspections
+from fieldmon.io.parse.result_words import GONE, gone_note
 from fieldmon.monitoring import (
     batches,
     inspection_lots,
@@ -313,9 +314,20 @@ def _refuse_twice(db: sqlite3.Connection, change: OutsideChange, mark: object) -
         )
 
 
+def as_kept(row: tuple[object, ...]) -> tuple[object, ...]:
+    """Return what a row of another program says, in the order of `SEEN`, as seasons keep it.
+
+    A plant that it calls gone was skipped, and its note says so.
+    """
+    said = dict(zip(SEEN, row, strict=True))
+    if said["result"] == GONE:
+        said |= {"result": RESULT_NAMES[SKIPPED], "notes": gone_note(str(said["notes"] or ""))}
+    return tuple(said.values())
+
+
 def _inspection(row: tuple[object, ...]) -> Inspections:
     """Return one inspection from what its row says; raise where it makes no sense."""
-    said = dict(zip(SEEN, row, strict=True))
+    said = dict(zip(SEEN, as_kept(row), strict=True))
     on = date.fromisoformat(str(said["date"])[:10])
     second = np.nan if said["time"] is None else inspection_lots.second_of(str(said["time"]))
     return Inspections.of(

@@ -14,6 +14,7 @@ import zipfile
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.io.parse.result_words import GONE
 from fieldmon.io.writers.qml import choice_list, field, numbered, option
 from fieldmon.monitoring.qgis_styles import ASKED_STYLES, PHOTO_STYLES, STYLES
 
@@ -29,7 +30,12 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 _MOST_DAYS = 14
 _LAST_DAY = '(SELECT max("date") FROM "routes")'
 _SHAPES = {"POINT": "Point", "LINESTRING": "Line", "MULTIPOLYGON": "Polygon"}
-_RESULTS = (("found infested", "found"), ("looked clean", "clean"), ("could not look", "skipped"))
+_RESULTS = (
+    ("found infested", "found"),
+    ("looked clean", "clean"),
+    ("could not inspect", "skipped"),
+    ("plant is gone", GONE),
+)
 _HIDDEN = (
     *("fid", "plant", "line", "number", "day", "time"),
     *("batch", "digest", "undone", "detects"),

@@ -57,7 +57,9 @@ STYLES = {
         {
             "found": ("found infested", Symbol("marker", RED, 2.6, "diamond")),
             "clean": ("looked clean", Symbol("marker", BLUE, 1.6)),
-            "skipped": ("could not be inspected", Symbol("marker", GREY, 2.0, "cross2")),
+            "skipped": ("could not inspect", Symbol("marker", GREY, 2.0, "cross2")),
+            # added there, and not taken in yet
+            "gone": ("plant is gone", Symbol("marker", GREY, 2.0, "cross2")),
         },
     ),
     "observations": by_value(

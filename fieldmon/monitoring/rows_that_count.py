@@ -99,6 +99,10 @@ def _corrections(db: sqlite3.Connection) -> list[dict[str, Any]]:
     return [dict(zip(names, row, strict=True)) for row in rows]
 
 
+# what a correction of a batch made
+_MADE = "SELECT min(fid) FROM inspections WHERE digest = ? AND batch = ?"
+
+
 def undo_corrections(db: sqlite3.Connection, batch: int, now: str | None = None) -> list[str]:
     """Note that the corrections of a batch were taken back, or the one that came to `now`.
 
@@ -110,19 +114,65 @@ def undo_corrections(db: sqlite3.Connection, batch: int, now: str | None = None)
         "WHERE batch = ? AND before NOTNULL AND coalesce(?, now, '') = coalesce(now, '')",
         (batch, now),
     ).fetchall()
-    one, before_it = "SELECT min(fid) FROM inspections WHERE digest = ?", []
+    before_it = []
+    # of several that say the same, its own
+    own = (
+        "SELECT min(fid) FROM inspections WHERE digest = ? AND undone = ? AND batch <> ? "
+        "GROUP BY batch ORDER BY batch = ? DESC, min(fid) LIMIT 1"
+    )
     for fid, before, made in rows:
         db.execute("UPDATE outside_changes SET undone = 1 WHERE fid = ?", (fid,))
-        was = as_it_was(before)["digest"]
+        stood = as_it_was(before)
+        was = stood["digest"]
         before_it.append(was)
-        (held,) = db.execute(
-            f"{one} AND undone = ? AND batch <> ?", (was, STANDS_BACK, batch)
-        ).fetchone()
-        (new,) = db.execute(f"{one} AND batch = ?", (made, batch)).fetchone()
+        (held,) = db.execute(own, (was, STANDS_BACK, batch, stood.get("batch"))).fetchone() or (
+            None,
+        )
+        (new,) = db.execute(_MADE, (made, batch)).fetchone()
         if held is not None and new is not None and new < held:
-            for here, there in ((new, -1), (held, new), (-1, held)):
-                db.execute("UPDATE inspections SET fid = ? WHERE fid = ?", (there, here))
+            _exchange(db, new, held)
     return [was for was in before_it if was is not None]
+
+
+def redo_corrections(
+    db: sqlite3.Connection, batch: int, but: Sequence[str] = ()
+) -> set[int] | None:
+    """Let corrections of a batch that were taken back stand again, `but` those to these digests.
+
+    What stood there before stands back as it did, and has its place in the order again. Return its
+    batches; None, with nothing done: something else was made of it since.
+    """
+    rows = db.execute(
+        "SELECT fid, before, now FROM outside_changes WHERE batch = ? AND before NOTNULL "
+        "AND undone = 1",
+        (batch,),
+    ).fetchall()
+    found, gone = [], corrected(_corrections(db))
+    for fid, before, made in rows:
+        was = as_it_was(before)["digest"]
+        if made in but:
+            continue
+        counts = "SELECT fid, batch FROM inspections WHERE digest = ? AND undone = 0"
+        held = db.execute(counts, (was,)).fetchone()
+        # what was corrected once more still stands back for that
+        if held is None and was is not None and made not in gone:
+            return None
+        found.append((fid, made, held))
+    for fid, made, held in found:
+        db.execute("UPDATE outside_changes SET undone = 0 WHERE fid = ?", (fid,))
+        if held is None:
+            continue
+        db.execute("UPDATE inspections SET undone = ? WHERE fid = ?", (STANDS_BACK, held[0]))
+        (new,) = db.execute(_MADE, (made, batch)).fetchone()
+        if new is not None and held[0] < new:
+            _exchange(db, new, held[0])
+    return {held[1] for _, _, held in found if held is not None}
+
+
+def _exchange(db: sqlite3.Connection, one: int, other: int) -> None:
+    """Let two inspections have each other's number, and so place in the order."""
+    for here, there in ((one, -1), (other, one), (-1, other)):
+        db.execute("UPDATE inspections SET fid = ? WHERE fid = ?", (there, here))
 
 
 def undo_same(db: sqlite3.Connection, inspection: int) -> list[int]:

@@ -15,7 +15,7 @@ from datetime import datetime, timedelta
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fieldmon.compute.wording import estimate, filled, worded, written
+from fieldmon.compute.wording import chance_figure, estimate, filled, worded, written
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspection_columns import BESIDE, InspectionColumn
 from fieldmon.monitoring import schema, settings_log
@@ -109,7 +109,7 @@ class LogEntry:
 
 
 def _percent(chance: float) -> str:
-    return written(chance, ".0%")
+    return str(chance_figure(chance))
 
 
 class _Blank(dict[str, Any]):

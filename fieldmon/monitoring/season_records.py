@@ -293,9 +293,9 @@ class SeasonRecords(OpenSeason):
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
         """Take a `batch` back (None: the last one), or one `inspection`; nothing is deleted.
 
-        Both are numbers; `who` takes it back, for the log. `redo` lets a batch count again, but
-        none of corrections, and no inspection alone: that is recorded anew. Return a sentence that
-        says what was undone. Raise `SettingError` if there is nothing, or both are given.
+        Both are numbers; `who` takes it back, for the log. `redo` lets a batch count again, but no
+        inspection alone: that is recorded anew. Return a sentence that says what was undone. Raise
+        `SettingError` if there is nothing, or both are given.
         """
         return self.take_back(batch, inspection, who).said
 
@@ -339,7 +339,8 @@ class SeasonRecords(OpenSeason):
         """Let a `batch` that was undone count again; `who` does so, for the log.
 
         What was taken back of it before, one by one or on a phone, stays so. Return a sentence that
-        says what counts again. Raise `SettingError` if the batch was not undone.
+        says what counts again. Raise `SettingError` if the batch was not undone, or what it
+        corrected is not as it was before.
         """
         with self._lock, self.store.writing() as db:
             but = season_log.left_out_of(db, batch)
@@ -393,7 +394,7 @@ class SeasonRecords(OpenSeason):
         inspection
             Its number (fid) in the season's file.
         at
-            The local time that is right; None: as it is.
+            The local time that is right, none to come; None: as it is.
         who
             Who corrects.
         on
@@ -402,13 +403,14 @@ class SeasonRecords(OpenSeason):
         Raises
         ------
         SettingError
-            If there is no such inspection that counts, or no such day yet.
+            If there is no such inspection that counts, or no such day or time yet.
         """
         with self._writing() as db:
             plot, settings = (self.plot.grid, self.label), settings_of(db)
             if on is not None:
                 settings.day(on)
-                self._must_have_come(on, at)
+            day, held_at = corrections.made(db, inspection)
+            self._must_have_come(on or day, at or held_at)
             who, when = written_in(db, who), (on, None if at is None else seconds(at))
             said = corrections.retime(db, inspection, when, plot, settings, who)
             self._corrected(db, said, who)
@@ -422,7 +424,7 @@ class SeasonRecords(OpenSeason):
                 worded(
                     "An inspection must be of a moment that has come, but {day} has not: on the "
                     "plot it is {now}.",
-                    day=str(on) if at is None else f"{on} {at:%H:%M}",
+                    day=str(on) if at is None or on > now.date() else f"{on} {at:%H:%M}",
                     now=f"{now:%Y-%m-%d %H:%M}",
                 )
             )

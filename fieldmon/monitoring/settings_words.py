@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import estimate, joined, worded, written
+from fieldmon.compute.wording import chance_figure, estimate, joined, worded, written
 from fieldmon.monitoring.settings import as_json
 from fieldmon.plot.robot import KM_H
 
@@ -133,7 +133,7 @@ def _each_of_worker(robot: Robot) -> dict[str, str]:
         "look": f"{robot.look_s:g} s",
         "speed": f"{KM_H * robot.speed_m_s:.3g} km/h",
         "row changes, turns and stops": robot.times or times,
-        "detection": written(robot.detects, ".0%"),
+        "detection": str(chance_figure(robot.detects)),
         **{name: f"{value_m:g} m" for name, value_m in size.items() if value_m is not None},
     }
 
@@ -143,5 +143,5 @@ def worker_in_words(member: TeamMember) -> str:
     robot = member.robot
     return (
         f"{member.name} {robot.hours:g} h, {robot.look_s:g} s a plant, "
-        f"{KM_H * robot.speed_m_s:.3g} km/h, finds {written(robot.detects, '.0%')}"
+        f"{KM_H * robot.speed_m_s:.3g} km/h, finds {chance_figure(robot.detects)}"
     )

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import share_figure, worded
+from fieldmon.compute.wording import chance_figure, worded
 from fieldmon.infestation.inspections import SKIPPED
 from fieldmon.monitoring import inspection_lots, season_log, settings_log
 from fieldmon.monitoring.pest_json import pest_of_json
@@ -112,7 +112,7 @@ class ToldOtherwise(NamedTuple):
             "was said with {n:it|them}; the season's own is {own}.",
             who=self.who or worded("nobody named"),
             on=days if self.first < self.last else self.first,
-            n=self.n, detects=share_figure(self.detects), own=share_figure(self.own),
+            n=self.n, detects=chance_figure(self.detects), own=chance_figure(self.own),
         )  # fmt: skip
 
 

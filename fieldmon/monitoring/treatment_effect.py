@@ -15,7 +15,7 @@ import numpy as np
 from scipy.special import betaincinv
 
 from fieldmon.compute.units import Units
-from fieldmon.compute.wording import counted, figure, joined, worded
+from fieldmon.compute.wording import chance_figure, counted, figure, joined, worded
 from fieldmon.decisions.labels import plain_name
 from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.pests.weather import DAY_S
@@ -69,8 +69,8 @@ class FoundShare:
         low, high = self.interval
         return worded(
             "{share} ({found} of {n}; {low} to {high})",
-            share=figure(self.share, ".0%"), found=figure(self.found), n=figure(self.inspected),
-            low=figure(low, ".0%"), high=figure(high, ".0%"),
+            share=chance_figure(self.share), found=figure(self.found), n=figure(self.inspected),
+            low=chance_figure(low), high=chance_figure(high),
         )  # fmt: skip
 
 
@@ -144,9 +144,9 @@ class TreatmentEffect:
             worded(
                 "It cleans {efficacy} of infested plants ({low} to {high}), told by {plants}; "
                 "{said} was said beforehand, which counts as {worth} plants.",
-                efficacy=figure(self.efficacy, ".0%"), low=figure(self.low, ".0%"),
-                high=figure(self.high, ".0%"), plants=counted(self.cured_of, "plant"),
-                said=figure(self.said, ".0%"), worth=figure(PRIOR_PLANTS, "g"),
+                efficacy=chance_figure(self.efficacy), low=chance_figure(self.low),
+                high=chance_figure(self.high), plants=counted(self.cured_of, "plant"),
+                said=chance_figure(self.said), worth=figure(PRIOR_PLANTS, "g"),
             )
         )  # fmt: skip
         return joined(" ", said)

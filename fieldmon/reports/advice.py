@@ -97,7 +97,7 @@ def _zones(advice: Advice) -> Table:
                 worded(words.FROM_TO, start=start, end=end),
                 worded(words.FROM_TO, start=number.min(), end=number.max()),
                 figure(int(np.count_nonzero(mine)), ","),
-                figure(verdict.share, ".0%"),
+                share_figure(verdict.share),
                 words.VERDICTS[verdict.verdict],
             )
         )

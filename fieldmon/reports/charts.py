@@ -39,7 +39,7 @@ class DayChart:
     days
         Dates, in order.
     value
-        ``(d,)`` a value a day.
+        ``(d,)`` a value a day; NaN: nothing is to be said of it yet.
     units
         Of the dates.
     low, high
@@ -99,11 +99,15 @@ class DayChart:
         ]
 
     def _line(self, place: _Axes) -> list[Part]:
-        x, y = place.x(self.days), place.y(self.value)
         assert self.low is not None  # noqa: S101 - a line has its interval
         assert self.high is not None  # noqa: S101 - as above
-        low, high = place.y(self.low), place.y(self.high)
-        gap = np.diff([day.toordinal() for day in self.days]) > _MOST_APART
+        told = np.flatnonzero(~np.isnan(self.value))
+        if not len(told):
+            return []
+        days = tuple(self.days[k] for k in told.tolist())
+        x, y = place.x(days), place.y(self.value[told])
+        low, high = place.y(self.low[told]), place.y(self.high[told])
+        gap = np.diff([day.toordinal() for day in days]) > _MOST_APART
         runs = np.split(np.arange(len(x)), np.flatnonzero(gap) + 1)
         parts: list[Part] = []
         for run in runs:
@@ -122,8 +126,8 @@ class DayChart:
         parts += [Strokes(lines, colours.ROUTE, 0.6)] if lines else []
         # dots so near each other would be a thick line: those that none joins, and the newest
         crowded = len(x) > 1 and float(np.median(np.diff(x))) < _DOTS_APART_MM
-        told = np.array([*(run[0] for run in runs if len(run) == 1), len(x) - 1])
-        dots = np.unique(told) if crowded else np.arange(len(x))
+        alone = np.array([*(run[0] for run in runs if len(run) == 1), len(x) - 1])
+        dots = np.unique(alone) if crowded else np.arange(len(x))
         return [*parts, Discs(np.stack([x[dots], y[dots]], 1), 0.75, fill=colours.ROUTE)]
 
 
@@ -140,7 +144,7 @@ class _Axes:
     def of(cls, chart: DayChart, size: Size) -> _Axes:
         first, last = chart.days[0].toordinal(), chart.days[-1].toordinal()
         highest = chart.value if chart.high is None else chart.high
-        top = float(highest.max(initial=0.0)) if chart.top is None else chart.top
+        top = float(np.nanmax(highest, initial=0.0)) if chart.top is None else chart.top
         return cls(size, first, last, _ticks(top, whole=chart.low is None))
 
     @property

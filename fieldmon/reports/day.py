@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import estimate, figure, hours_figure, runs, worded
+from fieldmon.compute.wording import chance_figure, estimate, figure, hours_figure, runs, worded
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
@@ -397,14 +397,14 @@ def _every_stop(facts: DayFacts) -> TickList:
     ]
     rows = zip(
         range(1, len(route) + 1), route.arrive_s.tolist(), label.line.tolist(),
-        label.number.tolist(), (100 * route.chance).tolist(), said, strict=True,
+        label.number.tolist(), route.chance.tolist(), said, strict=True,
     )  # fmt: skip
     return TickList(
         words.EVERY_STOP, (*words.EVERY_COLUMNS, words.WAS if facts.worked else words.TICK),
         tuple(
             (
                 f"{k}", _clock(facts, s, "%H:%M:%S"), signs[line], f"{number}",
-                figure(chance, ".1f"), end,
+                chance_figure(chance, 1), end,
             )
             for k, s, line, number, chance, end in rows
         ),

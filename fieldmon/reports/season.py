@@ -209,8 +209,8 @@ def _share_found(status: Status) -> KeyFigure:
     if not status.inspected:
         return KeyFigure(words.SHARE_FOUND, NO_ROW, words.NOTHING_INSPECTED)
     low, high = status.detection_range_pct
-    interval = worded(words.INTERVAL, low=figure(low, ".0f"), high=figure(high, ".0f", " %"))
-    return KeyFigure(words.SHARE_FOUND, figure(status.detection_pct, ".0f", " %"), interval)
+    interval = worded(words.INTERVAL, low=chance_figure(low / 100), high=chance_figure(high / 100))
+    return KeyFigure(words.SHARE_FOUND, chance_figure(status.detection_pct / 100), interval)
 
 
 def _rows_seen(facts: _Facts) -> Iterator[str]:
@@ -249,6 +249,7 @@ def _went(facts: _Facts) -> Iterator[Block]:
     )
     found = np.array([one.found for one in facts.days], np.float64)
     inspected = np.array([one.inspected for one in facts.days], np.float64)
+    share[np.cumsum(inspected) == 0] = np.nan  # of no inspections none is known
     charts = {
         words.CHART_FOUND: DayChart(on, found, facts.units),
         words.CHART_SHARE: DayChart(
@@ -257,6 +258,8 @@ def _went(facts: _Facts) -> Iterator[Block]:
         words.CHART_STILL: DayChart(on, still, facts.units, low, high, marks=_treated(facts)),
         words.CHART_INSPECTED: DayChart(on, inspected, facts.units),
     }
+    if np.isnan(share).all():
+        del charts[words.CHART_SHARE]
     for title, chart in charts.items():
         yield Illustration(title, worded(words.CHART_ALT, title=title), chart.draw, (28.0, 46.0))
     plans = [facts.season.planned_and_done(one.on) for one in facts.days if one.inspected]
@@ -283,7 +286,7 @@ def _days(facts: _Facts) -> Table:
         (
             facts.units.day(one.on), figure(one.inspected), figure(one.found),
             worded("{n} ({low:,}–{high:,})", n=estimate(one.expected), low=one.low, high=one.high),
-            figure(found_pct(found, one.expected), ".0f", " %") if inspected else NO_ROW,
+            chance_figure(found_pct(found, one.expected) / 100) if inspected else NO_ROW,
         )
         for one, found, inspected in zip(facts.days, facts.found_by.tolist(), so_far, strict=True)
     ]  # fmt: skip

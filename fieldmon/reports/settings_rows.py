@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import Worded, figure, joined, worded
+from fieldmon.compute.wording import Worded, chance_figure, figure, joined, worded
 from fieldmon.io.import_report import Severity
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.robot import Robot, scout
@@ -164,7 +164,7 @@ def _of_team(team: tuple[TeamMember, ...]) -> Iterator[Row]:
         name, robot = words.isolated(one.name), one.robot
         value = worded(words.MEMBER_VALUE, hours=robot.hours, look=robot.look_s)
         yield worded(words.MEMBER, name=name), value, words.FROM_CHOSEN
-        detects = figure(robot.detects, ".0%")
+        detects = chance_figure(robot.detects)
         yield worded(words.MEMBER_DETECTS, name=name), detects, words.FROM_CHOSEN
 
 
@@ -173,9 +173,9 @@ def _of_robot(settings: WorkSettings, robot: Robot) -> Iterator[Row]:
     yield words.HOURS, figure(robot.hours, "g"), _from(robot.hours == usual.hours)
     yield words.LOOK, figure(robot.look_s, "g"), _from(robot.look_s == usual.look_s)
     yield words.SPEED, worded("{n:.1f} km/h", n=robot.speed_m_s * 3.6), settings.origin("speed_m_s")
-    told, learnt = figure(robot.detects, ".0%"), settings.learnt_detection
+    told, learnt = chance_figure(robot.detects), settings.learnt_detection
     yield words.DETECTS, told, settings.origin("detects")
-    if learnt is not None and (said := figure(learnt, ".0%")) != told:
+    if learnt is not None and (said := chance_figure(learnt)) != told:
         yield words.DETECTS_LEARNT, said, words.FROM_LEARNT
 
 

@@ -3,7 +3,7 @@
 import re
 
 from app.words import texts
-from tests.app.driving import PAGES, go, map_of, texts_of
+from tests.app.driving import PAGES, go, map_of, opened, texts_of
 
 
 def idle_digits(app):
@@ -44,3 +44,11 @@ def test_every_part_opens_on_a_season_and_no_box_writes_digits_that_nobody_needs
         assert not season_app.exception, page
         assert not season_app.error, page
         assert idle_digits(season_app) == [], page
+
+
+def test_a_box_for_files_speaks_the_language_of_the_page():
+    for code, upload in (("en", None), ("he", "להעלות קובץ"), ("es", "Subir archivo")):
+        styles = "".join(one.proto.body for one in opened(lang=code).get("html"))
+        assert ("--upload:" in styles) == (code != "en")
+        assert upload is None or f'--upload:"{upload}"' in styles
+        assert upload is None or "200 MB" in styles

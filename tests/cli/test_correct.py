@@ -51,6 +51,25 @@ def test_the_time_alone_of_an_inspection_is_corrected(run, season):
     assert Season(season).history.inspections.second.tolist() == [22_000, 80_000]
 
 
+def test_a_time_alone_must_have_come_and_the_day_stays_in_order(run, season, monkeypatch):
+    kept = Season(season)
+    told = Inspections.of(np.arange(2), np.array([0, 1]), BEGINS, second=[22_000, 30_000])
+    kept.record(told, "taps")
+    # 12:00 on the plot
+    monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2026, 11, 2, 10, tzinfo=UTC))
+    words = ["correct", season, "--who", "Ann", "--inspection"]
+    code, _, err, _ = run(*words, "1", "--time", "12:01")
+    assert (code, f"moment that has come, but {BEGINS} 12:01 has not" in err) == (2, True), err
+    assert Season(season).history.inspections.second.tolist() == [22_000, 30_000]
+    assert run(*words, "1", "--time", "12:00")[0] == 0
+    held = Season(season).history.inspections
+    assert (held.plant.tolist(), held.second.tolist()) == ([1, 0], [30_000, 12 * 3600])
+    # its day alone, to today: the time it keeps is still to come
+    monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2026, 11, 3, 5, tzinfo=UTC))
+    code, _, err, _ = run(*words, "1", "--date", "2026-11-03")
+    assert (code, "but 2026-11-03 12:00 has not" in err) == (2, True), err
+
+
 def test_the_day_of_an_inspection_is_corrected_and_days_stay_in_order(run, season, monkeypatch):
     kept, begins = Season(season), date.fromisoformat(str(BEGINS))
     monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2026, 11, 5, 12, tzinfo=UTC))

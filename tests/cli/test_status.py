@@ -31,7 +31,7 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
     kept.record(Inspections.of(np.array([1]), np.array([0]), np.datetime64(BEGINS)), "x")
     later = run("status", season)[1]
     assert "learnt so far          An inspection finds " in later
-    assert "share found                 0 % (0 to 0 %) of found and not found yet" in later
+    assert "share found                 0 % (0 % to 0 %) of found and not found yet" in later
     assert out.startswith(f"Nursery, {BEGINS} (day 1 of the season)")
 
 
@@ -46,6 +46,16 @@ def test_thousands_are_parted_in_every_number_of_a_status(season):
         each = replace(now, estimate=replace(now.estimate, chance_clean=clean))
         assert f"  chance it is clean     {words}" in lines(kept, each)
     assert " 6,543 of 12,345 plants (53 %), 2,345 found infested (3,456 finds: some again)" in said
+
+
+def test_no_share_is_said_to_be_nothing_or_all_that_is_not(season):
+    kept = Season(season)
+    now = kept.status(kept.last_date())
+    few = replace(now, plants=12345, inspected=1, found=1)
+    few = replace(few, estimate=replace(now.estimate, expected=900.0, low=0, high=2000))
+    said = "\n".join(lines(kept, few))
+    assert "1 of 12,345 plants (0.0081 %)" in said
+    assert "share found            under 1 % (under 1 % to 100 %) of found" in said
 
 
 def test_plants_only_flagged_are_told_beside_those_not_found(run, tmp_path):
@@ -173,6 +183,28 @@ def test_a_season_all_of_which_lies_ahead_is_told_as_of_its_last_day(season, mon
         today = kept.settings.begins - timedelta(days=before)
         monkeypatch.setattr(LocalClock, "today", lambda _, today=today: today)
         assert kept.day_meant() == meant
+
+
+def test_plants_that_are_gone_by_a_note_of_before_are_said_to_count_so(tmp_path):
+    kept = a_season(tmp_path / "s.gpkg")
+    begins = kept.settings.begins
+    notes = np.array(["gone: burnt", "tree is dead", "thorns"], object)
+    skipped = np.full(3, SKIPPED)
+    kept.record(Inspections.of(np.array([3, 4, 5]), skipped, begins, notes=notes), "x")
+    told = list(lines(kept, kept.status(begins)))
+    (at,) = (k for k, one in enumerate(told) if one.startswith("  gone "))
+    assert (
+        told[at]
+        == "  gone                        2 do not stand there any more: plans leave them out"
+    )
+    assert told[at + 1].strip() == (
+        "Of these, 1 is gone by a note alone ('tree is dead'), which counted as skipped before "
+        "version 0.2. If it still stands, inspect it again."
+    )
+    kept.record(Inspections.of(np.array([4]), np.array([0]), begins + timedelta(days=1)), "y")
+    told = list(lines(kept, kept.status(begins + timedelta(days=1))))
+    assert "1 does not stand there any more" in "\n".join(told)
+    assert not any("note alone" in one for one in told)
 
 
 def test_plants_that_could_not_be_inspected_are_counted_with_those_left_out(tmp_path):

@@ -122,6 +122,8 @@ def test_estimates_have_the_digits_of_all_estimates_and_shares_are_in_percent():
         "306 plants were infested at the start (254 to 1,363)."
     )
     assert Learnt("hiding", 0.153, 0.153, 0.153).sentence().endswith("with a chance of 15 %.")
+    said = Learnt("detection", 0.996, 0.93, 0.9998).sentence()
+    assert said == "An inspection finds over 99 % of what is there (93 % to over 99 %)."
 
 
 def test_how_far_insects_jump_is_said_where_they_may():

@@ -80,6 +80,19 @@ def test_a_spacing_that_no_rows_have_is_refused_with_file_column_and_value(tmp_p
     assert prepare(one(file, "wide", planting=by_hand)).plot.grid.row_spacing_m == 5.0
 
 
+def test_all_spacings_that_no_rows_have_are_named_at_once(tmp_path):
+    file = tmp_path / "wrong.gpkg"
+    areas = [shapely.box(35.15, 30.36, 35.151, 30.361)]
+    columns = {"name": ["wide"], "row_dist": [5000], "plant_dist": [0.001], "headland": [4]}
+    geopandas.GeoDataFrame(columns, geometry=areas, crs=4326).to_file(file)
+    with pytest.raises(FileProblem) as problem:
+        prepare(one(file, "wide"))
+    said = str(problem.value)
+    assert "column 'row_dist' must be 0.05 to 1000 metres, but it is 5000; column " in said
+    assert "'plant_dist' must be 0.05 to 1000 metres, but it is 0.001." in said
+    assert said.endswith("Correct it, or say it by hand.")
+
+
 @pytest.mark.parametrize(("gate", "away"), [((35.0, 30.0), "4"), ((30.349, 35.141), "69")])
 def test_a_gate_from_which_nobody_drives_in_a_day_is_refused_with_its_distance(gate, away):
     sources = PlotSources(ZIP, PlotOptions(feature="Nursery"), gate=gate)

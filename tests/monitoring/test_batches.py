@@ -1,11 +1,15 @@
 """Everything recorded is a batch, and what is taken back is marked, never deleted."""
 
+import sqlite3
+from contextlib import closing
+from datetime import time, timedelta
+
 import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
-from fieldmon.monitoring import batches
+from fieldmon.monitoring import Season, batches
 from fieldmon.monitoring.batches import Batch
 from fieldmon.plot.grid import row_label
 from tests.monitoring.seasons import BEGINS, a_plot_with_named_rows, a_season
@@ -174,8 +178,98 @@ def undone(season, batch):
     return batch
 
 
-def test_corrections_do_not_count_again(db):
-    recorded(db, 1)
-    db.execute("UPDATE batches SET kind = 'corrections', undone = 1")
-    with pytest.raises(SettingError, match="Change the inspections anew"):
-        batches.redo(db, 1)
+def all_of(season):
+    """Return every inspection and correction of a season, as they stand in its file."""
+    with season.store.reading() as db:
+        return [
+            db.execute(f"SELECT * FROM {table} ORDER BY fid").fetchall()  # noqa: S608 - ours
+            for table in ("inspections", "outside_changes", "batches")
+        ]
+
+
+def seen(plants, results, **more):
+    return Inspections.of(np.array(plants), np.array(results), np.datetime64(BEGINS), **more)
+
+
+def corrected_outside(season):
+    with closing(sqlite3.connect(season.path)) as db:
+        db.execute("UPDATE inspections SET result = 'found', notes = 'mites' WHERE plant = 1")
+        db.execute("UPDATE inspections SET who = 'Eve' WHERE fid = 2")
+        db.execute("DELETE FROM inspections WHERE plant = 3")
+        db.commit()
+    season.correct("Ann")
+
+
+CORRECTIONS = {
+    "time": lambda season: season.correct_time(2, time(6), "Ann"),
+    "day": lambda season: season.correct_time(2, time(6), "Ann", BEGINS + timedelta(days=1)),
+    "instead": lambda season: season.record_instead(seen([1, 2], [FOUND, FOUND]), "me", "Ann"),
+    "outside": corrected_outside,
+}
+
+
+@pytest.mark.parametrize("correct", CORRECTIONS.values(), ids=CORRECTIONS)
+def test_corrections_that_were_undone_count_again_as_they_did(season, correct):
+    season.record(seen([1, 2, 3], [0, 0, 1], second=[100.0, np.nan, 300.0]), "day.csv", "Bo")
+    season.record(seen([2], [0], notes=np.array(["webs"], object)), "more.csv", "Cy")
+    correct(season)
+    batch, after = season.batches()[0].number, all_of(season)
+    for _ in range(2):
+        done = season.take_back()
+        assert done.batch == batch
+        assert all_of(season) != after
+        assert f"Batch {batch} counts again: " in season.redo(batch)
+        assert all_of(season) == after
+        assert Season(season.path).verify() == ()
+        assert season.held_to_log() == ()
+
+
+def test_a_correction_that_was_corrected_itself_counts_again_below_that(season):
+    season.record(seen([1], [0], second=[100.0]), "day.csv")
+    for hour in (6, 7):
+        season.correct_time(1, time(hour), "Ann")
+    last, first = (one.number for one in season.batches()[:2])
+    after = all_of(season)
+    season.undo(first)
+    assert season.history.inspections.second.tolist() == [7 * 3600]
+    season.redo(first)
+    assert season.history.inspections.second.tolist() == [7 * 3600]
+    season.undo(last)
+    assert season.history.inspections.second.tolist() == [6 * 3600]
+    season.redo(last)
+    assert all_of(season) == after
+    for number in (last, first):
+        season.undo(number)
+    with pytest.raises(SettingError, match="must stand there as it did before"):
+        season.redo(last)
+    season.redo(first)
+    season.redo(last)
+    assert all_of(season) == after
+    assert season.verify() == ()
+
+
+@pytest.mark.parametrize(
+    "since", [lambda season: season.correct_time(1, time(9), "Bo"), lambda season: season.undo(1)]
+)
+def test_corrections_do_not_count_again_over_what_was_done_since(season, since):
+    season.record(seen([1, 2], [0, 0], second=[100.0, 200.0]), "day.csv")
+    season.correct_time(1, time(8), "Ann")
+    season.undo()
+    since(season)
+    before = all_of(season)
+    with pytest.raises(SettingError, match="What batch 2 corrected must stand there"):
+        season.redo(2)
+    assert all_of(season) == before
+    assert season.verify() == ()
+
+
+def test_of_corrections_one_that_was_taken_back_alone_stays_so(season):
+    season.record(seen([1, 2], [0, 0]), "day.csv")
+    season.record_instead(seen([1, 2], [FOUND, FOUND]), "me")
+    batch = season.batches()[0].number
+    season.undo(inspection=1)
+    after = all_of(season)
+    season.undo(batch)
+    season.redo(batch)
+    assert season.history.states(0)[[1, 2]].tolist() == [0, 1]
+    assert all_of(season) == after

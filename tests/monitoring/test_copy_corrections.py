@@ -33,6 +33,16 @@ def test_a_corrected_finding_is_corrected_in_the_season_by_its_author(path, copy
     assert len(season.history.inspections) == 15
 
 
+def test_a_finding_corrected_to_gone_is_taken_once(path, copy):
+    outside(copy, "UPDATE inspections SET result = 'gone' WHERE fid = 1")
+    season = Season(path)
+    plant = int(season.history.inspections.plant[0])
+    assert season.take_corrections(copy, "copy.gpkg", "Ann") == 1
+    assert season.history.gone(0).nonzero()[0].tolist() == [plant]
+    assert season.verify() == ()
+    assert season.take_corrections(copy, "copy.gpkg", "Ann") == 0
+
+
 def test_a_deleted_finding_counts_no_more_and_is_kept(path, copy):
     outside(copy, "DELETE FROM inspections WHERE fid = 3")
     season = Season(path)

@@ -5,7 +5,7 @@ from contextlib import closing
 
 import pytest
 
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.monitoring import Season, outside_changes
 from fieldmon.monitoring.drafts import SOURCE
 from tests.monitoring.seasons import BEGINS, state
@@ -51,6 +51,18 @@ def test_a_finding_saved_into_the_season_counts_at_its_next_opening(path):
     assert Season(path).revision == revision
     season.undo()
     assert Season(path).history.states(0)[PLANT] == -1
+
+
+@pytest.mark.parametrize(("notes", "kept"), [(None, "gone"), ("burnt", "gone: burnt")])
+def test_a_plant_added_as_gone_is_kept_as_skipped_and_gone(path, notes, kept):
+    add(path, result="gone", notes=notes)
+    season = Season(path)
+    assert season.drafts == ()
+    (k,) = (season.history.inspections.plant == PLANT).nonzero()[0]
+    assert season.history.inspections.result[k] == SKIPPED
+    assert season.history.inspections.notes[k] == kept
+    assert season.history.gone(0).nonzero()[0].tolist() == [PLANT]
+    assert season.verify() == ()
 
 
 @pytest.mark.parametrize(

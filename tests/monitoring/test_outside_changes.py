@@ -60,6 +60,25 @@ def test_a_changed_inspection_is_refused_by_name_until_it_is_taken_as_a_correcti
     assert season.verify() == ()
 
 
+def test_a_result_changed_to_gone_is_a_correction_and_is_taken_back(path):
+    outside(path, "UPDATE inspections SET result = 'gone', notes = 'burnt' WHERE fid = 1")
+    assert "row 1 of the layer inspections" in refused(path)
+    season = Season(path)
+    plant = plant_of(path, 1)
+    assert season.correct("Ann") == 1
+    assert season.history.gone(0).nonzero()[0].tolist() == [plant]
+    assert season.log()[-1].sentence().endswith("is now result skipped, notes gone: burnt")
+    assert season.verify() == ()
+    season.undo()
+    assert not season.history.gone(0).any()
+    assert season.history.states(0)[plant] == CLEAN
+
+
+def plant_of(path, row):
+    with closing(sqlite3.connect(path)) as db:
+        return db.execute("SELECT plant FROM inspections WHERE fid = ?", (row,)).fetchone()[0]
+
+
 def test_a_correction_counts_in_every_column_and_is_taken_back_as_a_whole(path, tmp_path):
     other = shutil.copy(path, tmp_path / "other.gpkg")
     outside(path, "UPDATE inspections SET plant = 301, result = 'found' WHERE fid = 1")

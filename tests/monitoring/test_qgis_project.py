@@ -117,9 +117,11 @@ def test_only_findings_can_be_changed_with_a_list_of_results_and_todays_date(sea
     assert list(found) == ["Findings"]
     form = found["Findings"]
     values = [
-        o.get("value") for o in form.iter("Option") if o.get("value") in RESULT_NAMES.values()
+        o.get("value")
+        for o in form.iter("Option")
+        if o.get("value") in {*RESULT_NAMES.values(), "gone"}
     ]
-    assert sorted(values) == sorted(RESULT_NAMES.values())
+    assert sorted(values) == sorted([*RESULT_NAMES.values(), "gone"])
     widgets = {one.get("name"): one.find("editWidget").get("type")
                for one in form.iter("field") if one.find("editWidget") is not None}  # fmt: skip
     assert widgets["detects"] == widgets["digest"] == "Hidden"

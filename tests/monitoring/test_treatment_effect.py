@@ -146,6 +146,8 @@ def test_it_is_said_in_words():
     )
     assert "Elsewhere 100 % (1 of 1" in said
     assert date(2026, 4, 9) == BEGINS + timedelta(3)
+    # nor is an end of an interval said to be nothing or all
+    assert FoundShare(1, 400).sentence() == "under 1 % (1 of 400; under 1 % to 1 %)"
     assert FoundShare(1100, 1687).sentence().startswith("65 % (1,100 of 1,687; ")
 
 

@@ -77,6 +77,18 @@ def test_one_day_alone_has_a_mark_and_an_interval():
     assert [one for one in parts(drawing, Strokes) if one.colour == colours.BAR]
 
 
+def test_a_line_begins_where_there_is_a_value_and_the_days_before_it_keep_their_room():
+    drawing = line([np.nan, np.nan, 40, 60], 0, 1, 2, 3, top=100.0).draw(SIZE)
+    whole = line([10, 20, 40, 60], 0, 1, 2, 3, top=100.0).draw(SIZE)
+    (dots,), (every,) = parts(drawing, Discs), parts(whole, Discs)
+    assert dots.places == pytest.approx(every.places[2:])
+    (band,) = parts(drawing, Areas)
+    assert len(band.rings[0]) == 4
+    none = line([np.nan, np.nan], 0, 1, top=100.0).draw(SIZE)
+    assert not parts(none, Discs)
+    assert not parts(none, Areas)
+
+
 def test_dots_of_a_long_season_do_not_run_together():
     few, many = (line([5] * n, *range(n)).draw(SIZE) for n in (40, 200))
     assert [len(dots.places) for dots in parts(few, Discs)] == [40]

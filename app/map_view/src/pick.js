@@ -73,12 +73,16 @@ export function tipOf({ places, ranks, values, notes, tips }, k) {
 }
 
 // Return a chance in words, with its interval where the level of all chances may be off: `tips.odds`
-// is what every plant's odds are multiplied by at the ends of it.
-function chanceOf({ values, between, odds, least, most }, chance) {
-  const said = (share) => (100 * share).toFixed(1);
-  const [low, high] = (odds ?? [1, 1]).map((by) => said((chance * by) / (1 - chance + chance * by)));
+// is what every plant's odds are multiplied by at the ends of it, `tips.half` how the language writes 50.0 %.
+function chanceOf({ values, between, odds, least, most, half = "50.0 %" }, chance) {
+  const [, mark, sign] = /^50(.)0(.*)$/.exec(half) ?? ["", ".", " %"];
+  const isNumber = (share) => share >= 0.0005 && share < 0.9995;
+  const number = (share) => (100 * share).toFixed(1).replace(".", mark);
   // none is said to be nothing or all
-  const one = chance < 0.0005 ? least : chance < 0.9995 ? `${said(chance)} %` : most;
-  const text = between && low !== high ? between : values;
-  return text.replace("{chance}", one).replace("{low}", low).replace("{high}", `${high} %`);
+  const said = (share) => (isNumber(share) ? number(share) + sign : share < 0.5 ? least : most);
+  const [low, high] = (odds ?? [1, 1]).map((by) => (chance * by) / (1 - chance + chance * by));
+  const text = between && said(low) !== said(high) ? between : values;
+  // two numbers share a sign
+  const from = isNumber(low) && isNumber(high) ? number(low) : said(low);
+  return text.replace("{chance}", said(chance)).replace("{low}", from).replace("{high}", said(high));
 }

@@ -102,3 +102,13 @@ test("a chance is said with what it would be at both ends of the plot's level, o
   assert.equal(tipOf(json, 2), "row 3, plant 9: next to none chance", "no interval of nothing");
   assert.equal(tipOf({ places, values: [0.99999], tips }, 0), "row 3, plant 7: all but all chance");
 });
+
+test("no end of an interval is said to be nothing or all, and numbers are written as the language does", () => {
+  const places = { row: [3, 3, 3], number: [7, 8, 9] };
+  const tips = { text: "{note}", values: "{chance}", between: "{chance} ({low} to {high})", odds: [0.5, 2], least: "next to none", most: "all but all" };
+  const json = { places, values: [0.0006, 0.9993, 0.12], tips };
+  assert.equal(tipOf(json, 0), "0.1 % (next to none to 0.1 %)");
+  assert.equal(tipOf(json, 1), "99.9 % (99.9 % to all but all)");
+  assert.equal(tipOf({ ...json, tips: { ...tips, half: "50,0 %" } }, 2), "12,0 % (6,4 to 21,4 %)");
+  assert.equal(tipOf({ ...json, tips: { ...tips, half: "50.0%" } }, 2), "12.0% (6.4 to 21.4%)");
+});

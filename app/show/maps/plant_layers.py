@@ -13,6 +13,7 @@ from fieldmon.plot.grid import row_label
 from fieldmon.plot.projection import M_PER_DEGREE
 
 from ...words import texts
+from ...words.language import number
 from .colours import FOUND
 from .deck import ArraysLayer
 
@@ -67,6 +68,7 @@ def plants(
         arrays["values"] = notes.chance.astype("<f4").tobytes()
         tips["values"] = texts.TIP_CHANCE
         tips |= {"least": texts.TIP_LEAST, "most": texts.TIP_MOST}
+        tips["half"] = texts.IN_PERCENT.format(value=number(50.0, ".1f"))
         if notes.level is not None and notes.level.low < notes.level.high:
             tips["between"] = texts.TIP_CHANCE_BETWEEN
             tips["odds"] = [float(f"{end:.5g}") for end in (notes.level.low, notes.level.high)]

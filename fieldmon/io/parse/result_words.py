@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.infestation.observations import ABSENT, PRESENT
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
 from fieldmon.io.parse.columns import is_confidence, is_score
@@ -103,6 +103,8 @@ the|this|that|it|its|it's|plant|tree|vine|palm|is|was|has|been|la|el|este|esta|�
 está|fue|es|die|der|das|pflanze|baum|ist|le|plante|arbre|est
 הצמח|צמח|העץ|עץ|הגפן|גפן|זה|הזה|הזאת|הוא|היא|النبتة|نبتة|النبات|الشجرة|شجرة|هذه|هذا
 """
+# words in a sentence
+_FEW = 5
 # where what a note says first ends
 _FIRST = re.compile(r"[:,.!\n(]|\s[-\u2013\u2014]\s")
 #: clean where a column also holds a plus; alone it is an empty cell, unless one says otherwise
@@ -212,6 +214,20 @@ def about_minus(cells: Iterable[str], words: ResultWords) -> list[ImportMessage]
         n=n,
     )
     return [doubtful(said, remedy=Remedy("clean", "-", worded("Take a minus as clean")))]
+
+
+def remedy_of_words(odd: Iterable[str], options: RecordOptions) -> Remedy | None:
+    """Return how words that say neither are taken as found, all at once, with those said before.
+
+    None where none of them can be named, as a comma parts them.
+    """
+    words = [word for word in dict.fromkeys(odd) if "," not in word]
+    if not words:
+        return None
+    before = [word.strip() for word in (options.found or "").split(",") if word.strip()]
+    shown = first_few([repr(word) for word in words], _FEW)
+    label = worded("Take {shown} as found; clean= takes them as clean", shown=shown)
+    return Remedy("found", ",".join([*before, *words]), label)
 
 
 def about_mark(unsure: str | None, column: str, mark: str) -> list[ImportMessage]:

@@ -33,6 +33,7 @@ from fieldmon.io.parse.result_words import (
     about_mark,
     about_minus,
     are_fractions,
+    remedy_of_words,
 )
 from fieldmon.io.parse.values import (
     counted,
@@ -518,14 +519,10 @@ def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
                 name,
             )
         )
-    unread = {cell for cell in known if known[cell] == UNKNOWN and not is_missing(cell)}
+    unread = sorted(cell for cell in known if known[cell] == UNKNOWN and not is_missing(cell))
     if unread:
-        one = min(unread)
-        remedy = Remedy(
-            "found", one, worded("Take {one!r} as found; clean= takes it as clean", one=one)
-        )
-        said = worded("These words say neither yes nor no: {shown}.", shown=_some(sorted(unread)))
-        messages.append(doubtful(said, name, None if "," in one else remedy))
+        said = worded("These words say neither yes nor no: {shown}.", shown=_some(unread))
+        messages.append(doubtful(said, name, remedy_of_words(unread, table.options)))
     messages += about_minus(cells, words)
     messages += about_fractions(name, (counted(cell).number for cell in known), is_usual=False)
     present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)

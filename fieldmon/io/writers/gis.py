@@ -33,13 +33,13 @@ _MOST_BYTES = 254  # of text in a cell of a shapefile's table
 _CHOICES = (
     ("found infested", "yes"),
     ("looked clean", "no"),
-    ("could not look", "skipped"),
+    ("could not inspect", "skipped"),
     ("plant is gone", "gone"),
 )
 _SHOWN = {
     "yes": ("found infested", qml.Symbol("marker", qml.RED, 2.6, "diamond")),
     "no": ("looked clean", qml.Symbol("marker", qml.BLUE, 1.8)),
-    "skipped": ("could not look", qml.Symbol("marker", qml.GREY, 2.0, "cross2")),
+    "skipped": ("could not inspect", qml.Symbol("marker", qml.GREY, 2.0, "cross2")),
     "gone": ("plant is gone", qml.Symbol("marker", qml.GREY, 2.0, "cross2")),
     "": ("to inspect", qml.Symbol("marker", qml.YELLOW, 2.2)),
 }

@@ -8,7 +8,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from fieldmon.compute.wording import written
+from fieldmon.compute.wording import chance_figure, written
 from fieldmon.io.writers.day_file import DECIMALS, pieces, plain_text
 from fieldmon.io.writers.geojson import summary
 from fieldmon.plot.projection import goes_round
@@ -90,7 +90,8 @@ def _bounds(metadata: ET.Element, plan: HandoffPlan) -> None:
 def _waypoint(waypoint: ET.Element, stop: Stop) -> None:
     arrive = f"arrive {stop.arrive}; " if stop.arrive else f"after {stop.arrive_s:.0f} s; "
     _text(waypoint, "name", stop.label)
-    looks = f"stay {stop.look_s:g} s; chance {stop.chance:.1%}; detects {stop.detects:.6g}"
+    chance = chance_figure(stop.chance, 1)
+    looks = f"stay {stop.look_s:g} s; chance {chance}; detects {stop.detects:.6g}"
     told = f"plant {stop.plant}; {arrive}{looks}"
     # converters and devices keep one of the two, and not the same one
     _text(waypoint, "cmt", told)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
-from fieldmon.compute.wording import written
+from fieldmon.compute.wording import chance_figure, written
 from fieldmon.io.writers.day_file import DECIMALS, plain_text
 from fieldmon.io.writers.geojson import summary
 
@@ -62,7 +62,9 @@ def _styles(document: ET.Element) -> None:
 
 def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
     _text(placemark, "name", stop.label)
-    _text(placemark, "description", f"stay {stop.look_s:g} s; chance {stop.chance:.1%}")
+    _text(
+        placemark, "description", f"stay {stop.look_s:g} s; chance {chance_figure(stop.chance, 1)}"
+    )
     if stop.arrive:
         _text(ET.SubElement(placemark, "TimeStamp"), "when", stop.arrive)
     _text(placemark, "styleUrl", "#stop")

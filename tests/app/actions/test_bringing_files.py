@@ -10,6 +10,7 @@ from shapely import transform
 
 from app.actions import bringing_files
 from app.words import texts
+from fieldmon.infestation.inspections import CLEAN, FOUND
 from tests.app.driving import go, metric, plot_name, press, square, texts_of, upload, zipped
 
 
@@ -40,6 +41,32 @@ def test_a_doubt_about_the_plot_is_said_on_today_with_its_remedy_before_a_season
         (remedy,) = [one for one in app.button if one.key.startswith("remedy ")]
     remedy.click().run()
     assert texts.SEVERITIES["doubtful"] not in texts_of(go(app, "today"))
+
+
+def test_words_that_say_neither_are_asked_about_together(app, tmp_path):
+    table = "lon,lat,date,result\n" + "".join(
+        f"{35.15 + 1e-4 * k},30.36,2026-11-0{k + 1},{word}\n"
+        for k, word in enumerate(["yes", "krobbig", "perhaps", "naja", "no"])
+    )
+    upload(app, plot=("plot.zip", zipped(tmp_path, square())), record=("r.csv", table.encode()))
+
+    def asked():
+        """Return the keys of the boxes for words, by these."""
+        words = [one.key for one in app.get("button_group") if (one.key or "").startswith("word ")]
+        return {key.rpartition(" ")[2]: key for key in words}
+
+    assert [*asked()] == ["krobbig", "naja", "perhaps"]
+    app.session_state[asked()["krobbig"]] = FOUND
+    app.session_state[asked()["perhaps"]] = CLEAN
+    press(app, texts.WORDS_TAKE)
+    assert not app.exception
+    assert [*asked()] == ["naja"]
+    app.session_state[asked()["naja"]] = FOUND
+    press(app, texts.WORDS_TAKE)
+    assert not asked()
+    assert "say neither" not in texts_of(app)
+    press(app, "Take back: krobbig, naja: found")
+    assert [*asked()] == ["naja"]
 
 
 @pytest.mark.parametrize(

@@ -35,5 +35,6 @@ def test_the_day_and_time_of_one_inspection_are_corrected_and_taken_back(season_
     held = season().history.inspections
     assert (str(held.date[0]), held.second.tolist()) == ("2026-11-16", [5.75 * 3600])
     press(season_app, "Undo")
-    press(season_app, "Take it back")
     assert season().history.inspections.second.tolist() == [22_000]
+    press(season_app, "Redo")
+    assert season().history.inspections.second.tolist() == [5.75 * 3600]

@@ -42,7 +42,7 @@ def test_a_tap_says_that_a_plant_is_gone_and_is_taken_back(season_app, season):
     tap(season_app, "scout_gone")
     history = season().history
     assert np.flatnonzero(history.gone(0)).tolist() == history.inspections.plant.tolist()
-    assert [one.value for one in season_app.caption if one.value.endswith(": gone (pulled out)")]
+    assert [one.value for one in season_app.caption if one.value.endswith(": gone")]
     tap(season_app, "scout_undo")
     assert not season().history.gone(0).any()
 

@@ -75,6 +75,16 @@ def test_stops_are_the_route_s_in_order_with_the_times_of_their_arrival():
     assert seconds == pytest.approx(plan.route.arrive_s, abs=0.51)
 
 
+def test_no_stop_has_a_chance_of_nothing_or_all():
+    plot = a_plot()
+    choices = chosen(plot, records_at(plot, [50], [1]))
+    route = choices.plan().route
+    chance = np.resize([1e-6, 0.5, 1 - 1e-6], len(route))
+    shown = DayRoute(replace(route, chance=chance), chosen_day.starts(choices, choices.plan()))
+    said = day.stops(choices, shown)["chance"].tolist()[:3]
+    assert said == [f"{one}\u00a0%" for one in ("under 0.1", "50.0", "over 99.9")]
+
+
 def test_no_stop_is_shown_at_an_hour_that_clocks_leave_out():
     plot = a_plot()
     plan = chosen(plot, records_at(plot, [50], [1])).plan()

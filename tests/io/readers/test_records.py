@@ -51,6 +51,18 @@ def test_a_word_says_whether_where_no_count_does():
     assert "neither yes nor no: 'maybe'" in said(records, Severity.DOUBTFUL)
 
 
+def test_all_words_that_say_neither_are_asked_about_at_once_and_those_said_before_stay():
+    cells = ["yes", "perhaps", "krobbig", "a, b", "no"]
+    (odd,) = [one for one in read(present=cells).messages if one.remedy is not None]
+    assert odd.remedy.setting == "found=krobbig,perhaps"
+    told = read(RecordOptions(found="krobbig"), present=cells)
+    assert told.value.present.tolist() == [PRESENT, UNKNOWN, PRESENT, UNKNOWN, ABSENT]
+    (odd,) = [one for one in told.messages if one.remedy is not None]
+    assert odd.remedy.setting == "found=krobbig,perhaps"
+    told = read(RecordOptions(found=odd.remedy.value), present=cells)
+    assert told.value.present.tolist() == [PRESENT, PRESENT, PRESENT, UNKNOWN, ABSENT]
+
+
 def test_nothing_of_a_leaf_is_clean_and_any_part_of_it_a_find():
     records = read(severity=["0%", "30 %", "0,0 %", "100%", ""])
     assert records.value.present.tolist() == [ABSENT, PRESENT, ABSENT, PRESENT, UNKNOWN]

@@ -1,6 +1,7 @@
 """GPX 1.1 by the rules of its schema, and as handhelds take it."""
 
 import re
+from dataclasses import replace
 from datetime import UTC, timedelta, timezone
 from itertools import pairwise
 from xml.etree import ElementTree as ET
@@ -15,6 +16,8 @@ from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
+from fieldmon.io.writers.gpx import route_gpx
+from fieldmon.io.writers.kml import route_kml
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.local_clock import grid_clock
@@ -134,6 +137,15 @@ def test_comment_and_description_say_the_same_as_converters_drop_one_of_them(tmp
     for waypoint in gpx_of(plan, tmp_path).iter(f"{GPX}wpt"):
         assert waypoint.find(f"{GPX}cmt").text == waypoint.find(f"{GPX}desc").text
         assert "plant" in waypoint.find(f"{GPX}cmt").text
+
+
+def test_no_chance_is_said_to_be_nothing_or_all():
+    route = usual().route
+    chance = np.resize([1e-6, 0.5, 1 - 1e-6], len(route))
+    plan = replace(usual(), route=replace(route, chance=chance))
+    for written in (route_gpx(plan), route_kml(plan)):
+        said = re.findall(r"chance ([^;<]*)[^<]*</desc", written.decode())
+        assert said[:3] == ["under 0.1 %", "50.0 %", "over 99.9 %"]
 
 
 def test_the_file_is_named_by_its_day(tmp_path, plan):

@@ -23,6 +23,7 @@ from fieldmon.io.parse.result_words import (
     about_minus,
     is_gone,
     plain_word,
+    remedy_of_words,
 )
 from fieldmon.io.parse.values import counted, is_missing, mark_of_counts, number, presence
 from fieldmon.io.readers.inspection_file.plants import PLANT_IN_NAME
@@ -106,7 +107,7 @@ def _by_result(
     return [known[cell] for cell in cells], [
         seen(worded("Results are in column {result!r}.", result=column)),
         *guess,
-        *_unread(cells, known),
+        *_unread(cells, known, options),
         *about_minus(cells, words),
         *about_fractions(column, numbers, is_usual=False),
     ]
@@ -127,7 +128,7 @@ def _by_count(
         seen(worded("Counts are in column {number_found!r}.", number_found=column)),
         *guess,
         *about_fractions(column, numbers, is_usual=bool(recognised([column]))),
-        *_unread(cells, known),
+        *_unread(cells, known, options),
     ]
 
 
@@ -184,13 +185,16 @@ def _put_together(
     return SeenResults(result, how_many, doubt.astype(np.str_), said_any, messages, gone, unread)
 
 
-def _unread(cells: list[str], known: dict[str, CellResult]) -> list[ImportMessage]:
+def _unread(
+    cells: list[str], known: dict[str, CellResult], options: RecordOptions
+) -> list[ImportMessage]:
     odd = [cell for cell in cells if not known[cell].is_read]
     of_plant = [cell for cell in odd if plain_word(cell) in MAYBE_GONE]
-    return [*_neither([cell for cell in odd if cell not in {*of_plant}]), *_maybe_gone(of_plant)]
+    others = [cell for cell in odd if cell not in {*of_plant}]
+    return [*_neither(others, options), *_maybe_gone(of_plant)]
 
 
-def _neither(odd: list[str]) -> list[ImportMessage]:
+def _neither(odd: list[str], options: RecordOptions) -> list[ImportMessage]:
     if not odd:
         return []
     said = worded(
@@ -198,11 +202,7 @@ def _neither(odd: list[str]) -> list[ImportMessage]:
         n=len(odd),
         shown=_some(odd),
     )
-    one = odd[0] if "," not in odd[0] else ""
-    remedy = Remedy(
-        "found", one, worded("Take {one!r} as found; clean= takes it as clean", one=one)
-    )
-    return [doubtful(said, None, remedy if one else None)]
+    return [doubtful(said, None, remedy_of_words(odd, options))]
 
 
 def _maybe_gone(odd: list[str]) -> list[ImportMessage]:

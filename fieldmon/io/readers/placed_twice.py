@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import first_few, joined, worded
@@ -94,39 +95,39 @@ class PlacedTwice(ImportMessage):
             return []
         allowed_m = spacing_m + _SIGMAS * self._own_m()
         away_m = distance_m(self.lonlat, plot)
-        said: list[ImportMessage] = []
         here = np.flatnonzero((away_m <= 0.0) & np.isin(names, list(others)))
-        from_own_m = [
-            float(distance_m(self.lonlat[k : k + 1], others[str(names[k])])[0]) for k in here
-        ]
-        strangers = here[from_own_m > allowed_m[here]]
-        if len(strangers):
-            own = {others[str(names[k])].name for k in strangers}
+        strangers = np.zeros(len(names), np.bool_)
+        for name in np.unique(names[here]).tolist():
+            mine = here[names[here] == name]
+            from_own_m = distance_m(self.lonlat[mine], others[name])
+            strangers[mine] = from_own_m > allowed_m[mine]
+        gone = np.flatnonzero((names == plain(plot.name)) & (away_m > allowed_m))
+        known = list(others.values())
+        tree = shapely.STRtree([one.boundary for one in known])
+        record, other = tree.query(shapely.points(self.lonlat[gone]), predicate="intersects")
+        lost = np.unique(gone[record])
+        said: list[ImportMessage] = []
+        if strangers.any():
+            own = sorted(others[name].name for name in np.unique(names[strangers]).tolist())
             sentence = worded(
                 "{n} {n:record lies|records lie} on {plot}, but {n:names|name} {n:a plant|plants} "
                 "of {others}, {example}. {n:Its position was|Their positions were} taken: look "
                 "which is right.",
-                n=len(strangers),
+                n=int(np.count_nonzero(strangers)),
                 plot=plot.name,
-                others=first_few(sorted(own), _NAMED),
-                example=self._first(int(strangers[0])),
+                others=first_few(own, _NAMED),
+                example=self._first(int(np.argmax(strangers))),
             )
             said.append(doubtful(sentence, remedy=_by_plant()))
-        gone = np.flatnonzero((names == plain(plot.name)) & (away_m > allowed_m))
-        lies_on = {
-            name: np.flatnonzero(distance_m(self.lonlat[gone], one) <= 0.0)
-            for name, one in others.items()
-        }
-        lost = np.unique(np.concatenate([gone[at] for at in lies_on.values()]))
         if len(lost):
-            on = [others[name].name for name, at in lies_on.items() if len(at)]
+            on = sorted({known[k].name for k in other.tolist()})
             sentence = worded(
                 "{n} {n:record names|records name} {n:a plant|plants} of {plot}, but {n:lies|lie} "
                 "on {others}, {example}. {n:Its position was|Their positions were} taken: look "
                 "which is right.",
                 n=len(lost),
                 plot=plot.name,
-                others=first_few(sorted(on), _NAMED),
+                others=first_few(on, _NAMED),
                 example=self._first(int(lost[0])),
             )
             said.append(doubtful(sentence, remedy=_by_plant()))

@@ -308,6 +308,7 @@ def row_report(
     # what bends was only taken since plants stand in it; of straight lines that is not known
     straight = grid.aisles_m is None and "hardly" in found.how
     scattered = straight or typical_m > _NO_ROWS * grid.row_spacing_m
+    parallel = grid.aisles_m is None
     n_rows = counted(int(grid.row_line.max()) + 1, "row")
     blocks = (
         worded(
@@ -342,7 +343,8 @@ def row_report(
         _said_otherwise(grid, told, "row_spacing_m"),
         _said_otherwise(grid, told, "plant_spacing_m"),
         _nearer_share(grid),
-        crossed=_NOT_CROSSED if said.label is not None else crossed_rows(xy_m, row),
+        # straight rows of one direction cross none
+        crossed=_NOT_CROSSED if parallel or said.label is not None else crossed_rows(xy_m, row),
         exact=typical_m <= _EXACT_M and not said.bearing,
     )
 

@@ -35,7 +35,7 @@ def offer() -> None:
 
 def offer_again() -> None:
     """Offer a plot that was drawn to be corrected, and as a file to be kept."""
-    data = drawn_plot.data_of_plot()
+    data = drawn_plot.to_download()
     if plot_source.chosen() == plot_source.FILES and data is not None:
         with st.container(horizontal=True):
             st.button(texts.OUTLINE_CORRECT, key="outline_correct", icon=":material/draw:",

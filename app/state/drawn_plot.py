@@ -126,8 +126,8 @@ def so_far() -> DrawnCorners:
 
 
 def keep(made: DrawnCorners) -> None:
-    """Keep what is drawn so far, as files are kept: a reload finds it."""
-    data = json.dumps({"corners": made.corners, "at": made.at}).encode()
+    """Keep what is drawn so far, as files are kept, to the centimetre: a reload finds it."""
+    data = json.dumps({"corners": _rounded(made.corners), "at": made.at}).encode()
     brought_files.keep_uploads(CORNERS, (Upload("corners.json", data),))
 
 
@@ -276,11 +276,29 @@ def _carry(old: str, new: str) -> None:
 
 
 def geojson(corners: Points, name: str) -> bytes:
-    """Return a plot as a GeoJSON file."""
-    ring = shapely.orient_polygons(Polygon(np.round(corners, 7)), exterior_cw=False).exterior
-    shape = {"type": "Polygon", "coordinates": [[[*at] for at in ring.coords]]}
+    """Return a plot as a GeoJSON file, its corners in their order."""
+    ring = _rounded(corners)
+    shape = {"type": "Polygon", "coordinates": [[[*at] for at in (*ring, *ring[:1])]]}
     feature = {"type": "Feature", "properties": {"name": name}, "geometry": shape}
     return json.dumps(feature, ensure_ascii=False).encode()
+
+
+def _rounded(corners: Points) -> Points:
+    """Return corners to the centimetre, as files have them."""
+    return tuple((round(lon, 7), round(lat, 7)) for lon, lat in corners)
+
+
+def to_download() -> bytes | None:
+    """Return the drawn plot's file for other programs: left of its outline lies the plot.
+
+    Its first corner is the first one that was set.
+    """
+    data = data_of_plot()
+    if data is None:
+        return None
+    corners, name = _read(data)
+    ring = shapely.orient_polygons(Polygon(corners), exterior_cw=False).exterior
+    return geojson(tuple((lon, lat) for lon, lat in ring.coords[:-1]), name)
 
 
 def data_of_plot() -> bytes | None:

@@ -64,7 +64,7 @@ def records_on(
     apart_m = plot.grid.plant_spacing_m
     try:
         read = read_records(source.file, source.options, plot.field, apart_m=apart_m)
-        read = _doubted(read, partial(_doubts_on, plot.field, lambda: plot.grid, measured))
+        read = _doubted(read, partial(_doubts_of, plot, fields, measured))
     except ChoiceNeeded as question:
         if question.option not in {"plants", "plots"}:
             raise
@@ -87,6 +87,19 @@ def _doubted(
     if not said:
         return read
     return Imported(read.value, (*(one for one in read.messages if one is not twice), *said))
+
+
+def _doubts_of(
+    plot: Plot,
+    fields: Callable[[], tuple[Field, ...]] | None,
+    measured: Plants | None,
+    twice: PlacedTwice,
+) -> list[ImportMessage]:
+    """Return the doubts of the records of one plot, of a file that may hold others."""
+    said = _doubts_on(plot.field, lambda: plot.grid, measured, twice)
+    if fields is None or not twice.plots:
+        return said
+    return [*said, *twice.on_wrong_plots(plot.field, fields(), _spacing_m(plot.grid))]
 
 
 def _doubts_on(

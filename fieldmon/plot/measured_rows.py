@@ -37,6 +37,11 @@ _BETTER, _LITTLE = 1.3, 0.04
 _NO_ROWS = 0.2
 _LEAST_FREE = 6.0
 _NONSENSE = 0.5
+# so much nearer to a plant of another row than to those of its own, a plant may be of a row that
+# runs another way; from such a share on, of plants in exact lines, rows are traced
+_NEARER, _CROSSED = 0.75, 0.1
+# so many plants are asked for the nearest one of another row, among so many about them
+_ASKED, _NEAR = 5000, 6
 # blocks that change within more rows than this, without a gap, are a trial's
 _MOST_CUT = 0.3
 # rows of fewer plants are not traced
@@ -197,11 +202,17 @@ def bent_rows(
     n, r = len(line), int(line.max()) + 1
     y_m = xy_m[:, 1] - (np.bincount(line, xy_m[:, 1]) / np.bincount(line))[line]
     off_m = float(np.sqrt(np.mean(y_m**2)))
-    if off_m <= _STRAIGHT_M:
+    exact = off_m <= _STRAIGHT_M
+    crossed = 0.0 if not exact or said.bearing else nearer_share(xy_m, line)
+    if exact and crossed < _CROSSED:
         return None
     traced = trace(xy_m)
     if traced is None or not np.isfinite(traced.row_spacing_m) or blur(traced) > _NO_ROWS:
         return None
+    if exact:  # lines laid out by a program may be straight the other way, too
+        row = np.empty(n, np.int64)
+        row[traced.plant] = np.repeat(np.arange(len(traced.block)), np.diff(traced.row_start))
+        return traced if nearer_share(xy_m, row) < crossed / 2 else None
     own = off_m / np.sqrt(1 - r / n) if r < n else np.inf
     if _along_x(traced):
         spacing_m = min(row_spacing_m, traced.row_spacing_m)
@@ -209,6 +220,21 @@ def bent_rows(
     else:  # of two directions that with the straighter and denser rows, as `rows_from_plants`
         bent = not said.bearing and own / row_spacing_m**2 > blur(traced) / traced.row_spacing_m
     return traced if bent else None
+
+
+def nearer_share(xy_m: Float, row: NDArray[np.integer]) -> float:
+    """Return the share of plants that stand much nearer to another row's than to their own's."""
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
+
+    if len(xy_m) <= _NEAR:
+        return 0.0
+    some = np.arange(0, len(xy_m), max(len(xy_m) // _ASKED, 1))
+    far_m, near = cKDTree(xy_m).query(xy_m[some], k=_NEAR)
+    other = row[near] != row[some][:, None]
+    own_m, other_m = (
+        np.where(among, far_m, np.inf)[:, 1:].min(axis=1) for among in (~other, other)
+    )
+    return float(np.mean(other_m < _NEARER * own_m))
 
 
 def _cut_rows(traced: TracedRows, block: Int) -> float:

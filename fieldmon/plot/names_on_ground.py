@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 _MOST = 0.6
 # so many row spacings from the rest of its row a plant strays; between two of another row, so many
 _ACROSS, _BETWEEN = 1.5, 0.8
+# at the end of another row it is in line with so many of that, as nearly as this
+_END, _IN_LINE = 3, 0.25
 # and so many beside the line of so many plants of that row; fewer than so many make none
 _BESIDE, _LINE, _LEAST_LINE = 0.7, 8, 4
 # plants next to each other in a row are so many spacings apart at most
@@ -37,6 +40,8 @@ _NEXT = 1.5
 _LEAST_ROWS, _FEW, _SHARE = 7, 2, 0.1
 # rows of fewer plants tell none either
 _TELLS = 3
+# of so many rows, a share may be numbered from the other end than all others
+_OTHER_END = 0.1
 # so many rows, and such a share of them, have plants in the order of their numbers, where that
 # means anything; so few plants tell none, and those nearer than such a share of their spacing
 _LEAST_IN_ORDER, _IN_ORDER, _LEAST_STEPS, _CLOSE = 3, 0.75, 3, 0.5
@@ -70,7 +75,8 @@ def strays(xy_m: Float, traced: TracedRows, label: Int) -> tuple[Stray, ...]:
     if not len(doubted) or not np.isfinite(traced.row_spacing_m):
         return ()
     away_m, beside_m = _from_the_rest(xy_m, label, right, doubted)
-    far = np.where(_is_between(traced, row, right)[doubted], _BETWEEN, _ACROSS)
+    amid = _is_between(traced, row, right) | _ends_row(traced, row, right)
+    far = np.where(amid[doubted], _BETWEEN, _ACROSS)
     gone = (away_m > far * traced.row_spacing_m) & (beside_m > _BESIDE * traced.row_spacing_m)
     return tuple(
         Stray(int(k), int(one[row[k]]), float(m))
@@ -123,6 +129,21 @@ def _is_between(traced: TracedRows, row: Int, right: Mask) -> Mask:
     return between
 
 
+def _ends_row(traced: TracedRows, row: Int, right: Mask) -> Mask:
+    """Return which plants end a row, next to and in line with some whose names are those of it."""
+    ends = np.zeros(len(row), np.bool_)
+    near_m = _IN_LINE * traced.row_spacing_m
+    for first, stop in pairwise(traced.row_start.tolist()):
+        if stop - first <= _END:
+            continue
+        for end, way in ((first, 1), (stop - 1, -1)):
+            beside = end + way * np.arange(1, _END + 1)
+            step_m = float(np.hypot(*(traced.line_m[end] - traced.line_m[beside[0]])))
+            close = step_m < _NEXT * traced.plant_spacing_m and traced.off_m[end] < near_m
+            ends[traced.plant[end]] = close and bool(right[traced.plant[beside]].all())
+    return ends
+
+
 def said_of_strays(found: Sequence[Stray], names: PlantNames, lonlat: Float) -> str:
     """Return a doubt that names the plants that stray; empty where none do."""
     if not found or names.row is None:
@@ -161,7 +182,15 @@ def doubts_of_order(grid: PlantGrid) -> list[str]:
 
     Where names are in no order, that says nothing.
     """
-    return [said for said in (_rows_out_of_order(grid), _plants_out_of_order(grid)) if said]
+    return [
+        said
+        for said in (
+            _rows_out_of_order(grid),
+            _plants_out_of_order(grid),
+            _rows_from_the_other_end(grid),
+        )
+        if said
+    ]
 
 
 def _rows_out_of_order(grid: PlantGrid) -> str:
@@ -245,20 +274,44 @@ def _left_of_longest_rise(rank: NDArray[np.integer]) -> list[int]:
     return [k for k in range(n) if k not in kept]
 
 
+class _NumberSteps(NamedTuple):
+    """How numbers go on from plant to plant ``(n,)``, which have a place in an order, row by row.
+
+    ``told (n - 1,)`` are steps that tell it, ``up`` and ``down`` how many of a row rise and fall,
+    ``asked`` the rows in which enough do; ``line`` is the row of each plant.
+    """
+
+    line: NDArray[np.integer]
+    number: Int
+    step: Int
+    step_m: Float
+    told: Mask
+    up: Int
+    down: Int
+    asked: Mask
+
+    @classmethod
+    def of(cls, grid: PlantGrid, called: Int) -> _NumberSteps:
+        """Return the steps of the numbers that plants are `called`."""
+        vines = np.unique(grid.vine)
+        line, number = grid.row_line[grid.row[vines]], called[vines]
+        step = np.diff(number)
+        step_m = np.hypot(*np.diff(grid.xy_m[vines], axis=0).T)
+        told = (np.diff(line) == 0) & (step != 0) & (step_m > _CLOSE * grid.plant_spacing_m)
+        up, down = (
+            np.bincount(line[1:][told & one], minlength=int(line.max()) + 1)
+            for one in (step > 0, step < 0)
+        )
+        asked = up + down >= _LEAST_STEPS
+        asked[_counted_from_one(grid, vines, line)] = False
+        return cls(line, number, step, step_m, told, up, down, asked)
+
+
 def _plants_out_of_order(grid: PlantGrid) -> str:
     if grid.plant_called is None:
         return ""
-    vines = np.unique(grid.vine)
-    line, number = grid.row_line[grid.row[vines]], grid.plant_called[vines]
-    step = np.diff(number)
-    step_m = np.hypot(*np.diff(grid.xy_m[vines], axis=0).T)
-    told = (np.diff(line) == 0) & (step != 0) & (step_m > _CLOSE * grid.plant_spacing_m)
-    n_lines = int(line.max()) + 1
-    up, down = (
-        np.bincount(line[1:][told & one], minlength=n_lines) for one in (step > 0, step < 0)
-    )
-    asked = up + down >= _LEAST_STEPS
-    asked[_counted_from_one(grid, vines, line)] = False
+    line, number, step, step_m, told, up, down, asked = _NumberSteps.of(grid, grid.plant_called)
+    n_lines = len(asked)
     rises = (up >= down)[line[1:]]
     back = told & np.where(rises, step < 0, step > 0)
     per_number_m = float(np.median(step_m[told] / np.abs(step[told]))) if told.any() else 0.0
@@ -273,7 +326,7 @@ def _plants_out_of_order(grid: PlantGrid) -> str:
     signs = list(grid.row_signs.values())
     for row in np.flatnonzero(wrong)[:_NAMED].tolist():
         at = int(np.flatnonzero(back & (line[1:] == row))[0])
-        near = range(max(at - 1, 0), min(at + 3, len(vines)))
+        near = range(max(at - 1, 0), min(at + 3, len(line)))
         beside = ", ".join(f"{number[k]}" for k in near if line[k] == row)
         some.append(worded("row {row} ({plants})", row=signs[row], plants=beside))
     n = int(np.count_nonzero(wrong))
@@ -283,6 +336,48 @@ def _plants_out_of_order(grid: PlantGrid) -> str:
         n=n,
         some=joined(", ", [*some, *["..."] * (n > _NAMED)]),
     )
+
+
+def _rows_from_the_other_end(grid: PlantGrid) -> str:
+    """Return which rows are numbered from the other end than all others of their block.
+
+    Where others are numbered from one end, or from both by turns as one walks up and down them.
+    """
+    if grid.plant_called is None:
+        return ""
+    steps = _NumberSteps.of(grid, grid.plant_called)
+    sure = steps.asked & (np.minimum(steps.up, steps.down) == 0)
+    first = np.unique(grid.row_line, return_index=True)[1]
+    block = block_label(grid, grid.row_start[first])
+    wrong: list[int] = []
+    for k in range(1, grid.n_blocks + 1):
+        lines = np.flatnonzero(block == k)
+        asked = np.flatnonzero(sure[lines])
+        if len(asked) < _LEAST_ROWS:
+            continue
+        rises = steps.up[lines[asked]] > 0
+        ways = [_minority(rises), _minority(rises ^ (asked % 2 == 1))]
+        odd = min(ways, key=np.count_nonzero)
+        if np.count_nonzero(odd) <= max(1, int(_OTHER_END * len(asked))):
+            wrong += lines[asked[odd]].tolist()
+    if not wrong:
+        return ""
+    signs = list(grid.row_signs.values())
+    some = [signs[line] for line in wrong[:_NAMED]]
+    n = len(wrong)
+    return worded(
+        "Plants of {n} {n:row|rows} are numbered from the other end than those of all others: "
+        "{some}. Look whether {n:it was|they were} counted so; if not, turn "
+        "{n:its|their} numbers in the file.",
+        n=n,
+        some=joined(", ", [*some, *["..."] * (n > _NAMED)]),
+    )
+
+
+def _minority(of: Mask) -> Mask:
+    """Return which are unlike most."""
+    rarer: Mask = of == (2 * np.count_nonzero(of) < len(of))
+    return rarer
 
 
 def _counted_from_one(grid: PlantGrid, vines: Int, line: NDArray[np.integer]) -> Int:

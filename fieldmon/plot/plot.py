@@ -238,7 +238,7 @@ class Plot:
         plants = lonlat_of("Plants", plants)
         check_apart(plants)
         grid = trees_grid(plants)
-        boundary = grid.frame.geometry_lonlat(grid.drivable_m)
+        boundary = _outline(grid)
         return cls._with(Field(name, boundary, gate=gate, plants=plants, in_rows=False), grid)
 
     @classmethod
@@ -280,7 +280,7 @@ class Plot:
         frame = frame_around(shapely.get_coordinates(rows))
         lines = [frame.xy_m(shapely.get_coordinates(line)) for line in rows.geoms]
         grid = lay_along(name, frame, lines, Ground(None, MultiPolygon()), planting)
-        boundary = grid.frame.geometry_lonlat(grid.drivable_m)
+        boundary = _outline(grid)
         return cls._with(Field(name, boundary, gate=gate, row_lines=rows), grid)
 
     @classmethod
@@ -393,15 +393,28 @@ class Plot:
         try:
             return replace(cls._with(field, grid), rows=rows)
         except CutOffError as error:
-            if not rows.strayed:
+            if not (why := rows.may_be_mixed):
                 raise
-            raise CutOffError(joined(" ", [error.args[0], rows.strayed])) from None
+            raise CutOffError(joined(" ", [error.args[0], *why])) from None
 
     @classmethod
     def _with(cls, field: Field, grid: PlantGrid) -> Plot:
         gate = None if field.gate is None else grid.frame.xy_m(field.gate)[0]
         gate_xy_m = None if gate is None else (float(gate[0]), float(gate[1]))
         return cls(field, Aisles.of(grid, gate_xy_m, grid.frame.geometry_m(field.no_go)))
+
+
+def _outline(grid: PlantGrid) -> MultiPolygon:
+    """Return where one may drive on a plot whose boundary nobody drew, lon/lat.
+
+    Edges that nearly meet in metres may cross once they are rounded to degrees.
+    """
+    outline = grid.frame.geometry_lonlat(grid.drivable_m)
+    if outline.is_valid:
+        return outline
+    mended = shapely.make_valid(outline, method="structure", keep_collapsed=False)
+    areas = shapely.get_parts(mended)
+    return MultiPolygon([part for part in areas if part.geom_type == "Polygon"])
 
 
 def plot_around(
@@ -414,7 +427,7 @@ def plot_around(
     """Return `Plot.around` these plants, without a warning: imports say its doubts themselves."""
     names, plants = names or PlantNames(), lonlat_of("Plants", plants)
     grid, rows = _in_rows(plants, names, None, planting)
-    boundary = grid.frame.geometry_lonlat(grid.drivable_m)
+    boundary = _outline(grid)
     field = names.on(Field(name, boundary, gate=gate, plants=plants))
     return Plot._measured(field, grid, rows)  # noqa: SLF001 - its own module
 

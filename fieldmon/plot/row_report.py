@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import Worded, counted, worded
+from fieldmon.plot.crossed_rows import CrossedRows, crossed_rows
+from fieldmon.plot.measured_rows import nearer_share
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.strands import row_deviations
 
@@ -44,11 +46,14 @@ _NARROW, _RARE = 0.5, 0.25
 _SQUARE = 0.58
 # plants of rows that have nothing to do with each other stand a quarter of a spacing off level
 _LEVEL = 0.15
-# so much nearer to a plant of another row than to those of its own, a plant may be of a row that
-# runs another way; where so many are, and not all, a part of the plot may be so
-_NEARER, _PART = 0.75, 0.15
+# where so many plants are nearer to another row than to their own, and not all, rows may run
+# another way in a part of the plot
+_PART, _LEFT = 0.15, 0.005
+# lines so straight were laid out by a program, and nobody said which way rows run
+_EXACT_M = 0.005
 # so many plants are asked for the nearest one of another row, among so many about them
 _ASKED, _NEAR = 5000, 6
+_NOT_CROSSED = CrossedRows()
 
 
 @dataclass(frozen=True)
@@ -91,6 +96,10 @@ class RowReport:
         Which plants stand amid another row than they name; empty: none.
     nearer_share
         Share of the plants that stand much nearer to one of another row than to those of their own.
+    crossed
+        Plants in line with a row that runs across theirs.
+    exact
+        Whether plants stand exactly in lines, and nobody said which way rows run.
     """
 
     how: str
@@ -110,6 +119,8 @@ class RowReport:
     plants_said_m: tuple[float, float] | None = None
     nearer_share: float = 0.0
     strayed: str = ""
+    crossed: CrossedRows = _NOT_CROSSED
+    exact: bool = False
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -118,6 +129,30 @@ class RowReport:
             *self._off_rows(), *self._names(), *self._double_plants(), *self._double_rows(),
             *self._other_ways(), *self._other_spacings(),
         )  # fmt: skip
+
+    @property
+    def may_be_mixed(self) -> tuple[str, ...]:
+        """Return what may be why no way leads to some rows: the gravest of these doubts alone."""
+        said = [self.strayed] if self.strayed else [] if self.named else [*self._ways_across()]
+        return tuple(said[:1])
+
+    def _ways_across(self) -> list[str]:
+        """Return what to say of parts of the plot in which rows may run another way."""
+        if not self.in_rows or self.named:
+            return []
+        said = list(self.crossed.doubts)
+        # a few plants beside exact lines are those of rows that run along them
+        most = 1.0 - (_LEFT if self.exact else _PART)
+        if _PART <= self.nearer_share <= most:
+            said.append(
+                worded(
+                    "{share:.0%} of the plants stand nearer to one of another row than to those of "
+                    "their own, and the others do not: in a part of the plot rows may run another "
+                    "way. Look at them, and give blocks or name each plant's row if they do.",
+                    share=self.nearer_share,
+                )
+            )
+        return said
 
     def _off_rows(self) -> list[str]:
         """Return what to say of plants that stand in no rows, or beside theirs."""
@@ -180,15 +215,7 @@ class RowReport:
                     "not."
                 )
             )
-        if _PART <= self.nearer_share <= 1.0 - _PART and self.in_rows and not self.named:
-            said.append(
-                worded(
-                    "{share:.0%} of the plants stand nearer to one of another row than to those of "
-                    "their own, and the others do not: in a part of the plot rows may run another "
-                    "way. Look at them, and give blocks or name each plant's row if they do.",
-                    share=self.nearer_share,
-                )
-            )
+        said += self._ways_across()
         if self.nearly_square_m is not None and self.in_rows:
             said.append(
                 worded(
@@ -281,6 +308,7 @@ def row_report(
     # what bends was only taken since plants stand in it; of straight lines that is not known
     straight = grid.aisles_m is None and "hardly" in found.how
     scattered = straight or typical_m > _NO_ROWS * grid.row_spacing_m
+    parallel = grid.aisles_m is None
     return RowReport(
         _how(grid, len(faces), typical_m),
         typical_m,
@@ -297,6 +325,9 @@ def row_report(
         _said_otherwise(grid, told, "row_spacing_m"),
         _said_otherwise(grid, told, "plant_spacing_m"),
         _nearer_share(grid),
+        # straight rows of one direction cross none
+        crossed=_NOT_CROSSED if parallel or said.label is not None else crossed_rows(xy_m, row),
+        exact=typical_m <= _EXACT_M and not said.bearing,
     )
 
 
@@ -426,16 +457,9 @@ def _gaps_m(grid: PlantGrid) -> Float:
 
 def _nearer_share(grid: PlantGrid) -> float:
     """Return the share of plants that stand much nearer to another row's than to their own's."""
-    some = np.arange(0, len(grid), max(len(grid) // _ASKED, 1))
-    if (grid.twin >= 0).any() or len(grid) <= _NEAR:
+    if (grid.twin >= 0).any():
         return 0.0
-    far_m, near = grid.tree.query(grid.xy_m[some], k=_NEAR)
-    line = grid.row_line[grid.row]
-    other = line[near] != line[some][:, None]
-    own_m, other_m = (
-        np.where(among, far_m, np.inf)[:, 1:].min(axis=1) for among in (~other, other)
-    )
-    return float(np.mean(other_m < _NEARER * own_m))
+    return nearer_share(grid.xy_m, grid.row_line[grid.row])
 
 
 def _nearest_row_m(grid: PlantGrid) -> float:

@@ -137,3 +137,34 @@ def test_plants_whose_numbers_tell_none_apart_are_in_no_order():
     plants = np.where(ROW == 3, 1, PLANT + 1)
     assert doubts(ROW + 101, plants) == []
     assert doubts(ROW + 101, np.char.add("v", plants.astype(np.str_))) == []
+
+
+@pytest.mark.parametrize(("place", "row", "said"), [
+    (24, 104, "plant 1 of row 104 stands in row 103, "),
+    (35, 102, "plant 12 of row 102 stands in row 103, "),
+    (0, 102, "plant 1 of row 102 stands in row 101, "),
+])  # fmt: skip
+@pytest.mark.parametrize("noise_m", [0.0, 0.2])
+def test_the_first_or_the_last_plant_that_names_the_next_row_is_named(
+    place, row, said, noise_m, monkeypatch
+):
+    moved = XY_M + np.random.default_rng(5).normal(0, noise_m, XY_M.shape)
+    monkeypatch.setitem(globals(), "XY_M", moved)
+    (doubt,) = doubts(changed(ROW + 101, **{f"k{place}": row}), PLANT + 1)
+    assert said in doubt
+
+
+@pytest.mark.parametrize("by_turns", [False, True])
+def test_a_row_that_is_numbered_from_the_other_end_is_named(by_turns):
+    backwards = ROW % 2 == 1 if by_turns else np.zeros(len(ROW), bool)
+    plants = np.where(backwards, 12 - PLANT, PLANT + 1)
+    turned = np.where(ROW == 6, 13 - plants, plants)
+    said = [one for one in named(ROW + 101, turned).doubts if "other end" in one]
+    (doubt,) = said
+    assert doubt == (
+        "Plants of 1 row are numbered from the other end than those of all others: 107. Look "
+        "whether it was counted so; if not, turn its numbers in the file."
+    )
+    mixed = np.where(np.isin(ROW, [2, 3, 7, 8, 12]), 12 - PLANT, PLANT + 1)
+    for others in (plants, mixed):
+        assert not [one for one in named(ROW + 101, others).doubts if "other end" in one]

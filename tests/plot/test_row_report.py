@@ -64,3 +64,11 @@ def test_blocks_of_which_one_is_taken_along_the_others_rows_are_doubted():
     two, alone = (plot_around("a", Frame(8.0, 47.0).lonlat(xy)) for xy in (both, one))
     assert any("50 % of the plants stand nearer to one of another" in one for one in two.doubts)
     assert alone.rows.nearer_share == 0.0
+
+
+def test_exact_rows_taken_across_are_doubted_where_a_few_plants_tell():
+    across = replace(SURE, nearer_share=0.9)
+    assert across.doubts == ()
+    (doubt,) = replace(across, exact=True).doubts
+    assert doubt.startswith("90 % of the plants stand nearer to one of another row")
+    assert replace(across, exact=True, nearer_share=1.0).doubts == ()

@@ -79,13 +79,13 @@ export class Drawing {
   }
 
   move(k, here, viewport) {
-    this.points = this.points.with(k, this.snapped(here, viewport));
+    this.points = this.points.with(k, rounded(this.snapped(here, viewport)));
     this.changed();
   }
 
   // Set a corner of a plot, the last one or another.
   add(here, k = this.points.length) {
-    this.points = this.points.toSpliced(k, 0, here);
+    this.points = this.points.toSpliced(k, 0, rounded(here));
     this.changed();
     this.told();
   }
@@ -197,6 +197,11 @@ export class Drawing {
       getLineWidth: 2, lineWidthUnits: "pixels",
     }];
   }
+}
+
+// Return a place to the centimetre, as the server keeps it.
+function rounded(here) {
+  return here.map((deg) => Math.round(deg * 1e7) / 1e7);
 }
 
 // Write a length as the server does: `ways` are [from how many metres on, a unit's metres, a number's form, text].

@@ -203,3 +203,11 @@ test("the edges of a plot say how long they are while a corner is dragged", () =
   drawing.points = [];
   assert.deepEqual(said(), []);
 });
+
+test("a corner is set and dragged to the centimetre, as it is kept", () => {
+  const { drawing, told } = outlined(SQUARE.slice(0, 2));
+  drawing.add([34.90000004, 31.49999996]);
+  assert.deepEqual(told.at(-1)[1].at(-1), [34.9, 31.5]);
+  drawing.move(0, [34.90000014, 31.5], view);
+  assert.deepEqual(drawing.points[0], [34.9000001, 31.5]);
+});

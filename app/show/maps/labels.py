@@ -12,9 +12,13 @@ from fieldmon.plot.grid import before_rows
 from ...words import texts
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
+
+    Float = NDArray[np.float64]
 
 #: a place, words and their kind; with `from` and `to`: at these zooms only; with `away` (lon/lat)
 #: and `gap` (pixels): beyond the place, in that direction
@@ -38,7 +42,7 @@ Label = TypedDict(
 _STOP_PX = 16.0
 # so far from its place the word beside a ring begins
 _RING_PX = 12
-# an outline farther than this from the gate, in rows, is not that of its headland
+# an outline farther than this from the gate or a row's end, in rows, is not that of its headland
 _NEAR_ROWS = 4
 _EARTH_M, _TILE_PX = 40_075_016.686, 512
 
@@ -73,8 +77,11 @@ def rows(grid: PlantGrid) -> list[Label]:
         return []
     line, first = np.unique(grid.row_line, return_index=True)
     plant_m, lane_m = grid.xy_m[grid.row_start[first]], before_rows(grid, first)
-    # a lane ends in the middle of the headland, whose end is the outline, where there are no others
-    ends_m = [plant_m + times * (lane_m - plant_m) for times in (2.0, 3.0)]
+    # a lane ends in the middle of the headland, whose end is the outline, or inside it
+    out_m = 2.0 * (lane_m - plant_m)
+    ahead = out_m / np.maximum(np.hypot(*out_m.T), 1e-9)[:, None]
+    out_m += _beyond_outline(grid, plant_m + out_m, ahead)[:, None] * ahead
+    ends_m = [plant_m + times * out_m for times in (1.0, 1.5)]
     places = [np.round(grid.frame.lonlat(one), 7).tolist() for one in ends_m]
     return [
         {"p": place, "away": away, "t": sign, "k": "row", "row": at + 1}
@@ -82,6 +89,31 @@ def rows(grid: PlantGrid) -> list[Label]:
             line.tolist(), grid.row_signs.values(), *places, strict=True
         )
     ]
+
+
+def _beyond_outline(grid: PlantGrid, end_m: Float, ahead: Float) -> Float:
+    """Return how far the outline is beyond row ends ``(r, 2)``, as wide as a row; 0: it is there.
+
+    Where it runs askew it is met on both sides of a row, in which a number stands.
+    """
+    edges = shapely.boundary(grid.drivable_m)
+    steps, ring = shapely.get_coordinates(shapely.get_parts(edges), return_index=True)
+    inner = ring[1:] == ring[:-1]
+    sides = np.array(shapely.linestrings(np.stack([steps[:-1][inner], steps[1:][inner]], axis=1)))
+    tree = shapely.STRtree(sides)
+    beyond_m = np.zeros(len(end_m))
+    for beside in (-0.5, 0.0, 0.5):
+        start_m = end_m + beside * grid.row_spacing_m * ahead[:, ::-1] * [-1.0, 1.0]
+        stop_m = start_m + _NEAR_ROWS * grid.row_spacing_m * ahead
+        rays = np.array(shapely.linestrings(np.stack([start_m, stop_m], axis=1)))
+        ray, side = tree.query(rays, predicate="intersects")
+        meets = shapely.intersection(rays[ray], sides[side])
+        met = shapely.get_coordinates(shapely.centroid(meets))
+        far_m = ((met - start_m[ray]) * ahead[ray]).sum(axis=1)
+        first_m = np.full(len(end_m), np.inf)
+        np.minimum.at(first_m, ray, far_m)
+        beyond_m = np.maximum(beyond_m, np.where(np.isfinite(first_m), first_m, 0.0))
+    return beyond_m
 
 
 def places(plot: Plot) -> list[Label]:

@@ -13,17 +13,19 @@ import shapely
 from fieldmon.compute.rounding_step import step_of
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, repaired, seen
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, repaired, seen
 from fieldmon.io.parse.crs import (
     Transformation,
     ask_for_crs,
     candidates,
     code_of,
+    km_between,
     km_outside,
     system,
     transformation_from,
     utm_zone,
 )
+from fieldmon.plot.local_clock import at_sea
 from fieldmon.plot.projection import metres_per_unit
 
 if TYPE_CHECKING:
@@ -109,6 +111,7 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     step_m = step_of(xy) * metres_per_unit(crs)
     doubts = _outside(xy, (lonlat, exchanged), crs, options)
     doubts += _distance(lonlat, exchanged, crs, options)
+    doubts += _either_order((lonlat, exchanged), crs, options)
     return Georeferenced(lonlat, step_m, (*messages, *more, *through.messages(), *doubts))
 
 
@@ -314,6 +317,34 @@ def _outside(
             Remedy("crs", codes[0], worded("Read as {name}", name=others[0].name), codes[1:]),
         )
     ]
+
+
+def _either_order(
+    either_way: tuple[NDArray[np.float64], Exchanged], crs: pyproj.CRS, options: ReadOptions
+) -> list[ImportMessage]:
+    """Say which coordinate was taken as the easting, where either may be.
+
+    With both a file lies on land where its system is used, as in Britain and in Portugal. A place
+    nearby tells them apart.
+    """
+    lonlat, exchanged = either_way
+    if options.near is not None or options.swap_axes or not _belongs(lonlat, crs):
+        return []
+    if crs.area_of_use is None or (crs.area_of_use.east - crs.area_of_use.west) % 360 == 0:
+        return []  # a grid of the whole earth lies everywhere
+    here, there = _middle(lonlat), _middle(other := exchanged())
+    if not _belongs(other, crs) or at_sea(*there) or km_between(here, there) < _FAR_KM:
+        return []
+    said = worded(
+        "Eastings were taken to come first: it lies at {lon:.4f}, {lat:.4f}. With northings first "
+        "it would lie at {there_lon:.4f}, {there_lat:.4f}, where {name} is used, too.",
+        lon=here[0],
+        lat=here[1],
+        there_lon=there[0],
+        there_lat=there[1],
+        name=crs.name,
+    )
+    return [guessed(said, None, _exchange(crs, options))]
 
 
 def _exchange(crs: pyproj.CRS, options: ReadOptions) -> Remedy:

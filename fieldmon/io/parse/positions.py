@@ -13,7 +13,7 @@ import shapely
 from pyproj.exceptions import CRSError
 
 from fieldmon.compute.units import distance_figure
-from fieldmon.compute.wording import first_few, worded
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import (
@@ -26,11 +26,11 @@ from fieldmon.io.import_report import (
     seen,
 )
 from fieldmon.io.options import RecordOptions
-from fieldmon.io.parse.columns import find, plain
-from fieldmon.io.parse.crs import system, utm_zone
+from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import geometry_kinds
 from fieldmon.io.parse.georeference import few_unplaceable, place, written
 from fieldmon.io.parse.named_positions import placed_by_name
+from fieldmon.io.parse.utm_zones import stated_zone
 from fieldmon.io.parse.values import (
     all_degrees,
     halves,
@@ -52,9 +52,6 @@ _WGS84 = "OGC:CRS84"
 #: coordinates rounded to more than this cannot tell neighbouring plants apart, whatever their
 #: spacing is
 _COARSE_M = 1.5
-_ZONE_COLUMNS = {"zone", "utmzone", "zona", "zonautm", "huso", "fuseau", "gridzone", "utm"}
-#: of eight degrees each, from 80 south; from the equator to 90 south are 10 000 km of northing
-_BANDS, _M_PER_DEGREE = "CDEFGHJKLMNPQRSTUVWX", 1e7 / 90
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,15 +130,17 @@ def _points(layer: Layer, options: ReadOptions) -> LocatedFeatures:
         )
     single, index = shapely.get_parts(geometry[points], return_index=True)
     xy, of = shapely.get_coordinates(single), np.flatnonzero(points)[index]
-    wrong = few_unplaceable(xy, layer.crs, options)
+    named, said = stated_zone(layer.take(of), xy, options, layer.crs)
+    crs = layer.crs or named
+    wrong = few_unplaceable(xy, crs, options)
     if wrong.any():
         at = {int(of[k]): written(xy[k]) for k in np.flatnonzero(wrong)}
         unread = Unread(len(at), 0, 0, at)
         messages += unread.messages()
     kept = layer.take(of[~wrong])
-    placed = place(xy[~wrong], layer.crs, options)
+    placed = place(xy[~wrong], crs, options)
     accuracy, coarse = _rounding(placed.step_m, len(kept))
-    found = (*messages, *placed.messages, *coarse)
+    found = (*messages, *said, *placed.messages, *coarse)
     return LocatedFeatures(
         kept, placed.lonlat, accuracy, found, unread=unread, step_m=placed.step_m
     )
@@ -186,7 +185,7 @@ def _by_coordinates(
     xy, crs, messages = _coordinates(layer, options, how, names)
     stated, more = _stated_crs(layer, options)
     if stated is None and how == "metres":
-        stated, said = _stated_zone(layer, xy, options)
+        stated, said = stated_zone(layer, xy, options)
         more += said
     there = _finite(xy)
     there[there] = ~few_unplaceable(xy[there], stated or crs, options)
@@ -365,61 +364,6 @@ def _stated_crs(layer: Layer, options: ReadOptions) -> tuple[str | None, list[Im
             seen(worded("Column {name!r} names the coordinate system {crs}.", name=name, crs=value))
         ]
     return None, []
-
-
-def _stated_zone(
-    layer: Layer, xy: NDArray[np.float64], options: ReadOptions
-) -> tuple[str | None, list[ImportMessage]]:
-    """Return the UTM system of a column of zones such as 34H; ask where records are in several.
-
-    S is a band of the north, and the south: northings tell which, but over the southern ocean.
-    """
-    name = next((one for one in layer.columns if plain(one) in _ZONE_COLUMNS), None)
-    if name is None or not np.isfinite(xy[:, 1]).any():
-        return None, []
-    cells = np.array([text(v).strip().upper() for v in layer.column(name)])
-    stated = sorted({*cells.tolist()} - {""})
-    systems = [_zone_system(one, xy[cells == one, 1]) for one in stated]
-    codes = sorted({code for code in systems if code is not None})
-    if not codes or None in systems:
-        return None, []  # zones of something else
-    if len(codes) > 1:
-        if options.crs is not None and utm_zone(system(options.crs)) is None:
-            return None, []
-        raise ChoiceNeeded(
-            worded(
-                "All records must be in one UTM zone, but column {name!r} names {n}: {names}. "
-                "Bring all into one, or choose the records of one of them.",
-                name=name,
-                n=len(stated),
-                names=first_few(stated, _SHOWN),
-            ),
-            "where",
-            tuple(f"{name}={value}" for value in stated),
-        )
-    if options.crs is not None:
-        return None, []
-    said = worded(
-        "Column {name!r} names UTM zone {zone}, which was read as {crs}.",
-        name=name,
-        zone=first_few(stated, _SHOWN),
-        crs=f"{pyproj.CRS(codes[0]).name} ({codes[0]})",
-    )
-    return codes[0], [guessed(said)]
-
-
-def _zone_system(zone: str, northing_m: NDArray[np.float64]) -> str | None:
-    """Return the code of a UTM zone with its band, if northings lie in that."""
-    found = re.fullmatch(r"0?([1-9]|[1-5]\d|60)\s?([C-HJ-NP-X])", zone)
-    if found is None or not np.isfinite(northing_m).any():
-        return None
-    number, band = int(found[1]), found[2]
-    lowest, north = 8 * _BANDS.index(band) - 80, float(np.nanmedian(northing_m)) / _M_PER_DEGREE
-    south = band < "N" or (band == "S" and not lowest - 1 < north < lowest + 9)
-    lat = north - 90 * south
-    if band not in "NS" and not lowest - 1 < lat < lowest + 13:
-        return None
-    return f"EPSG:{327 if south else 326}{number:02d}"
 
 
 def _known_system(value: str) -> str | None:

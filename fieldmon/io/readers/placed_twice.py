@@ -6,15 +6,16 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 
 from fieldmon.compute.units import distance_figure
-from fieldmon.compute.wording import joined, worded
+from fieldmon.compute.wording import first_few, joined, worded
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import ImportMessage, Remedy, Severity, doubtful
 from fieldmon.io.options import RecordOptions
-from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.named_positions import placed_by_name
 from fieldmon.io.parse.values import is_missing
 from fieldmon.plot.plants_outside import distance_m
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 _SIGMAS = 4.0
 # where most disagree, and not just a few, rows are counted otherwise
 _FEW = 3
+# so many plots are named
+_NAMED = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +73,78 @@ class PlacedTwice(ImportMessage):
     @property
     def plots(self) -> tuple[str, ...]:
         """Return the plots that they name, perhaps none."""
+        return tuple(sorted({*self._plot_names().tolist()} - {""}))
+
+    def _plot_names(self) -> NDArray[np.str_]:
+        """Return the plot that each names ``(m,)``, empty where it names none."""
         told = self.options.column("plot")
         column = find("plot", self.names.columns) if told is None else told
-        cells = self.names.column(column) if column else ()
-        return tuple(sorted({text(cell) for cell in cells} - {""}))
+        cells = self.names.column(column) if column else [""] * len(self.lonlat)
+        return np.array([text(cell) for cell in cells], np.str_)
+
+    def on_wrong_plots(
+        self, plot: Field, every: tuple[Field, ...], spacing_m: float
+    ) -> list[ImportMessage]:
+        """Return a doubt where those on a plot name another one, and where its own lie on another.
+
+        None where it was said what counts. `every` are the plots of the plot's file.
+        """
+        others = {plain(one.name): one for one in every if one.name != plot.name}
+        names = np.array([plain(one) for one in self._plot_names().tolist()], np.str_)
+        if self.options.place is not None or not others:
+            return []
+        allowed_m = spacing_m + _SIGMAS * self._own_m()
+        away_m = distance_m(self.lonlat, plot)
+        here = np.flatnonzero((away_m <= 0.0) & np.isin(names, list(others)))
+        strangers = np.zeros(len(names), np.bool_)
+        for name in np.unique(names[here]).tolist():
+            mine = here[names[here] == name]
+            from_own_m = distance_m(self.lonlat[mine], others[name])
+            strangers[mine] = from_own_m > allowed_m[mine]
+        gone = np.flatnonzero((names == plain(plot.name)) & (away_m > allowed_m))
+        known = list(others.values())
+        tree = shapely.STRtree([one.boundary for one in known])
+        record, other = tree.query(shapely.points(self.lonlat[gone]), predicate="intersects")
+        lost = np.unique(gone[record])
+        said: list[ImportMessage] = []
+        if strangers.any():
+            own = sorted(others[name].name for name in np.unique(names[strangers]).tolist())
+            sentence = worded(
+                "{n} {n:record lies|records lie} on {plot}, but {n:names|name} {n:a plant|plants} "
+                "of {others}, {example}. {n:Its position was|Their positions were} taken: look "
+                "which is right.",
+                n=int(np.count_nonzero(strangers)),
+                plot=plot.name,
+                others=first_few(own, _NAMED),
+                example=self._first(int(np.argmax(strangers))),
+            )
+            said.append(doubtful(sentence, remedy=_by_plant()))
+        if len(lost):
+            on = sorted({known[k].name for k in other.tolist()})
+            sentence = worded(
+                "{n} {n:record names|records name} {n:a plant|plants} of {plot}, but {n:lies|lie} "
+                "on {others}, {example}. {n:Its position was|Their positions were} taken: look "
+                "which is right.",
+                n=len(lost),
+                plot=plot.name,
+                others=first_few(on, _NAMED),
+                example=self._first(int(lost[0])),
+            )
+            said.append(doubtful(sentence, remedy=_by_plant()))
+        return said
+
+    def _first(self, record: int) -> Worded:
+        """Return which plant the first of some records names."""
+        row, plant = self._called(record)
+        if row is None:
+            return worded("the first plant {plant}", plant=plant)
+        return worded("the first row {row}, plant {plant}", row=row, plant=plant)
+
+    def _own_m(self) -> Float:
+        """Return the accuracy of each position ``(m,)``, the usual one where none is stated."""
+        usual_m = PriorSettings().accuracy_m
+        own_m: Float = np.where(np.isnan(self.accuracy_m), usual_m, self.accuracy_m)
+        return own_m
 
     def doubts(self, places: NamedPlaces, spacing_m: float) -> list[ImportMessage]:
         """Return a doubt where they lie elsewhere than the plants of a plot that they name.
@@ -88,8 +159,7 @@ class PlacedTwice(ImportMessage):
         except FieldmonError:  # it is not known what their names mean here
             return []
         away_m = _away_m(named.lonlat, self.lonlat)
-        own_m = np.where(np.isnan(self.accuracy_m), PriorSettings().accuracy_m, self.accuracy_m)
-        elsewhere = away_m > spacing_m + _SIGMAS * own_m
+        elsewhere = away_m > spacing_m + _SIGMAS * self._own_m()
         n, n_known = (int(np.count_nonzero(one)) for one in (elsewhere, np.isfinite(away_m)))
         if not n:
             return []
@@ -105,21 +175,29 @@ class PlacedTwice(ImportMessage):
         if n > _FEW and 2 * n > n_known:
             other = worded("The file may count rows or plants otherwise than this plot does.")
             said = joined(" ", [said, other])
-        remedy = Remedy("place", "plant", worded("Take the plants that they name"), ("position",))
-        return [doubtful(said, remedy=remedy)]
+        return [doubtful(said, remedy=_by_plant())]
 
-    def _example(self, record: int, away_m: float) -> Worded:
-        """Return which plant a record names, and how far it lies from it."""
+    def _called(self, record: int) -> tuple[str | None, str | None]:
+        """Return the row and the plant that a record names."""
         row, plant = (
             None if column is None else text(self.names.column(column)[record])
             for column in _columns(self.names, self.options)
         )
+        return row, plant
+
+    def _example(self, record: int, away_m: float) -> Worded:
+        """Return which plant a record names, and how far it lies from it."""
+        row, plant = self._called(record)
         away = distance_figure(away_m)
         if row is None:
             return worded("the farthest {away} from plant {plant}", plant=plant, away=away)
         return worded(
             "the farthest {away} from row {row}, plant {plant}", row=row, plant=plant, away=away
         )
+
+
+def _by_plant() -> Remedy:
+    return Remedy("place", "plant", worded("Take the plants that they name"), ("position",))
 
 
 def placed_twice(

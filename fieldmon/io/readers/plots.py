@@ -24,9 +24,11 @@ from fieldmon.io.import_report import (
     seen,
 )
 from fieldmon.io.parse.columns import find, plain
+from fieldmon.io.parse.crs import system, transformation_from, utm_zone
 from fieldmon.io.parse.geometry import boundaries, boundary, closed_lines, filled, geometry_kinds
 from fieldmon.io.parse.georeference import few_unplaceable, place_geometry, written
 from fieldmon.io.parse.positions import located
+from fieldmon.io.parse.utm_zones import of_another_zone, stated_zone
 from fieldmon.io.readers.known_rows import KnownRows, known_rows
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
@@ -42,15 +44,20 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     if layer.geometry is None:
         return _plot_of_corners(layer, options)
     areas, messages = _areas(layer)
+    named, said = stated_zone(areas, _middles(_shapes(areas)), options, areas.crs)
+    messages += said
+    if named is not None:
+        areas = replace(areas, crs=named)
     if options.column("block") is not None:
         return _with_blocks(areas, options, (*layer.messages, *messages))
     names, name_messages = plot_names(areas, options.name_column)
     number = _number(names, options.feature)
     chosen = np.arange(len(names)) if number else _chosen(names, options.feature)
-    mistyped = _mistyped(_shapes(areas)[chosen], layer.crs, options)
+    mistyped = _mistyped(_shapes(areas)[chosen], areas.crs, options)
     name_messages += _left_out(mistyped, [names[i] for i in chosen])
     chosen = np.delete(chosen, list(mistyped))
-    placed, place_messages = place_geometry(_shapes(areas)[chosen], layer.crs, options)
+    placed, place_messages = place_geometry(_shapes(areas)[chosen], areas.crs, options)
+    place_messages += _in_another_zone(areas, names, chosen, options)
     known, row_messages = known_rows(areas, names)
     fields, shape_messages = _fields(placed, [names[i] for i in chosen], known)
     if number:
@@ -104,6 +111,43 @@ def _wrong_corner(name: str, number: int, at: str) -> FileProblem:
     )
 
 
+def _middles(shapes: NDArray[np.object_]) -> NDArray[np.float64]:
+    """Return the middle of the bounds of each shape ``(n, 2)``, as the file writes it."""
+    west, south, east, north = shapely.bounds(shapes).T
+    return np.stack([west + east, south + north], axis=1) / 2
+
+
+def _in_another_zone(
+    areas: Layer, names: list[str], chosen: NDArray[np.int64], options: PlotOptions
+) -> tuple[ImportMessage, ...]:
+    """Return a doubt where plots, read in one UTM zone, seem to be written in the next."""
+    crs = system(options.crs or areas.crs or "")
+    zone, xy = utm_zone(crs), _middles(_shapes(areas))
+    if options.swap_axes:
+        xy = xy[:, ::-1]
+    if zone is None or len(xy) < _TWO:
+        return ()
+    middle = (float(np.median(xy[:, 0])), float(np.median(xy[:, 1])))
+    far = of_another_zone(transformation_from(crs, middle).lonlat(xy), zone)
+    some = [] if far is None else [names[k] for k in chosen.tolist() if far.which[k]]
+    if far is None or not some:
+        return ()
+    return (
+        doubtful(
+            worded(
+                "{n} {n:plot lies|plots lie} {away:.0f} km from the others ({names}), but as UTM "
+                "zone {zone} {n:it|they} would lie {near:.0f} km from them. If {n:it is|they are} "
+                "of that zone, bring all plots into one, or those of each into a file of its own.",
+                n=len(some),
+                away=far.away_km,
+                names=first_few(some, _MOST_NAMED),
+                zone=far.zone,
+                near=far.near_km,
+            )
+        ),
+    )
+
+
 def _with_blocks(
     areas: Layer, options: PlotOptions, messages: tuple[ImportMessage, ...]
 ) -> Imported[tuple[Field, ...]]:
@@ -113,6 +157,7 @@ def _with_blocks(
     for k, wrong in sorted(_mistyped(_shapes(areas), areas.crs, options).items()):
         raise _wrong_corner(f"{names[k]} / {blocks[k]}", *wrong)
     placed, place_messages = place_geometry(_shapes(areas), areas.crs, options)
+    place_messages += _in_another_zone(areas, names, np.arange(len(names)), options)
     apart = _told_apart([f"{name} / {block}" for name, block in zip(names, blocks, strict=True)])
     known, row_messages = known_rows(areas, apart)
     parts, shape_messages = _fields(placed, apart, known)
@@ -395,6 +440,7 @@ def _fields(
 
 # names of plots in a sentence
 _MOST_NAMED = 5
+_TWO = 2
 # a table of more positions with a number of their row or plant lists plants
 _MOST_CORNERS_NUMBERED = 20
 _NO_AREA, _NO_LINES, _UNKNOWN_ROWS = MultiPolygon(), MultiLineString(), KnownRows()

@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from shapely import box
+from shapely import LinearRing, box
 
 from app.state import brought_files, drawn_plot, plot_source, widget_memory
 from app.state.drawn_plot import DrawnCorners, checked, place_of
@@ -159,12 +159,32 @@ def test_a_plot_is_corrected_and_keeps_what_was_said_and_drawn_of_it(session):
     widget_memory.put(f"row_spacing {key}PlotOptions()0", 2.5)
     drawn_plot.correct()
     assert drawn_plot.is_open()
-    assert sorted(drawn_plot.so_far().corners) == sorted(SQUARE)
+    assert drawn_plot.so_far().corners == SQUARE
     draw((*SQUARE[:3], (34.9, 31.503)))
     new = brought_files.brought()[brought_files.PLOT].key
     assert new != key
     assert session[f"edits {new}PlotOptions()0"] == gate
     assert widget_memory.value(f"row_spacing {new}PlotOptions()0") == 2.5
+
+
+@pytest.mark.parametrize("corners", [SQUARE, SQUARE[::-1]])
+def test_corners_keep_their_numbers_and_edges_their_lengths_when_they_are_corrected(corners):
+    tapped = tuple((lon + 3e-8, lat - 4e-8) for lon, lat in corners)
+    drawn_plot.keep(DrawnCorners(tapped))
+    before = drawn_plot.so_far().corners
+    draw(tapped)
+    drawn_plot.correct()
+    assert drawn_plot.so_far().corners == before == corners
+
+
+def test_the_file_for_other_programs_goes_round_as_geojson_does_from_the_same_corner():
+    for corners in (SQUARE, SQUARE[::-1]):
+        draw(corners)
+        (ring,) = json.loads(drawn_plot.to_download())["geometry"]["coordinates"]
+        assert LinearRing(ring).is_ccw
+        assert tuple(ring[0]) == corners[0]
+    brought_files.take_out(brought_files.PLOT)
+    assert drawn_plot.to_download() is None
 
 
 def test_what_is_left_uncorrected_stays_as_it_was():
@@ -191,7 +211,7 @@ def test_a_file_that_was_downloaded_can_be_corrected_and_no_other():
     name = "כרם"
     data = drawn_plot.geojson(SQUARE, name)
     brought_files.keep_uploads(brought_files.PLOT, (Upload("plot.geojson", data),))
-    assert sorted(drawn_plot.corners_of_plot()) == sorted(SQUARE)
+    assert drawn_plot.corners_of_plot() == SQUARE
     drawn_plot.correct()
     drawn_plot.use(UNITS)
     assert json.loads(drawn_plot.data_of_plot())["properties"]["name"] == name

@@ -159,3 +159,20 @@ def test_geometries_move_as_their_coordinates_do_and_stay_what_they_are():
     assert [shape.geom_type for shape in moved] == ["Polygon", "Polygon"]
     assert messages
     assert shapely.get_coordinates(shapes[0]).max() > 1e5
+
+
+def test_which_coordinate_is_the_easting_is_said_where_either_may_be():
+    xy = projected("EPSG:27700", np.array([[-1.8, 53.0]]))
+    (said,) = (m for m in place(xy, "EPSG:27700", NOTHING).messages if "come first" in m.sentence)
+    assert said.severity is Severity.GUESSED
+    assert said.sentence.startswith("Eastings were taken to come first: it lies at -1.8000, 53.00")
+    assert "With northings first it would lie at -2.8365, 53.6153, where" in said.sentence
+    assert said.remedy.setting == "swap_axes=yes"
+    for near_or_not, lonlat, crs in (
+        (ReadOptions(near=(-1.8, 53.0)), [-1.8, 53.0], "EPSG:27700"),
+        (NOTHING, [-5.2, 50.2], "EPSG:27700"),  # the other way it lies in the sea
+        (NOTHING, [35.15, 30.36], "EPSG:32636"),
+        (NOTHING, [35.15, 30.36], "EPSG:3857"),
+    ):
+        placed = place(projected(crs, np.array([lonlat])), crs, near_or_not)
+        assert "northings first" not in " ".join(m.sentence for m in placed.messages)

@@ -156,36 +156,6 @@ def test_a_table_without_any_place_asks_for_its_columns():
     assert asked.value.choices == ("plant=crop", "plant=n", "plot=crop", "plot=n")
 
 
-@pytest.mark.parametrize(
-    ("zone", "lat", "code"),
-    [("34H", -33.5, 32734), ("34S", -33.5, 32734), ("36 S", 32.5, 32636), ("36r", 30.4, 32636),
-     ("36N", 30.4, 32636), ("03C", 30.4, None), ("3", 30.4, None)],
-)  # fmt: skip
-def test_a_column_of_utm_zones_is_read_unless_it_names_zones_of_something_else(zone, lat, code):
-    crs = 32734 if lat < 0 else 32636
-    lon = [21.0, 21.001] if lat < 0 else LON
-    x, y = Transformer.from_crs("OGC:CRS84", crs, always_xy=True).transform(lon, [lat, lat])
-    layer = table(zone=[zone] * 2, easting=list(x), northing=list(y))
-    if code is None:
-        with pytest.raises(ChoiceNeeded, match="does not say in which coordinate system"):
-            located(layer, ANY)
-        return
-    found = located(layer, ANY)
-    np.testing.assert_allclose(found.lonlat, np.stack([lon, [lat] * 2], axis=1), atol=1e-8)
-    assert f"(EPSG:{code})" in next(one for one in sentences(found).split(". ") if "names" in one)
-
-
-def test_records_of_two_utm_zones_are_asked_for_those_of_one():
-    layer = table(zone=["34H", "35H"], easting=[3e5, 3e5], northing=[6.3e6, 6.3e6])
-    for options in (ANY, ReadOptions(crs="EPSG:32734")):
-        with pytest.raises(ChoiceNeeded, match=r"names 2: 34H, 35H[.] Bring all into one") as asked:
-            located(layer, options)
-        assert (asked.value.option, asked.value.choices) == ("where", ("zone=34H", "zone=35H"))
-    assert len(located(layer, ReadOptions(crs="EPSG:2054")).lonlat) == 2
-    bands = table(zone=["34H", "34J"], easting=[3e5, 3e5], northing=[6.4e6, 6.5e6])
-    assert "names UTM zone 34H, 34J, which was read as" in sentences(located(bands, ANY))
-
-
 def test_degrees_with_an_o_are_refused_with_the_letter():
     layer = table(latitud=["33°29'57.5983\"S"] * 2, longitud=["70°00'3.0845\"O", "70.1 O"])
     with pytest.raises(FileProblem, match=r"O can mean west .* or east .*: write W or E"):

@@ -156,3 +156,27 @@ def test_other_places_are_refused():
         RecordOptions().choose("place", "row")
     with pytest.raises(SettingError, match=r"take_doubtful=yes takes it\. Leave place out"):
         InspectionOptions().choose("place", "plant")
+
+
+def test_records_on_a_plot_that_name_another_and_those_that_lie_on_another_are_told():
+    area = GRID.frame.geometry_lonlat(MultiPolygon([box(-90, -90, 90, 90)]))
+    here = Field("Home", area)
+    there = Field("Hill", shapely.transform(area, lambda xy: xy + np.array([0.01, 0.0])))
+    plot = ["home"] * 100
+    plot[8], plot[9] = "hill", "Elsewhere"
+    moved_m = np.zeros((100, 2))
+    moved_m[20, 0] = 955.0  # a hundredth of a degree, or nearly
+    told = twice(read(moved_m, plot=plot))
+    stranger, lost = told.on_wrong_plots(here, (here, there), 3.0)
+    assert stranger.sentence == (
+        "1 record lies on Home, but names a plant of Hill, the first row 1, plant 9. Its position "
+        "was taken: look which is right."
+    )
+    assert lost.sentence == (
+        "1 record names a plant of Home, but lies on Hill, the first row 2, plant 1. Its position "
+        "was taken: look which is right."
+    )
+    assert {one.remedy.setting for one in (stranger, lost)} == {"place=plant"}
+    assert told.on_wrong_plots(here, (here,), 3.0) == []
+    by_position = twice(read(moved_m, RecordOptions(place="position"), plot=plot))
+    assert by_position.on_wrong_plots(here, (here, there), 3.0) == []

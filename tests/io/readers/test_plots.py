@@ -1,7 +1,11 @@
 """Plots out of a layer: which features, how they are called, and what is said of the rest."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 import shapely
+from pyproj import Transformer
 from shapely import LinearRing, LineString, MultiPolygon, Point, Polygon, box
 
 from fieldmon.errors import ChoiceNeeded, FileProblem
@@ -277,3 +281,26 @@ def test_plots_keep_what_is_said_of_them_where_others_were_left_out():
     flat = Polygon([(35, 30), (35.1, 30), (35.2, 30)])
     read = plots_of(estate(flat, square(0), name=["x", "b"], row_m=[3, 4]), PlotOptions())
     assert [(f.name, f.row_spacing_m) for f in read.value] == [("b", 4.0)]
+
+
+def test_plots_of_a_file_that_are_written_in_two_utm_zones_are_doubted_and_named():
+    def metres(west, zone):
+        to = Transformer.from_crs("OGC:CRS84", f"EPSG:326{zone}", always_xy=True).transform
+        area = box(west, 31.5, west + 0.002, 31.502)
+        return shapely.transform(area, lambda xy: np.stack(to(*xy.T), axis=1))
+
+    shapes, names = [metres(35.9, 36), metres(35.95, 36), metres(36.1, 37)], ["A", "B", "C"]
+    layer = Layer("estate", {"name": column(names)}, column(shapes), "EPSG:32636")
+    for options, doubted in ((ANY, True), (PlotOptions(feature="C"), True),
+                             (PlotOptions(feature="A"), False)):  # fmt: skip
+        said = sentences(plots_of(layer, options))
+        told = "1 plot lies 551 km from the others (C), but as UTM zone 37 it would lie 14 km from"
+        assert (told in said) is doubted
+    right = replace(layer, geometry=column([*shapes[:2], metres(36.1, 36)]))
+    assert "UTM zone 37" not in sentences(plots_of(right, ANY))
+    columns = {"name": column(names), "utm_zone": column([36, 36, 37])}
+    with pytest.raises(ChoiceNeeded, match="'utm_zone' names 2: 36, 37") as asked:
+        plots_of(replace(layer, columns=columns), ANY)
+    assert asked.value.option == "where"
+    unstated = replace(layer.take(np.array([0, 1])), crs=None, columns={"huso": column([36, 36])})
+    assert len(plots_of(unstated, ANY).value) == 2

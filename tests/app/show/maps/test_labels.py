@@ -4,10 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from shapely import MultiPolygon, Point, box
+from shapely import MultiPolygon, Point, Polygon, box
 
 from app.show.maps import labels
 from fieldmon.planning.plan import PlanSettings, plan_from
+from fieldmon.plot.field import Field
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
 from tests.app.chosen import CORNER, a_plot
@@ -67,6 +69,21 @@ def test_every_row_has_its_number_before_its_first_plant():
         # a number is pushed outwards from the outline, on which it would not be read
         assert grid.frame.xy_m(np.array([one["away"]]))[0][0] < x
         assert not PLOT.field.boundary.buffer(-1e-7).contains(Point(one["p"]))
+
+
+def test_the_numbers_of_short_rows_are_beyond_an_outline_that_runs_askew():
+    lon, lat = CORNER
+    wide, high = 0.0012, 0.0006
+    corner = Polygon([(lon, lat), (lon + wide, lat), (lon + wide, lat + high)])
+    plot = Plot.of(Field("askew", MultiPolygon([corner])), Planting(row_bearing_deg=90.0))
+    grid, half_m = plot.grid, plot.grid.row_spacing_m / 2
+    made = labels.rows(grid)
+    assert len(made) > 5
+    for one in made:
+        x, y = grid.frame.xy_m(np.array([one["p"]]))[0]
+        own = grid.xy_m[grid.row_line[grid.row] == one["row"] - 1]
+        assert x < own[:, 0].min()
+        assert not grid.drivable_m.intersects(box(x - 3, y - half_m, x - 0.01, y + half_m))
 
 
 def test_rows_have_the_numbers_of_the_file_of_their_plants_on_the_map():

@@ -106,6 +106,9 @@ def _say(made: SharedPlots) -> None:
         st.markdown(many if len(made.free) > _MOST_NAMED else said)
     if made.several_kinds:
         st.markdown(texts.PLAN_ALL_KINDS)
+    for plot, members in made.teams:
+        team = listed(texts.isolated(name) for name in members)
+        st.markdown(texts.PLAN_ALL_TEAM.format(plot=texts.isolated(plot), names=team))
     for problem in (*made.closed, *made.problems):
         st.warning(problem)
     if made.turns:

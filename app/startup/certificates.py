@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from cryptography import x509
     from cryptography.hazmat.primitives.asymmetric.ec import EllipticCurvePrivateKey
 
+    IP = ipaddress.IPv4Address | ipaddress.IPv6Address
     Issuer = tuple[EllipticCurvePrivateKey, x509.Certificate]
 
 _YEARS_5, _DAYS_397 = timedelta(days=5 * 365), timedelta(days=397)
@@ -55,33 +56,57 @@ class Certificates:
 
 def local_address() -> str:
     """Return this machine's address on the local network; raise `SettingError` if it is on none."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            probe.connect(("10.255.255.255", 1))  # nothing is sent: it says which way it would go
-            found = str(probe.getsockname()[0])
-        except OSError:
-            found = "127.0.0.1"
-    if found.startswith("127."):
+    found = [
+        address
+        for family, away in ((socket.AF_INET, "10.255.255.255"), (socket.AF_INET6, "fd00::1"))
+        if (address := _way_to(family, away)) and not ipaddress.ip_address(address).is_loopback
+    ]
+    if not found:
         raise SettingError(
             "This machine must be on a local network for --lan, but it is on none. Connect it, or "
             "say its address with --address."
         )
-    return found
+    return next((one for one in found if _is_private(ipaddress.ip_address(one))), found[0])
+
+
+def _way_to(family: socket.AddressFamily, away: str) -> str:
+    """Return from which address this machine would send there; empty: it could not."""
+    try:
+        with socket.socket(family, socket.SOCK_DGRAM) as probe:
+            probe.connect((away, 1))  # nothing is sent: it says which way it would go
+            return str(probe.getsockname()[0])
+    except OSError:
+        return ""
+
+
+def _ip(address: str) -> IP:
+    """Return an address as a number; raise `SettingError` for a name."""
+    try:
+        return ipaddress.ip_address(address)
+    except ValueError as error:
+        raise SettingError(
+            f"An address for --lan must be a number, as 192.168.1.5, but it is {address}. Say with "
+            "--address by which number phones reach this machine."
+        ) from error
+
+
+def _is_private(ip: IP) -> bool:
+    return any(ip in ipaddress.ip_network(net) for net in _PRIVATE)
 
 
 def certificates(folder: Path, address: str) -> Certificates:
     """Return certificates for an address; what is kept in the folder is used while it holds.
 
-    Raise `SettingError` if the address is not private.
+    Raise `SettingError` if the address is no number, or not private.
     """
     from cryptography.hazmat.primitives import hashes, serialization  # noqa: PLC0415 - for --lan
 
-    ip = ipaddress.ip_address(address)
-    if not any(ip in ipaddress.ip_network(net) for net in _PRIVATE):
+    ip = _ip(address)
+    if not _is_private(ip):
         raise SettingError(
-            f"An address for --lan must be private, as 192.168.1.5, but it is {address}. On the "
-            "internet put the app behind a server with a certificate of its own (see the "
-            "documentation, Scouting)."
+            f"An address for --lan must be private, as 192.168.1.5, but it is {address}. If this "
+            "machine has a private one, say it with --address; on the internet put the app behind "
+            "a server with a certificate of its own (see the documentation, Scouting)."
         )
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     authority = _kept(folder, "authority") or _made_authority(folder)
@@ -108,7 +133,7 @@ def _kept(folder: Path, name: str) -> Issuer | None:
 
 def _fits(
     made: x509.Certificate,
-    ip: ipaddress.IPv4Address | ipaddress.IPv6Address,
+    ip: IP,
     authority: x509.Certificate,
 ) -> bool:
     from cryptography import x509  # noqa: PLC0415
@@ -140,9 +165,7 @@ def _made_authority(folder: Path) -> Issuer:
     return _written(folder, "authority", key, builder, key)
 
 
-def _made_server(
-    folder: Path, authority: Issuer, ip: ipaddress.IPv4Address | ipaddress.IPv6Address
-) -> None:
+def _made_server(folder: Path, authority: Issuer, ip: IP) -> None:
     from cryptography import x509  # noqa: PLC0415
     from cryptography.hazmat.primitives.asymmetric import ec  # noqa: PLC0415
 

@@ -108,6 +108,7 @@ def serve(app: Application, port: int, line: socket.socket, settings: dict[str, 
     os.environ.setdefault(scout_page.ADDRESS, own)
     most = min(_MOST_LINES, _open_files() // 4)
     lines = [line, *(_Listening(_listening(address, port + k), most) for k in (0, 1))]
+    _print(f"fieldmon is at http://127.0.0.1:{port} (stop it with Ctrl-C)")
     _say(own, f"http://{_host(address)}:{port + 1}", password, made)
     others = settings | {"lifespan": "off", "http": _prompt()}
     encrypted = {"ssl_certfile": made.chain, "ssl_keyfile": made.key}

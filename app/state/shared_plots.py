@@ -76,8 +76,9 @@ class PlannedTurn(EstateRoute):
 class SharedPlots:
     """The plan: its turns, plots for which there is no time, and plots that cannot be planned.
 
-    And what is left off as people may not be there yet, who has no plot, of how many, and whether
-    the plots have robots of several kinds, so that the usual one is taken.
+    And what is left off as people may not be there yet, who has no plot, of how many, whether the
+    plots have robots of several kinds, so that the usual one is taken, and who works in plots with
+    teams of their own, which are not asked.
     """
 
     turns: tuple[PlannedTurn, ...]
@@ -87,6 +88,7 @@ class SharedPlots:
     free: tuple[str, ...] = ()
     n_members: int = 0
     several_kinds: bool = False
+    teams: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,6 +149,11 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
         made.free,
         len(members),
         several_kinds=kind is None and bool(seasons),
+        teams=tuple(
+            (one.plot.name, tuple(member.name for member in one.known.season.settings.team))
+            for one in ready
+            if one.known.season is not None and one.known.season.settings.team
+        ),
     )
 
 

@@ -448,6 +448,7 @@ PLAN_ALL_WAITING_MANY = (
 PLAN_ALL_FREE = "Free today: {names}."
 PLAN_ALL_FREE_MANY = "Free today: {n} of {all}."
 PLAN_ALL_KINDS = "The plots have robots of several kinds: here all are of the usual one."
+PLAN_ALL_TEAM = "{plot} has a team of its own ({names}): here those chosen above work there."
 PLAN_ALL_NOBODY = "Nobody works: give one robot or scout, or more."
 PLAN_ALL_WORKING = "Planning the plots ..."
 PLAN_ALL_DOWNLOAD = "Download all routes"

@@ -28,8 +28,12 @@ class AppOptions:
         8501
     )
     address: Annotated[
-        str, typer.Option(help="Address to listen on; others may only see it beyond 127.0.0.1.")
-    ] = _HERE
+        str | None,
+        typer.Option(
+            help="Address to listen on; others may only see it beyond 127.0.0.1.",
+            show_default=_HERE,
+        ),
+    ] = None
     seasons: Annotated[
         Path, typer.Option(help="Folder in which seasons are kept; made when one begins.")
     ] = Path("seasons")
@@ -70,7 +74,12 @@ class AppOptions:
             )
         told = {"FIELDMON_ADDRESS": at.rstrip("/")} if at else {}
         if self.lan:
-            told["FIELDMON_LAN"] = "" if self.address == _HERE else self.address
+            told["FIELDMON_LAN"] = (self.address or "").strip("[]")
+            if told["FIELDMON_LAN"] == _HERE:
+                raise SettingError(
+                    "The address for --lan must be one at which phones reach this machine, but "
+                    f"{_HERE} is its own. Leave out --address, or say another."
+                )
         return told
 
     def names(self) -> str:
@@ -87,9 +96,10 @@ def open_app(options: AppOptions) -> None:
 
     server = f"{app_package()[0]}.startup.serve"
     others = options.of_others()
-    address = _HERE if options.lan else options.address
+    address = _HERE if options.lan else options.address or _HERE
     _must_be_free(address, options.port)
-    typer.echo(f"fieldmon is at http://{address}:{options.port} (stop it with Ctrl-C)")
+    if not options.lan:  # else the server says it, once it has an address for others
+        typer.echo(f"fieldmon is at http://{address}:{options.port} (stop it with Ctrl-C)")
     # -P: -m looks in the folder one stands in first, which need not be where the app is
     command = [sys.executable, "-P", "-m", server, *(["--browser"] if options.browser else [])]
     # everything else is set, with reasons, in the app's own .streamlit/config.toml

@@ -127,9 +127,10 @@ def _members(
     if robot is not None:
         robot = worker.said_of(robot)
     elif told.isdecimal() and not (worker.scout or worker.rover):
+        crews = "; ".join(f"{_name(season)}: {_crew(season)}" for season in seasons)
         raise SettingError(
-            "The seasons must work with one robot, but they have several. Say who works: --scout, "
-            "--rover, or a table with --robots."
+            f"The seasons must work with one robot, but they have several ({crews}). Say who "
+            "works: --scout, --rover, or a table with --robots."
         )
     hours = {one.hours for season in seasons for one in robots_of(season)}
     if told.isdecimal() and worker.hours is None and len(hours) > 1:
@@ -144,6 +145,13 @@ def _members(
             f"lon and lat of {', '.join(fixed)}. Leave them out."
         )
     return members, starts
+
+
+def _crew(season: Season) -> str:
+    """Return who works in a season, in a few words."""
+    settings = season.settings
+    one = "a scout" if settings.robot.on_foot else "a robot"
+    return ", ".join(member.name for member in settings.team) or one
 
 
 def _endings(formats: Sequence[str]) -> list[str]:

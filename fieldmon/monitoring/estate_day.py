@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 #: a plot is due so many days after it was seen
 DUE_DAYS = 3
+# share of a day's plan with which a plot is seen (our choice)
+_SEEN = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,10 +120,17 @@ class SharedEstate:
 
 
 def days_since(season: Season, on: date) -> int | None:
-    """Return how many days before a day a plant of a season was last inspected; None: never."""
+    """Return how many days before a day a season's plot was last seen; None: never.
+
+    A day on which less than half of the kept plan was done is none on which it was seen: it had
+    only begun.
+    """
     dates = season.history.inspections.date
-    dates = dates[dates <= np.datetime64(on)]
-    return int((np.datetime64(on) - dates.max()) / np.timedelta64(1, "D")) if len(dates) else None
+    for seen in np.unique(dates[dates <= np.datetime64(on)])[::-1].tolist():
+        work = season.planned_and_done(seen)
+        if work is None or work.done >= work.planned * _SEEN:
+            return int((on - seen).days)
+    return None
 
 
 def robots_of(season: Season) -> list[Robot]:

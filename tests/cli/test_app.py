@@ -42,6 +42,7 @@ def test_other_devices_come_only_where_it_is_said(run, started):
         ((), {}),
         (("--lan",), {"FIELDMON_LAN": ""}),
         (("--lan", "--address", "192.168.1.5"), {"FIELDMON_LAN": "192.168.1.5"}),
+        (("--lan", "--address", "[fd00::2]"), {"FIELDMON_LAN": "fd00::2"}),
         (("--reached-at", "https://a.example/"), {"FIELDMON_ADDRESS": "https://a.example"}),
     ):
         run("app", "--no-browser", "--port", free_port(), *words)
@@ -64,13 +65,24 @@ def test_others_come_to_an_encrypted_address_of_its_own_only(address, said, run,
     assert started == []
 
 
-def test_an_address_that_is_not_private_is_a_sentence(tmp_path):
+def test_phones_do_not_come_to_this_machine_s_own_address(run, started):
+    words = "app", "--port", free_port(), "--lan", "--address", "127.0.0.1"
+    code, _, err, _ = run(*words)
+    assert (code, started) == (2, [])
+    assert "at which phones reach this machine" in " ".join(err.split())
+
+
+@pytest.mark.parametrize(
+    ("address", "said"), [("8.8.8.8", "must be private"), ("office.local", "must be a number")]
+)
+def test_an_address_that_is_not_private_is_a_sentence(address, said, tmp_path):
     command = [sys.executable, "-m", "fieldmon", "app", "--no-browser", "--lan", "--port",
-               str(free_port()), "--address", "8.8.8.8"]  # fmt: skip
+               str(free_port()), "--address", address]  # fmt: skip
     env = os.environ | {"FIELDMON_AUTHORITY": str(tmp_path)}
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=env)
     assert done.returncode == 1
-    assert "must be private" in done.stderr
+    assert said in done.stderr
+    assert "fieldmon is at" not in done.stdout, "it is not"
     assert "Traceback" not in done.stderr
 
 

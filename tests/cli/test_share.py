@@ -113,7 +113,8 @@ def test_the_seasons_robot_works_where_nobody_else_is_told(run, seasons, tmp_pat
     assert stops("told").pop() < 40
     code, _, err, _ = run(*words, other, "--hours", 1, "-o", "two")
     assert code == 2
-    assert "must work with one robot, but they have several" in err
+    assert "must work with one robot, but they have several (" in err
+    assert ": a robot; " in err
     code, _, err, _ = run(*words, other, "--hours", 1, "--scout", "-o", "two")
     assert code == 0, err
 

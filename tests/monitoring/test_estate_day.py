@@ -135,3 +135,13 @@ def test_days_since_a_plant_was_seen_leave_out_what_comes_later(seasons):
     for day in (ON, ON + timedelta(days=4)):
         season.record(Inspections.of(np.array([3]), np.array([CLEAN]), day), str(day))
     assert [days_since(season, ON + timedelta(days=k)) for k in (-1, 0, 3, 6)] == [None, 0, 3, 2]
+
+
+def test_a_day_that_has_only_begun_is_none_on_which_a_plot_was_seen(seasons):
+    season = seasons[0]
+    planned = season.plan(ON).route.plant
+    half = len(planned) // 2
+    for name, plants in (("begun", planned[: half - 1]), ("half", planned[half - 1 : half + 1])):
+        assert days_since(season, ON) is None
+        season.record(Inspections.of(plants, np.full(len(plants), CLEAN), ON), name)
+    assert days_since(season, ON) == 0

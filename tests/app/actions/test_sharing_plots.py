@@ -97,9 +97,20 @@ def test_where_no_plot_is_due_none_is_planned_until_those_seen_are_asked_for(app
 def test_who_has_no_plot_is_said_to_be_free(said):
     free = shared_plots.planned([], EstateCrew(robots=2), lambda *_: None).free
     sharing_plots._say(
-        shared_plots.SharedPlots((), (), ("broken",), free=free, n_members=2, several_kinds=True)
+        shared_plots.SharedPlots(
+            (),
+            (),
+            ("broken",),
+            free=free,
+            n_members=2,
+            several_kinds=True,
+            teams=(("Gate", ("Ann", "Ben")),),
+        )
     )
     assert texts.PLAN_ALL_KINDS in said
+    named = texts.isolated("Ann"), texts.isolated("Ben")
+    team = texts.PLAN_ALL_TEAM.format(plot=texts.isolated("Gate"), names=", ".join(named))
+    assert team in said
     assert "Free today: robot 1, robot 2." in said
     many = tuple(f"robot {k}" for k in range(40))
     sharing_plots._say(shared_plots.SharedPlots((), free=many, n_members=40))

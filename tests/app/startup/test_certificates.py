@@ -100,8 +100,8 @@ def test_the_internet_is_not_for_an_authority_of_ones_own(folder, address):
 
 def test_this_machines_address_is_found_or_asked_for(monkeypatch):
     class Probe:
-        def __init__(self, *_):
-            pass
+        def __init__(self, family, _):
+            self.family = family
 
         def __enter__(self):
             return self
@@ -113,11 +113,16 @@ def test_this_machines_address_is_found_or_asked_for(monkeypatch):
             self.where = where
 
         def getsockname(self):
-            return (found, 1)
+            return (found[self.family is made_here.socket.AF_INET6], 1)
 
     monkeypatch.setattr(made_here.socket, "socket", Probe)
-    found = "192.168.1.5"
-    assert made_here.local_address() == "192.168.1.5"
-    found = "127.0.0.1"
+    for found, own in (  # noqa: B007 - read by the probe
+        (("192.168.1.5", "::1"), "192.168.1.5"),
+        (("192.0.2.2", "fd00::2"), "fd00::2"),
+        (("127.0.0.1", "fd00::2"), "fd00::2"),
+        (("192.0.2.2", "::1"), "192.0.2.2"),
+    ):
+        assert made_here.local_address() == own
+    found = "127.0.0.1", "::1"  # of no network
     with pytest.raises(SettingError, match="on a local network"):
         made_here.local_address()

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from datetime import date
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -121,8 +122,9 @@ def refuse(db: sqlite3.Connection) -> None:
     named = joined("; ", [*(change.sentence() for change in found[:_MOST_NAMED]), *more])
     if all(change.layer == INSPECTIONS.name for change in found):
         remedy = worded(
-            "Take it as a correction with: fieldmon correct SEASON --who NAME; or go back to a "
-            "copy from before."
+            "Take it as a correction with: fieldmon correct {file} --who NAME; or go back to a "
+            "copy from before.",
+            file=_name(db),
         )
     else:
         remedy = worded(
@@ -137,6 +139,12 @@ def refuse(db: sqlite3.Connection) -> None:
             remedy=remedy,
         )
     )
+
+
+def _name(db: sqlite3.Connection) -> str:
+    """Return what a season's file is called: of two that are merged either may be meant."""
+    (path,) = db.execute("SELECT file FROM pragma_database_list WHERE name = 'main'").fetchone()
+    return Path(path).name or "SEASON"
 
 
 def not_as_logged(db: sqlite3.Connection) -> tuple[str, ...]:
@@ -182,8 +190,8 @@ def correct(
     """Take what other programs changed of inspections as a batch of its own; say what, one by one.
 
     What stood there before stands back, until the correction is taken back. A row that was moved is
-    of the plant there; else place, row and number in the row follow the plant's number. A row added with a digest is a copy of another, and counts
-    once it has its own.
+    of the plant there; else place, row and number in the row follow the plant's number. A row added
+    with a digest is a copy of another, and counts once it has its own.
 
     Raises
     ------

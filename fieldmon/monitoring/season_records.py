@@ -514,6 +514,11 @@ class SeasonRecords(OpenSeason):
         with self.store.reading() as db, Store(file).reading() as theirs:
             return merging.are_of_one_plot(db, theirs)
 
+    def treatments_alone_in(self, file: Path) -> list[tuple[str, str]]:
+        """Return product and day of the treatments that count in another season's file alone."""
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            return treatments.counting_alone(db, theirs)
+
     def corrections_in(self, copy: Path) -> tuple[outside_changes.OutsideChange, ...]:
         """Return what another program changed of inspections in a copy of this season.
 

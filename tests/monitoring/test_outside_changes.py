@@ -108,7 +108,8 @@ def test_a_finding_that_was_moved_is_of_the_plant_at_its_new_place(path):
 
 @pytest.mark.parametrize("far_m", [2.5, 40])
 def test_a_finding_moved_to_where_no_plant_is_or_away_from_the_one_it_names_is_refused(path, far_m):
-    grid = Season(path).plot.grid
+    season = Season(path)
+    grid, stood = season.plot.grid, int(season.history.inspections.plant[0])
     away = grid.frame.lonlat(grid.xy_m.min(axis=0, keepdims=True) - far_m)[0]
     outside(path, moved_to(away))
     with pytest.raises(FileProblem, match=r"row 1 .*\(clean at row .* from the nearest plant"):
@@ -117,8 +118,7 @@ def test_a_finding_moved_to_where_no_plant_is_or_away_from_the_one_it_names_is_r
     with pytest.raises(FileProblem, match=r"row 1 .*\(clean at row"):
         Season(path).correct("Ann")
     # a number alone is where it is, as ever
-    outside(path, "UPDATE inspections SET geom = (SELECT geom FROM plants WHERE plant = "
-            "(SELECT json_extract(before, '$.plant') FROM outside_changes)) WHERE fid = 1")  # fmt: skip
+    outside(path, moved_to(grid.lonlat()[stood]))
     assert Season(path).correct("Ann") == 1
     assert Season(path).history.states(0)[9] == CLEAN
 

@@ -59,8 +59,8 @@ class Draft(NamedTuple):
     def sentence(self) -> str:
         """Return for people why it does not count."""
         return worded(
-            "Row {row} of the layer inspections, which another program added, does not count: "
-            "{why} Mend it there, or delete it.",
+            "Finding {row} (fid, in the layer Findings), which another program added, does not "
+            "count: {why} Mend it there, or delete it.",
             row=self.row,
             why=self.why if self.why.endswith(".") else f"{self.why}.",
         )

@@ -229,7 +229,7 @@ class SeasonRecords(OpenSeason):
             if len(holding):
                 said = settings_of(db), (source, who)
                 taken = held_instead.take(db, holding, plot, *said)
-                self._corrected(db, taken, who)
+                self._corrected(db, taken, who, here=True)
             elif done.batch is not None:
                 day = settings_of(db).day((others if done.more else news).date.min().item())
                 self._refresh(db, day, before)
@@ -411,7 +411,7 @@ class SeasonRecords(OpenSeason):
                 self._must_have_come(on, at)
             who, when = written_in(db, who), (on, None if at is None else seconds(at))
             said = held_instead.retime(db, inspection, when, plot, settings, who)
-            self._corrected(db, said, who)
+            self._corrected(db, said, who, here=True)
         return said[0]
 
     def _must_have_come(self, on: date, at: time | None) -> None:
@@ -554,10 +554,13 @@ class SeasonRecords(OpenSeason):
         self._corrected(db, taken, who)
         return len(taken)
 
-    def _corrected(self, db: sqlite3.Connection, taken: tuple[str, ...], who: str) -> None:
+    def _corrected(
+        self, db: sqlite3.Connection, taken: tuple[str, ...], who: str, *, here: bool = False
+    ) -> None:
+        """Log what was corrected; `here`: with fieldmon itself, not by another program."""
         if taken:
-            states = season_log.states(db)
-            season_log.append(db, "corrected", who, states=states, rows=len(taken), said=taken)
+            what = {"rows": len(taken), "said": taken, **({"here": True} if here else {})}
+            season_log.append(db, "corrected", who, states=season_log.states(db), **what)
             self._refresh(db)
 
     def merge(self, other: OpenSeason) -> Merged:

@@ -44,6 +44,9 @@ def test_the_time_alone_of_an_inspection_is_corrected(run, season):
     assert "an inspection 9 that still counts" in run(*words, "9")[2]
     code, out, _, _ = run(*words, "2")
     assert (code, out.endswith("is now time 07:00:00\n")) == (0, True)
+    logged = Season(season).log()[-1].sentence()
+    assert logged.startswith("corrected: found at row")
+    assert logged.endswith("is now time 07:00:00")
     held = Season(season).history.inspections
     assert held.second.tolist() == [22_000, 7 * 3600]
     assert held.result.tolist() == [0, 1]

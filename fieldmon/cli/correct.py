@@ -52,8 +52,10 @@ def correct(
         moment = None if at is None else clock(at, "--time")
         typer.echo(Season(season).correct_time(inspection, moment, who.strip(), day(on)))
         return
-    n = Season(season).correct(who.strip())
+    kept = Season(season)
+    n = kept.correct(who.strip())
     if n:
         typer.echo(f"{n} correction{'s' if n > 1 else ''} taken, by {who.strip()}.")
+        typer.echo(kept.log()[-1].sentence())
     else:
         typer.echo("Nothing was changed by another program.")

@@ -10,7 +10,7 @@ import typer
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
 from fieldmon.compute.working_folder import working_folder
-from fieldmon.errors import SettingError
+from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import Season
@@ -35,10 +35,15 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     kept = Season(season)
     early = _entered_early(kept)
     with working_folder() as folder:
-        copy = Path(folder) / "other.gpkg"
+        copy = Path(folder) / other.name
         copy_season(other, copy)  # an older one is brought up to date in the copy
-        done = kept.merge(Season(copy))
-    gone = f", {done.taken_back} were taken back there" if done.taken_back else ""
+        try:
+            there = Season(copy)
+        except FileProblem as problem:  # it names the file that it was given
+            raise FileProblem(str(problem).replace(str(copy), str(other))) from problem
+        done = kept.merge(there)
+    n_gone = done.taken_back
+    gone = f", {n_gone} {'was' if n_gone == 1 else 'were'} taken back there" if n_gone else ""
     parts = [counted(done.new, "inspection")]
     more = (done.treatments, "treatment"), (len(done.codes), "scout's code")
     parts += [counted(n, thing) for n, thing in more if n]

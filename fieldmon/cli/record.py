@@ -64,7 +64,10 @@ class RecordFlags:
         typer.Option("--date", help="Day of inspections whose file names no day, YYYY-MM-DD."),
     ] = None
     who: Annotated[
-        str, typer.Option(help="Who inspected, whatever the files say; in a copy, who corrected.")
+        str,
+        typer.Option(
+            help="Who inspected, whatever the files say; in a copy of the season, who corrected."
+        ),
     ] = ""
     take_doubtful: TakeDoubtful = False
     finding_option: FindingChoices = None
@@ -130,8 +133,13 @@ def _record(season: Season, read: list[BroughtFile], flags: RecordFlags) -> date
     """Record what files say, all of it or nothing; return the last day of it."""
     if not read:
         return None
-    # in a copy, who is named corrected
-    found = [one.findings if one.copy else _of(flags.who, one.findings, one.name) for one in read]
+    # in a copy of this season, who is named corrected
+    found = [
+        one.findings
+        if one.copy and season.is_copy(one.copy)
+        else _of(flags.who, one.findings, one.name)
+        for one in read
+    ]
     named = [(inspections, one.name) for inspections, one in zip(found, read, strict=True)]
     copies = [one.copy if one.corrections else None for one in read]
     try:

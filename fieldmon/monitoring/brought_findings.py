@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.io.import_report import doubtful
 from fieldmon.io.options import Upload, source_name
 from fieldmon.monitoring import findings, repeated_recordings
 from fieldmon.monitoring.batches import Recorded
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring import Season
+
+_NAMED = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,11 +112,42 @@ def read_brought(
     if copy is not None:
         season.refuse_another_pest(copy)
     corrected = [] if copy is None else [one.row for one in season.corrections_in(copy)]
+    treated = [] if copy is None else _about_treatments(season, copy)
     if copy is not None:
         (folder / "new").mkdir()
         source = counting_copy(copy, folder / "new", corrected)
     read = dated(read_inspections(source, season.plot.grid, options))
-    return BroughtFile(name, read.value, read.messages, None, copy, len(corrected))
+    return BroughtFile(name, read.value, (*read.messages, *treated), None, copy, len(corrected))
+
+
+def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:
+    """Return a doubt about treatments of another season: it is asked for its findings alone."""
+    alone = season.treatments_alone_in(copy)
+    if not alone:
+        return []
+    named = [
+        worded(
+            "{product} on {day}",
+            product=product or worded("a product that nobody named"),
+            day=day,
+        )
+        for product, day in alone
+    ]
+    if season.is_copy(copy):
+        said = worded(
+            "{n} {n:treatment|treatments} of that copy {n:is|are} not taken ({some}), nor "
+            "{n:its|their} waiting periods. Take all that it holds with: fieldmon merge",
+            n=len(alone),
+            some=first_few(named, _NAMED),
+        )
+    else:
+        said = worded(
+            "{n} {n:treatment|treatments} of that season {n:is|are} not taken ({some}), nor "
+            "{n:its|their} waiting periods. Record {n:it|them} here, too.",
+            n=len(alone),
+            some=first_few(named, _NAMED),
+        )
+    return [doubtful(said)]
 
 
 def season_copied(source: Source, folder: Path) -> Path | None:

@@ -48,7 +48,7 @@ def take(
         If a changed row is not in the season, or makes no sense: which one.
     """
     found = (_as_here(db, one) for one in waiting(theirs))
-    changes = [one for one in found if not _is_taken(db, theirs, one)]
+    changes = [one for one in found if not _is_taken(db, theirs, one, plot[0])]
     if not changes:
         return ()
     name, who = said
@@ -76,12 +76,13 @@ def _as_here(db: sqlite3.Connection, one: OutsideChange) -> OutsideChange:
     return replace(one, row=row)
 
 
-def _is_taken(db: sqlite3.Connection, theirs: sqlite3.Connection, one: OutsideChange) -> bool:
+def _is_taken(
+    db: sqlite3.Connection, theirs: sqlite3.Connection, one: OutsideChange, grid: PlantGrid
+) -> bool:
     if one.what == "delete":
         gone = "SELECT 1 FROM inspections WHERE fid = ? AND undone <> 0"
         return db.execute(gone, (one.row,)).fetchone() is not None
-    names = ", ".join(outside_changes.SEEN)
-    row = theirs.execute(f"SELECT {names} FROM inspections WHERE fid = ?", (one.row,)).fetchone()  # noqa: S608 - ours
+    row = outside_changes.said_in(theirs, one, grid)
     same = " AND ".join(f"coalesce({name}, '') = coalesce(?, '')" for name in outside_changes.SEEN)
     says = outside_changes.as_kept(row)
     held = db.execute(f"SELECT 1 FROM inspections WHERE undone = 0 AND {same}", says)  # noqa: S608 - ours
@@ -126,11 +127,10 @@ def _rewrite(
     how: tuple[tuple[PlantGrid, RowLabel], MonitoringSettings, int],
 ) -> OutsideChange:
     """Correct what a row says, and return what was done to which one of ours."""
-    names = ", ".join(outside_changes.SEEN)
-    digest, *values = theirs.execute(
-        f"SELECT digest, {names} FROM inspections WHERE fid = ?",  # noqa: S608 - ours
-        (one.row,),
+    (digest,) = theirs.execute(
+        "SELECT digest FROM inspections WHERE fid = ?", (one.row,)
     ).fetchone()
+    values = outside_changes.said_in(theirs, one, how[0][0])
     held = db.execute(
         "SELECT fid FROM inspections WHERE digest = ? AND undone = 0", (digest,)
     ).fetchone()

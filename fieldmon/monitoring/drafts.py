@@ -60,8 +60,8 @@ class Draft(NamedTuple):
     def sentence(self) -> str:
         """Return for people why it does not count."""
         return worded(
-            "Row {row} of the layer inspections, which another program added, does not count: "
-            "{why} Mend it there, or delete it.",
+            "Finding {row} (fid, in the layer Findings), which another program added, does not "
+            "count: {why} Mend it there, or delete it.",
             row=self.row,
             why=self.why if self.why.endswith(".") else f"{self.why}.",
         )
@@ -132,13 +132,18 @@ def keep(
     return news
 
 
+def plant_at(place: bytes, named: object, grid: PlantGrid) -> int:
+    """Return the plant at a point, which may name it too; raise with the reason if there is none.
+
+    `named` is its number in the grid; None: it names none.
+    """
+    when = {"when": np.array(["NaT"], "datetime64[s]"), "day": np.array(["NaT"], "datetime64[D]")}
+    said = {one.name: np.array([one.from_file(None)]) for one in (COUNT, *BESIDE)}
+    return int(_looked_up(_one_row(place, named, PRESENT) | when | said, grid).plant[0])
+
+
 def _inspection(said: dict[str, Any], grid: PlantGrid) -> Inspections:
     """Return what a draft says; raise with the reason where it makes no sense."""
-    # readers take a tenth of a second to import, and drafts are few
-    from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows  # noqa: PLC0415
-    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
-    from fieldmon.io.readers.inspections import look_up  # noqa: PLC0415
-
     on, at, result = said["date"], said["time"], said["result"]
     if on in {None, ""}:
         raise ValueError("it has no date")
@@ -154,6 +159,16 @@ def _inspection(said: dict[str, Any], grid: PlantGrid) -> Inspections:
     rows = _one_row(said["geom"], said["plant"], _SAID[str(result)])
     rows |= {"when": np.array([when]), "day": np.array([day])}
     rows |= {one.name: np.array([one.from_file(said[one.kept])]) for one in (COUNT, *BESIDE)}
+    return _looked_up(rows, grid)
+
+
+def _looked_up(rows: dict[str, np.ndarray], grid: PlantGrid) -> Inspections:
+    """Return what one row says of its plant; raise with the reason where it has none."""
+    # readers take a tenth of a second to import, and drafts are few
+    from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows  # noqa: PLC0415
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
+    from fieldmon.io.readers.inspections import look_up  # noqa: PLC0415
+
     found, messages = look_up(InspectionRows(**rows), grid, InspectionOptions())
     if not len(found):
         raise ValueError(messages[0].sentence if messages else "it names no plant")

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.rows_that_count import Corrected
     from fieldmon.monitoring.treatments import Row
 
+_NAMED_PLOTS = 3
 #: what the batches of a copy are numbered now, by their numbers in it
 Numbers = dict[int, int]
 
@@ -318,6 +319,7 @@ def _keys(db: sqlite3.Connection) -> dict[str, str]:
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
     """Raise `FileProblem` unless both are copies of one season."""
+    _refuse_two_plots(db, other)
     _refuse_begun_apart(*(settings_log.begun(one) for one in (db, other)))
     for table in SAME:
         if not _is_same(db, other, table):
@@ -332,6 +334,20 @@ def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
         _refuse_begun_apart(_moment(at), _moment(other_at))
     else:  # too old to say it
         refuse_another_pest(db, other)
+
+
+def _refuse_two_plots(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
+    if _is_same(db, other, schema.PLOTS) or are_of_one_plot(db, other):
+        return
+    here, there = (
+        first_few([name or "" for (name,) in one.execute("SELECT name FROM plots")], _NAMED_PLOTS)
+        for one in (db, other)
+    )
+    if here == there:
+        raise _strangers(worded("one is of another plot than the other, or of another planting"))
+    raise _strangers(
+        worded("one is of the plot {here} and the other of {there}", here=here, there=there)
+    )
 
 
 def _refuse_begun_apart(here: str, there: str) -> None:

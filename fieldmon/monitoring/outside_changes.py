@@ -7,17 +7,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from datetime import date
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from shapely.errors import ShapelyError
 
 from fieldmon.compute.wording import Worded, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
-from fieldmon.infestation.inspections import RESULT_CODES, RESULT_NAMES, SKIPPED, Inspections
+from fieldmon.infestation.inspections import (
+    CLEAN,
+    FOUND,
+    RESULT_CODES,
+    RESULT_NAMES,
+    SKIPPED,
+    Inspections,
+)
 from fieldmon.io.parse.result_words import GONE, gone_note
 from fieldmon.monitoring import (
     batches,
+    drafts,
     inspection_lots,
     inspection_table,
     repeated_recordings,
@@ -25,7 +35,7 @@ from fieldmon.monitoring import (
     season_log,
     treatments,
 )
-from fieldmon.monitoring.geopackage import point_blobs
+from fieldmon.monitoring.geopackage import geometry, point_blobs
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
 if TYPE_CHECKING:
@@ -40,6 +50,9 @@ _DONE = {
     "delete": worded("was deleted"),
     "insert": worded("was added"),
 }
+_COUNTLESS = (RESULT_NAMES[CLEAN], RESULT_NAMES[SKIPPED], GONE)
+# nearer to its plant a point was written anew, not moved
+_MOVED_M = 0.01
 #: columns that say what was seen
 SEEN = tuple(column.kept for column in COLUMNS)
 
@@ -110,8 +123,9 @@ def refuse(db: sqlite3.Connection) -> None:
     named = joined("; ", [*(change.sentence() for change in found[:_MOST_NAMED]), *more])
     if all(change.layer == INSPECTIONS.name for change in found):
         remedy = worded(
-            "Take it as a correction with: fieldmon correct SEASON --who NAME; or go back to a "
-            "copy from before."
+            "Take it as a correction with: fieldmon correct {file} --who NAME; or go back to a "
+            "copy from before.",
+            file=_name(db),
         )
     else:
         remedy = worded(
@@ -126,6 +140,12 @@ def refuse(db: sqlite3.Connection) -> None:
             remedy=remedy,
         )
     )
+
+
+def _name(db: sqlite3.Connection) -> str:
+    """Return what a season's file is called: of two that are merged either may be meant."""
+    (path,) = db.execute("SELECT file FROM pragma_database_list WHERE name = 'main'").fetchone()
+    return Path(path).name or "SEASON"
 
 
 def not_as_logged(db: sqlite3.Connection) -> tuple[str, ...]:
@@ -170,9 +190,9 @@ def correct(
 ) -> tuple[str, ...]:
     """Take what other programs changed of inspections as a batch of its own; say what, one by one.
 
-    What stood there before stands back, until the correction is taken back. Place, row and number
-    in the row follow the plant's number. A row added with a digest is a copy of another, and counts
-    once it has its own.
+    What stood there before stands back, until the correction is taken back. A row that was moved is
+    of the plant there; else place, row and number in the row follow the plant's number. A row added
+    with a digest is a copy of another, and counts once it has its own.
 
     Raises
     ------
@@ -233,17 +253,18 @@ def in_words(db: sqlite3.Connection, change: OutsideChange) -> str:
     """Return what a correction made of a row, for the log."""
     if change.what == "delete":
         return f"{change.was} was deleted"
-    names = f"{INSPECTED}, {', '.join(SEEN)}"
+    names = f"{INSPECTED}, line, number, {', '.join(SEEN)}"
     row = db.execute(f"SELECT {names} FROM inspections AS old WHERE fid = ?", (change.row,))  # noqa: S608 - ours
-    says, *values = row.fetchone()
+    says, line, number, *values = row.fetchone()
     if change.what == "insert":
         return f"{says} was added"
     before = rows_that_count.as_it_was(change.before) if change.before else {}
     parts = [
-        f"{name} {value:g}" if isinstance(value, float) else f"{name} {value or 'none'}"
+        f"at row {line}, plant {number}" if name == "plant"
+        else f"{name} {value:g}" if isinstance(value, float) else f"{name} {value or 'none'}"
         for name, value in zip(SEEN, values, strict=True)
         if name in before and before[name] != value
-    ]
+    ]  # fmt: skip
     return f"{change.was} is now {', '.join(parts) or says}"
 
 
@@ -276,10 +297,7 @@ def _made_anew(
     batch: int,
 ) -> dict[str, Any]:
     """Return what every column of a row must say by what those say now that people fill in."""
-    row = db.execute(
-        f"SELECT {', '.join(SEEN)} FROM inspections WHERE fid = ?",  # noqa: S608 - names of ours
-        (change.row,),
-    ).fetchone()
+    row = said_in(db, change, plot[0])
     try:
         (made,) = inspection_table.rows(_inspection(row), *plot, settings, (batch, ""))
     except (FieldmonError, ValueError, TypeError, KeyError) as error:
@@ -323,6 +341,54 @@ def as_kept(row: tuple[object, ...]) -> tuple[object, ...]:
     if said["result"] == GONE:
         said |= {"result": RESULT_NAMES[SKIPPED], "notes": gone_note(str(said["notes"] or ""))}
     return tuple(said.values())
+
+
+def said_in(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> tuple[object, ...]:
+    """Return what a changed row says now, in the order of `SEEN`.
+
+    Where its point was moved, it is of the plant there. The count of a find that is none any more
+    is left out.
+
+    Raises
+    ------
+    FileProblem
+        If it was moved to where no plant is, or to another plant than it names.
+    """
+    row = db.execute(
+        f"SELECT geom, {', '.join(SEEN)} FROM inspections WHERE fid = ?",  # noqa: S608 - names of ours
+        (change.row,),
+    ).fetchone()
+    said = dict(zip(SEEN, row[1:], strict=True))
+    before = rows_that_count.as_it_was(change.before) if change.before else {}
+    if said["result"] in _COUNTLESS and before.get("result") == RESULT_NAMES[FOUND]:
+        said["count"] = None if said["count"] == before.get("count") else said["count"]
+    stood = before.get("plant")
+    if isinstance(row[0], bytes) and isinstance(stood, int) and 0 <= stood < len(grid):
+        said["plant"] = _plant_there(row[0], said["plant"], stood, change, grid)
+    return tuple(said.values())
+
+
+def _plant_there(
+    place: bytes, named: object, stood: int, change: OutsideChange, grid: PlantGrid
+) -> object:
+    """Return the plant of a row that `stood` at one and names one; by its place if it was moved."""
+    try:
+        point = geometry(place)
+        moved = np.array([[point.x, point.y]]), grid.lonlat(np.array([stood]))
+        if np.hypot(*np.subtract(*map(grid.frame.xy_m, moved)).T)[0] < _MOVED_M:
+            return named
+        plant = drafts.plant_at(place, None if named == stood else named, grid)
+    except (FieldmonError, ValueError, TypeError, AttributeError, ShapelyError) as error:
+        raise FileProblem(
+            worded(
+                "A finding that is moved must come to stand at a plant, but {change} and does "
+                "not: {error} Move it there with the program that changed it; nothing was taken.",
+                change=change.sentence(),
+                error=error,
+            )
+        ) from error
+    is_second = grid.vine[stood] != stood and grid.twin[plant] >= 0 and named == stood
+    return int(grid.twin[plant]) if is_second else plant
 
 
 def _inspection(row: tuple[object, ...]) -> Inspections:

@@ -79,6 +79,7 @@ class LogEntry:
         """Return what happened, in words."""
         what = _Blank(self.what)
         kind = "changed back" if self.kind == "changed" and what.get("back") else self.kind
+        kind = "corrected here" if kind == "corrected" and what.get("here") else kind
         if isinstance(number := what.get("expected"), int | float):
             what["expected"] = estimate(number)
         if self.kind == "changed":  # earlier versions wrote the names of the parts alone
@@ -128,6 +129,7 @@ _SAID = {
     "treated": "{date}: {said}, batch {batch}",
     "undone": "{said}",
     "corrected": "changes of another program taken as corrections: {rows}",
+    "corrected here": "corrected: {rows}",
     "changed": "settings: {said}",
     "changed back": "settings, the last change taken back: {said}",
     "labels": "{labels} {labels:label|labels} from {source}",

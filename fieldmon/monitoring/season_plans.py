@@ -83,7 +83,8 @@ class SeasonPlans(OpenSeason):
 
         `on`, `now`, `keep` and `wishes` are those of `plan`.
         In the order of the team. Aisles that the routes kept of this day gave to one stay its own
-        unless another way to give them out gains enough, see `Teamwork`.
+        unless another way to give them out gains enough, see `Teamwork`, or who joined since would
+        have none.
         """
         with self._lock:
             contents = self._now()
@@ -372,22 +373,32 @@ class SeasonPlans(OpenSeason):
                    np.zeros(len(scene.chance), np.bool_))
             for scene, from_s in stand
         ]  # fmt: skip
-        before = self._given_out(names, stand[0][0].day)
+        before, joined = self._given_out(names, stand[0][0].day)
         works = team_day(posts, settings.decides(), settings.teamwork, before=before)
+        idle = [k for k in joined if not len(works[k])]
+        if before is not None and idle:  # the others have all aisles, from when they were fewer
+            anew = team_day(posts, settings.decides(), settings.teamwork)
+            works = anew if any(len(anew[k]) for k in idle) else works
         return tuple(
             DayPlan(scene, work, route_of(scene, work))
             for (scene, _), work in zip(stand, works, strict=True)
         )
 
-    def _given_out(self, names: tuple[str, ...], day: int) -> NDArray[np.int64] | None:
-        """Return who has each aisle by the routes kept of a day, -1: nobody; None: none is kept."""
+    def _given_out(
+        self, names: tuple[str, ...], day: int
+    ) -> tuple[NDArray[np.int64] | None, list[int]]:
+        """Return who has each aisle by the routes kept of a day, and who has no route of it.
+
+        -1: nobody has it; None: no route is kept.
+        """
         aisle = self.plot.grid.corridor[self.plot.grid.row]
         given = np.full(int(aisle.max()) + 1, -1)
         with self.store.reading() as db:
             last = routes.kept_last(db, day)
             for k, who in enumerate(names):
                 given[aisle[routes.plants(db, last.get(person_key(who)))]] = k
-        return given if (given >= 0).any() else None
+        joined = [k for k, who in enumerate(names) if person_key(who) not in last]
+        return given if (given >= 0).any() else None, joined
 
 
 def _out(

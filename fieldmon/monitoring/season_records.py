@@ -229,7 +229,7 @@ class SeasonRecords(OpenSeason):
             if len(holding):
                 said = settings_of(db), (source, who)
                 taken = corrections.take(db, holding, plot, *said)
-                self._corrected(db, taken, who)
+                self._corrected(db, taken, who, here=True)
             elif done.batch is not None:
                 day = settings_of(db).day((others if done.more else news).date.min().item())
                 self._refresh(db, day, before)
@@ -413,7 +413,7 @@ class SeasonRecords(OpenSeason):
             self._must_have_come(on or day, at or held_at)
             who, when = written_in(db, who), (on, None if at is None else seconds(at))
             said = corrections.retime(db, inspection, when, plot, settings, who)
-            self._corrected(db, said, who)
+            self._corrected(db, said, who, here=True)
         return said[0]
 
     def _must_have_come(self, on: date, at: time | None) -> None:
@@ -516,6 +516,11 @@ class SeasonRecords(OpenSeason):
         with self.store.reading() as db, Store(file).reading() as theirs:
             return merging.are_of_one_plot(db, theirs)
 
+    def treatments_alone_in(self, file: Path) -> list[tuple[str, str]]:
+        """Return product and day of the treatments that count in another season's file alone."""
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            return treatments.counting_alone(db, theirs)
+
     def corrections_in(self, copy: Path) -> tuple[outside_changes.OutsideChange, ...]:
         """Return what another program changed of inspections in a copy of this season.
 
@@ -551,10 +556,13 @@ class SeasonRecords(OpenSeason):
         self._corrected(db, taken, who)
         return len(taken)
 
-    def _corrected(self, db: sqlite3.Connection, taken: tuple[str, ...], who: str) -> None:
+    def _corrected(
+        self, db: sqlite3.Connection, taken: tuple[str, ...], who: str, *, here: bool = False
+    ) -> None:
+        """Log what was corrected; `here`: with fieldmon itself, not by another program."""
         if taken:
-            states = season_log.states(db)
-            season_log.append(db, "corrected", who, states=states, rows=len(taken), said=taken)
+            what = {"rows": len(taken), "said": taken, **({"here": True} if here else {})}
+            season_log.append(db, "corrected", who, states=season_log.states(db), **what)
             self._refresh(db)
 
     def merge(self, other: OpenSeason) -> Merged:

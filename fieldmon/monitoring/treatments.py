@@ -223,6 +223,13 @@ def counting(db: sqlite3.Connection) -> list[frozenset[str]]:
     return [known_by(row) for row in _rows(db, "undone = 0")]
 
 
+def counting_alone(db: sqlite3.Connection, other: sqlite3.Connection) -> list[tuple[str, str]]:
+    """Return product and day of the treatments that count in another season, and not in this."""
+    known = frozenset[str]().union(*counting(db))
+    theirs = (row for row in _rows(other, "undone = 0") if known.isdisjoint(known_by(row)))
+    return [(row["product"] or "", row["date"]) for row in theirs]
+
+
 def counting_of(rows: Iterable[Row]) -> dict[int, frozenset[str]]:
     """Return what those of rows that count are known by, by their numbers."""
     return {row["fid"]: known_by(row) for row in rows if row["undone"] == COUNTS}

@@ -25,7 +25,8 @@ def test_until_somebody_takes_it_every_command_refuses_what_another_program_chan
     code, _, err, _ = run("correct", season, "--who", " ")
     assert (code, "--who must name" in err) == (2, True)
     code, out, _, _ = run("correct", season, "--who", "Ann")
-    assert (code, out) == (0, "1 correction taken, by Ann.\n")
+    assert code == 0
+    assert out.startswith("1 correction taken, by Ann.\nchanges of another program taken as ")
     code, out, _, _ = run("status", season, "--batches")
     assert code == 0
     assert "1 correction by Ann" in out
@@ -43,6 +44,9 @@ def test_the_time_alone_of_an_inspection_is_corrected(run, season):
     assert "an inspection 9 that still counts" in run(*words, "9")[2]
     code, out, _, _ = run(*words, "2")
     assert (code, out.endswith("is now time 07:00:00\n")) == (0, True)
+    logged = Season(season).log()[-1].sentence()
+    assert logged.startswith("corrected: found at row")
+    assert logged.endswith("is now time 07:00:00")
     held = Season(season).history.inspections
     assert held.second.tolist() == [22_000, 7 * 3600]
     assert held.result.tolist() == [0, 1]

@@ -5,6 +5,7 @@ import shutil
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.monitoring import Season, scouts
 from tests.cli.estate import BEGINS, ZIP, begin_next_year, filled_in
+from tests.monitoring.test_outside_changes import outside
 
 
 def worked(run, season, route, finds, who):
@@ -100,10 +101,25 @@ def test_a_season_is_not_merged_with_itself_and_a_like_copy_changes_nothing(run,
 
 def test_what_is_no_copy_of_the_season_is_a_sentence(run, season, tmp_path):
     (tmp_path / "notes.txt").write_text("hello")
-    for other in ("notes.txt", "nowhere.gpkg", "."):
+    (tmp_path / "map.gpkg").touch()
+    outside(tmp_path / "map.gpkg", "CREATE TABLE plots (fid)")
+    for other in ("notes.txt", "nowhere.gpkg", ".", "map.gpkg"):
         code, _, err, made = run("merge", season, other)
         assert (code, made) == (2, set())
         assert "must be the file of a season" in err
+    assert err.startswith("map.gpkg must be")
+
+
+def test_of_two_copies_the_one_that_another_program_changed_is_named(run, season, tmp_path):
+    worked(run, season, "a.csv", {0}, "Ann")
+    other = shutil.copy(season, tmp_path / "other.gpkg")
+    outside(other, "UPDATE inspections SET result = 'found' WHERE fid = 2")
+    for words in (("merge", season, other), ("status", other)):
+        assert "fieldmon correct other.gpkg --who NAME" in run(*words)[2]
+    run("undo", season, "--inspection", 3)
+    outside(other, "UPDATE inspections SET result = 'clean' WHERE fid = 2")
+    run("correct", other, "--who", "Ben")
+    assert ", 1 was taken back there" in run("merge", other, season)[1]
 
 
 def test_seasons_of_two_years_on_one_plot_are_no_copies(run, tmp_path):

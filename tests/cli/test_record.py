@@ -9,7 +9,7 @@ import pyogrio
 import shapely
 
 from fieldmon.monitoring import Season
-from tests.cli.estate import BEGINS, filled_in
+from tests.cli.estate import BEGINS, ZIP, filled_in
 from tests.monitoring.test_outside_changes import outside
 
 
@@ -67,6 +67,19 @@ def test_who_is_told_by_the_option_and_rows_that_say_otherwise_are_counted(run, 
     assert {*kept.history.inspections.who.tolist()} == {"Dan"}
     assert [batch.who for batch in kept.batches()] == ["Dan"]
     assert [one.who for one in kept.log() if one.kind == "seen"] == ["Dan"]
+
+
+def test_who_is_told_by_the_option_of_a_season_begun_apart_but_not_of_a_copy(run, season, tmp_path):
+    copy = shutil.copy(season, tmp_path / "copy.gpkg")
+    words = (ZIP, "--feature", "Nursery", "--hours", "1", "--begins", BEGINS)
+    assert run("init", "apart.gpkg", *words)[0] == 0
+    for k, (file, who) in enumerate(((copy, "Ann"), ("apart.gpkg", "Ben"))):
+        (tmp_path / "r.csv").write_text(f"plant,date,result\n{k},{BEGINS},clean\n")
+        assert run("record", file, "r.csv", "--who", who)[0] == 0
+    code, _, err, _ = run("record", season, copy, "apart.gpkg", "--who", "Zed")
+    assert code == 0, err
+    assert "apart.gpkg: seen: By the file Ben made 1 inspection; taken as those of Zed" in err
+    assert Season(season).history.inspections.who.tolist() == ["Ann", "Zed"]
 
 
 def test_two_files_that_contradict_each_other_are_refused_before_either_is_recorded(

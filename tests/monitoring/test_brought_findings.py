@@ -16,8 +16,9 @@ from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.brought_findings import counting_copy, read_brought, record_saved
-from tests.monitoring.seasons import BEGINS
+from tests.monitoring.seasons import BEGINS, a_season
 from tests.monitoring.test_outside_changes import outside
 
 OPTIONS = InspectionOptions(work_day=np.datetime64(BEGINS, "D"))
@@ -106,3 +107,17 @@ def test_a_copy_for_another_season_holds_only_what_was_not_undone(path, tmp_path
     for file, n in ((path, 12), (copy, 11)):
         with closing(sqlite3.connect(file)) as db:
             assert db.execute("SELECT count(*) FROM inspections").fetchone() == (n,)
+
+
+def test_treatments_of_another_season_are_said_to_stay_there(path, tmp_path):
+    season, stranger = Season(path), a_season(tmp_path / "stranger.gpkg")
+    copy = Season(shutil.copy(path, tmp_path / "copy.gpkg"))
+    for number, (other, says) in enumerate(((stranger, "of that season"), (copy, "of that copy"))):
+        for told in (0, 1):
+            (own := tmp_path / f"{number}{told}").mkdir()
+            read = read_brought(season, other.path, OPTIONS, own)
+            said = [one.sentence for one in read.messages if "treatment" in one.sentence]
+            assert len(said) == told
+            if not told:
+                other.treat(BEGINS, 0.5, application=Application("Acarol"))
+        assert said[0].startswith(f"1 treatment {says} is not taken (Acarol on {BEGINS}), nor its")

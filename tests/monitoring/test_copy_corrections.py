@@ -5,10 +5,10 @@ import shutil
 import pytest
 
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season
 from tests.monitoring.seasons import BEGINS, three_results
-from tests.monitoring.test_outside_changes import outside
+from tests.monitoring.test_outside_changes import moved_to, outside
 
 
 @pytest.fixture
@@ -41,6 +41,21 @@ def test_a_finding_corrected_to_gone_is_taken_once(path, copy):
     assert season.history.gone(0).nonzero()[0].tolist() == [plant]
     assert season.verify() == ()
     assert season.take_corrections(copy, "copy.gpkg", "Ann") == 0
+
+
+def test_a_finding_moved_or_cleared_of_its_count_in_a_copy_is_so_in_the_season(path, tmp_path):
+    outside(path, "UPDATE inspections SET count = 2 WHERE fid = 3")
+    season = Season(path)
+    season.correct("Ann")
+    copy = shutil.copy(path, tmp_path / "copy.gpkg")
+    outside(copy, moved_to(season.plot.grid.lonlat()[301]),
+            "UPDATE inspections SET result = 'clean' WHERE fid = 3")  # fmt: skip
+    plants = season.history.inspections.plant
+    assert season.take_corrections(copy, "copy.gpkg", "Ann") == 2
+    states = season.history.states(0)
+    assert states[[301, plants[0], plants[2]]].tolist() == [CLEAN, -1, CLEAN]
+    assert season.take_corrections(copy, "copy.gpkg", "Ann") == 0
+    assert season.verify() == ()
 
 
 def test_a_deleted_finding_counts_no_more_and_is_kept(path, copy):

@@ -91,7 +91,7 @@ def test_a_point_that_says_too_little_stays_a_draft_and_the_others_count(path, s
     add(path)
     season = Season(path)
     (sentence,) = season.drafts
-    assert "Row 13 of the layer inspections" in sentence
+    assert "Finding 13 (fid, in the layer Findings)" in sentence
     assert why in sentence
     assert season.history.states(0)[PLANT] == FOUND
     assert season.status(BEGINS).found == 4

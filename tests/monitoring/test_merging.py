@@ -45,6 +45,7 @@ from fieldmon.plot import local_clock
 from fieldmon.plot.grid import row_label
 from tests.monitoring.phone import JPEG
 from tests.monitoring.seasons import BEGINS, a_plot, a_season, state
+from tests.monitoring.test_outside_changes import outside
 
 PAIRS = int(os.environ.get("FIELDMON_MERGES", "40"))
 PLOT = a_plot()
@@ -1003,9 +1004,13 @@ def test_a_copy_that_brings_nothing_leaves_the_routes_of_a_day_as_they_are(path,
 def test_another_season_is_no_copy_of_this_one(path, tmp_path):
     stranger = a_season(tmp_path / "stranger.gpkg", a_plot(width=0.0009))
     before = path.read_bytes()
-    with pytest.raises(FileProblem, match="differ in the layer arrays: they are two") as refused:
+    with pytest.raises(FileProblem, match="one is of another plot than the other") as refused:
         Season(path).merge(stranger)
-    advice = str(refused.value).partition("one of them. ")[2]
+    advice = str(refused.value).partition("planting. ")[2]
+    other = shutil.copy(stranger.path, tmp_path / "named.gpkg")
+    outside(other, "UPDATE plots SET name = 'Gate'", "DELETE FROM outside_changes")
+    with pytest.raises(FileProblem, match="one is of the plot מטע Paran and the other of Gate"):
+        Season(path).merge(Season(other))
     here = Season(path)
     begins = replace(here.settings, begins=BEGINS + timedelta(1))
     later = Season.create(tmp_path / "later.gpkg", here.plot, here.observations, begins)

@@ -6,10 +6,12 @@ from contextlib import closing
 
 import pyogrio
 import pytest
+from shapely import Point
 
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season, outside_changes
+from fieldmon.monitoring.geopackage import blob
 from tests.monitoring.seasons import BEGINS, state
 
 
@@ -100,6 +102,59 @@ def test_a_correction_counts_in_every_column_and_is_taken_back_as_a_whole(path, 
     assert season.evening(BEGINS).tolist() == evening.tolist()  # all is as it was before
     assert season.verify() == ()
     assert season.held_to_log() == ()
+
+
+def moved_to(lonlat, fid=1):
+    """Return what moves the point of an inspection, as QGIS does."""
+    return f"UPDATE inspections SET geom = x'{blob(Point(lonlat)).hex()}' WHERE fid = {fid}"  # noqa: S608 - ours
+
+
+def test_a_finding_that_was_moved_is_of_the_plant_at_its_new_place(path):
+    season = Season(path)
+    grid, stood = season.plot.grid, int(season.history.inspections.plant[0])
+    beside_m = grid.xy_m[[301]] + 0.3
+    outside(path, moved_to(grid.frame.lonlat(beside_m)[0]))
+    season = Season(path)
+    assert season.correct("Ann") == 1
+    states = season.history.states(0)
+    assert (states[301], states[stood]) == (CLEAN, -1)
+    place = f"is now at row {season.label.line[301]}, plant {season.label.number[301]}"
+    assert place in season.log()[-1].sentence()
+    season.undo()
+    assert season.history.states(0)[stood] == CLEAN
+    assert season.verify() == ()
+
+
+@pytest.mark.parametrize("far_m", [2.5, 40])
+def test_a_finding_moved_to_where_no_plant_is_or_away_from_the_one_it_names_is_refused(path, far_m):
+    season = Season(path)
+    grid, stood = season.plot.grid, int(season.history.inspections.plant[0])
+    away = grid.frame.lonlat(grid.xy_m.min(axis=0, keepdims=True) - far_m)[0]
+    outside(path, moved_to(away))
+    with pytest.raises(FileProblem, match=r"row 1 .*\(clean at row .* from the nearest plant"):
+        Season(path).correct("Ann")
+    outside(path, moved_to(grid.lonlat()[301]), "UPDATE inspections SET plant = 9 WHERE fid = 1")
+    with pytest.raises(FileProblem, match=r"row 1 .*\(clean at row"):
+        Season(path).correct("Ann")
+    # a number alone is where it is, as ever
+    outside(path, moved_to(grid.lonlat()[stood]))
+    assert Season(path).correct("Ann") == 1
+    assert Season(path).history.states(0)[9] == CLEAN
+
+
+@pytest.mark.parametrize("result", ["clean", "skipped"])
+def test_the_count_of_a_find_that_is_none_any_more_goes_along_and_the_log_says_it(path, result):
+    outside(path, "UPDATE inspections SET result = 'found', count = 2 WHERE fid = 1")
+    Season(path).correct("Ann")
+    outside(path, f"UPDATE inspections SET result = '{result}' WHERE fid = 1")  # noqa: S608 - above
+    season = Season(path)
+    assert season.correct("Ann") == 1
+    assert f"is now result {result}, count none" in season.log()[-1].sentence()
+    assert season.verify() == ()
+    # a count that was given with it contradicts it
+    outside(path, "UPDATE inspections SET count = 3 WHERE fid = 1")
+    with pytest.raises(FileProblem, match="Only a find has a count"):
+        Season(path).correct("Ann")
 
 
 def test_what_an_inspection_finds_is_corrected_and_refused_as_the_rest_of_it(path):

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from datetime import timedelta
+from datetime import time, timedelta
 from threading import Barrier
 
 import numpy as np
@@ -102,6 +102,20 @@ def test_who_joins_takes_no_aisle_that_the_first_has_unless_the_stated_gain_is_t
     _, joined = season.plan_each(BEGINS, keep=False)
     assert len(joined.route)
     assert not begun & set(aisle[joined.route.plant])
+
+
+def test_who_joins_when_all_aisles_are_given_out_has_some_and_keeps_them(tmp_path):
+    """Hours are long enough for two to inspect all: a third finds nothing more, but it is there."""
+    three = team_of(3, Robot(hours=12))
+    season = a_season(tmp_path / "season.gpkg", team=three[:2])
+    season.plan_each(BEGINS, time(8))
+    season.change(replace(season.settings, team=three), season.settings)
+    days = season.plan_each(BEGINS, time(10))
+    stops = [len(day.route) for day in days]
+    assert sum(stops) == season.plot.n_plants
+    assert min(stops) > sum(stops) / 4
+    again = [day.route.plant.tolist() for day in season.plan_each(BEGINS, time(10))]
+    assert again == [day.route.plant.tolist() for day in days]
 
 
 def test_what_nobody_of_the_team_did_is_known_and_moves_nobody(season):

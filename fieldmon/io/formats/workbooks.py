@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import io
+import re
+import zipfile
+import zlib
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -15,6 +18,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _CELLS = 20_000_000
+# of an .ods: what holds the cells, and what else its reader wants
+_CONTENT, _BESIDE = "content.xml", ("mimetype", "META-INF/manifest.xml", "styles.xml")
+_CONTENT_BYTES = 200_000_000
+# around rows, cells and their text, but not within it
+_BLANKS = re.compile(rb"(?<=>)\s+(?=</?table:|</?office:|<text:p[\s/>])")
 
 
 class _Book(Protocol):
@@ -57,9 +65,11 @@ class _OldBook:
         import python_calamine  # noqa: PLC0415 - only where there is one
 
         # from its bytes: by its name it would be taken for what it is called
-        data = io.BytesIO(path.read_bytes())
+        data = path.read_bytes()
+        if path.suffix == ".ods":
+            data = _unspaced(data, path.name)
         self.with_cells = python_calamine.SheetTypeEnum.WorkSheet
-        self.book: Any = python_calamine.CalamineWorkbook.from_filelike(data)
+        self.book: Any = python_calamine.CalamineWorkbook.from_filelike(io.BytesIO(data))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -70,6 +80,25 @@ class _OldBook:
         limits.check("cells", one.total_height * one.total_width, _CELLS, sheet)
         for row in one.to_python(skip_empty_area=False):
             yield tuple(None if cell == "" else cell for cell in row)
+
+
+def _unspaced(data: bytes, name: str) -> bytes:
+    """Return an .ods without blanks between its cells: GDAL writes them, calamine cannot."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as book:
+            content = book.getinfo(_CONTENT)
+            limits.check("bytes of cells", content.file_size, _CONTENT_BYTES, name)
+            bare = _BLANKS.sub(b"", spaced := book.read(content))
+            if len(bare) == len(spaced):
+                return data
+            others = {one: book.read(one) for one in _BESIDE if one in book.namelist()}
+    except (zipfile.BadZipFile, KeyError, ValueError, NotImplementedError, zlib.error, OSError):
+        return data  # calamine says what is wrong with it
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w") as book:
+        for one, content_of in {**others, _CONTENT: bare}.items():
+            book.writestr(one, content_of)
+    return made.getvalue()
 
 
 def sheet_names(path: Path, name: str) -> tuple[str, ...]:

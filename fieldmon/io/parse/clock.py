@@ -82,6 +82,24 @@ def as_clocks(name: str, cells: list[str]) -> list[str]:
     return [f"{cell}:00" if _HOUR.fullmatch(cell) else cell for cell in cells]
 
 
+def without_midnights(cells: list[str]) -> list[str]:
+    """Return the cells of a column of times as days alone, where all clocks in it say midnight.
+
+    Programs store a day as its midnight, here or in UTC. Beside other times, midnight is one.
+    """
+    clocks = [clock for cell in set(cells) if (clock := clock_time(cell)) is not None]
+    if not clocks or any(clock.seconds for clock in clocks):
+        return cells
+    return [_day_alone(cell) if clock_time(cell) is not None else cell for cell in cells]
+
+
+def _day_alone(cell: str) -> str:
+    """Return what stands before the clock in a cell."""
+    if (found := _CLOCK.search(cell)) is not None:
+        return cell[: found.start()]
+    return cell.partition(".")[0]
+
+
 def local_time(day: np.datetime64, clock: ClockTime, zone: tzinfo | None) -> np.datetime64:
     """Return the local time, datetime64[s], of a time of day on a day; in `zone` if it is told."""
     here = day.astype("datetime64[s]") + np.timedelta64(clock.seconds, "s")

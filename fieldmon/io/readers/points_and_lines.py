@@ -27,6 +27,8 @@ from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import closed_lines, geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
+from fieldmon.io.parse.values import plain_numbers
+from fieldmon.io.readers.inspection_file.columns import own_column
 from fieldmon.io.readers.places import Plants
 from fieldmon.io.readers.plots import blocks_of
 from fieldmon.plot.near_doubles import near_doubles
@@ -104,6 +106,8 @@ def _named(
     for role in ("block", "row", "plant"):
         taken = frozenset(columns.values())
         named = options.column(role) or find(role, layer.columns, taken)
+        if role == "plant" and "row" in columns and options.column(role) is None:
+            named = _number_in_row(layer, columns["row"], named)
         if named is None and role == "plant":
             named = find("name", layer.columns, taken)
         if role == "plant" and options.column(role) is None and _is_constant(layer, named):
@@ -118,6 +122,19 @@ def _named(
         for role, named in columns.items()
     ]
     return names, columns, said
+
+
+def _number_in_row(layer: Layer, row: str, plant: str | None) -> str | None:
+    """Return the column of numbers in the row, where that of the plants has numbers only too.
+
+    Those then count over the whole plot, as in files given out.
+    """
+    number = own_column("number", layer, {row})
+    if number is None or (plant is not None and plain_numbers(layer.column(plant)) is None):
+        return plant
+    together = zip(*(map(text, layer.column(name)) for name in (row, number)), strict=True)
+    tells = 2 * len({*together}) >= len(layer)  # both faces of a plant may be in the file
+    return number if tells else plant
 
 
 def _in_another_part(

@@ -22,7 +22,13 @@ from fieldmon.io.import_report import (
     seen,
 )
 from fieldmon.io.options import ROLES
-from fieldmon.io.parse.clock import as_clocks, clock_time, local_time, zone_of
+from fieldmon.io.parse.clock import (
+    as_clocks,
+    clock_time,
+    local_time,
+    without_midnights,
+    zone_of,
+)
 from fieldmon.io.parse.columns import find, is_confidence, is_id, is_position, recognised
 from fieldmon.io.parse.lengths import accuracies
 from fieldmon.io.parse.positions import located
@@ -236,7 +242,7 @@ def _days(table: _Table, lonlat: NDArray[np.float64]) -> _Days:
         where, quoted = name, repr(name)
     at_s, unread = _times(table, read.day, name)
     if name is not None:
-        day, zoned = _as_local(read.day, table.cells(name), lonlat)
+        day, zoned = _as_local(read.day, without_midnights(table.cells(name)), lonlat)
         read = read._replace(day=day)
     of_dates = seen(worded("Dates were read from {where}.", where=quoted))
     about = (*_about_dates(read, where), *broken_times(unread))
@@ -255,7 +261,7 @@ def _times(
     for column in (name, other):
         if column is None:
             continue
-        cells = as_clocks(column, table.cells(column))
+        cells = without_midnights(as_clocks(column, table.cells(column)))
         clocks = {cell: clock_time(cell) for cell in set(cells)}
         for k in np.flatnonzero(np.isnan(at_s) & ~np.isnat(day)).tolist():
             if (clock := clocks[cells[k]]) is not None:

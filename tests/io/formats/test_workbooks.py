@@ -1,5 +1,8 @@
 """Sheets of new and old workbooks, row by row, whatever they say of their size."""
 
+import io
+import zipfile
+
 import openpyxl
 import pytest
 
@@ -42,6 +45,18 @@ def test_all_workbooks_hold_the_same_cells(path):
         [],
         ["south", None, "x"],
     ]
+
+
+def test_a_spreadsheet_with_lines_between_its_cells_is_read_as_gdal_writes_it(tmp_path):
+    """And its texts stay as they are: calamine stops at what stands between cells."""
+    packed = io.BytesIO(ods([["plot", "note"], ["north", "a  <text:s/> b"]]))
+    with zipfile.ZipFile(packed) as book:
+        parts = {one: book.read(one) for one in book.namelist()}
+    with zipfile.ZipFile(path := tmp_path / "book.ods", "w") as book:
+        for one, content in parts.items():
+            book.writestr(one, content.replace(b"><", b">\n<"))
+    assert sheet_names(path, "b") == ("Sheet1",)
+    assert sheet_rows(path, "b", "Sheet1") == [["plot", "note"], ["north", "a    b"]]
 
 
 def test_a_sheet_that_there_is_not_is_a_question(path):

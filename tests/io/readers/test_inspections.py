@@ -195,6 +195,21 @@ def test_findings_come_in_from_every_format(tmp_path, ending):
     assert_table(read_inspections(path, GRID).value)
 
 
+@pytest.mark.parametrize("ending", ["xlsx", "gpkg", "geojson", "parquet"])
+def test_a_day_is_no_time_in_formats_that_store_it_with_one(tmp_path, ending):
+    frame = layer()[["plant", "result", "geometry"]].assign(date=pd.Timestamp("2026-11-18"))
+    path = tmp_path / f"found.{ending}"
+    if ending == "xlsx":
+        pd.DataFrame(frame.drop(columns="geometry")).to_excel(path, index=False)
+    elif ending == "parquet":
+        frame.to_parquet(path)
+    else:
+        frame.to_file(path)
+    read = read_inspections(path, GRID, InspectionOptions(zone="America/Los_Angeles")).value
+    assert np.isnan(read.second).all()
+    assert set(read.date.astype(str).tolist()) == {"2026-11-18"}
+
+
 def test_an_edited_layer_is_found_among_the_others_of_a_project(tmp_path):
     path = tmp_path / "season.gpkg"
     frame = layer()

@@ -31,6 +31,22 @@ def test_plants_keep_their_places_and_what_their_file_calls_them():
     assert "'vine' names the plants" in sentences(imported)
 
 
+def test_the_number_in_the_row_names_plants_before_one_that_counts_over_the_whole_plot():
+    """As in the layer of plants that fieldmon itself writes."""
+    shapes = [Point(5.0 + k * 1e-5, 45.0) for k in range(3)]
+    own = {"line": [1, 1, 2], "number": [5, 6, 1]}
+    layer = layer_of(shapes, plant=[0, 1, 2], **own)
+    imported = plants_of(layer, ANY)
+    assert imported.value.plant.tolist() == ["5", "6", "1"]
+    assert "'number' names the plants" in sentences(imported)
+    assert plants_of(layer, ANY.naming(plant="plant")).value.plant.tolist() == ["0", "1", "2"]
+    # names stay names, and what tells no plant from another names none
+    named = plants_of(layer_of(shapes, plant=["A1", "A2", "B1"], **own), ANY)
+    assert named.value.plant.tolist() == ["A1", "A2", "B1"]
+    alike = plants_of(layer_of(shapes, plant=[0, 1, 2], line=[1, 1, 1], number=[8, 8, 8]), ANY)
+    assert alike.value.plant.tolist() == ["0", "1", "2"]
+
+
 def test_what_is_not_called_anything_has_no_label():
     plants = plants_of(table(lat=[45.0, 45.1], lon=[5.0, 5.1]), ANY).value
     assert plants.row.tolist() == plants.plant.tolist() == ["", ""]

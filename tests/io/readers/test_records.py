@@ -328,6 +328,7 @@ def test_dates_in_both_orders_are_doubted_with_how_many_could_be_either():
         (-119.8, "2026-11-19T01:30:00Z", "2026-11-18"),
         (-119.8, "2026-11-18T17:30:00", "2026-11-18"),
         (-119.8, "2026-11-18", "2026-11-18"),
+        (-119.8, "2026-11-18T00:00:00Z", "2026-11-18"),
     ],
 )
 def test_a_record_is_of_the_day_that_its_place_had_whatever_zone_its_time_names(lon, time, day):

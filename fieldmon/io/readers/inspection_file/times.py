@@ -8,7 +8,14 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
-from fieldmon.io.parse.clock import as_clocks, clock_time, is_clock_alone, local_time, zone_of
+from fieldmon.io.parse.clock import (
+    as_clocks,
+    clock_time,
+    is_clock_alone,
+    local_time,
+    without_midnights,
+    zone_of,
+)
 from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.values import dates, is_missing, is_written_as_day, numbers
 from fieldmon.io.readers.date_doubts import broken_times, in_future, mixed_dates
@@ -36,7 +43,8 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     A record that says no day is of the day of its planned arrival, which stands in the route files
     given out, or, with no time either, of the day on which that route begins; else of the day told
     by hand, or of the day of the work where no record says one; else its day is left open. One that
-    says a day that is none (30 February) is left open too: nothing is put in its place.
+    says a day that is none (30 February) is left open too: nothing is put in its place. Where all
+    times are midnight, none is stated.
     """
     days, clocks = _cells(layer, columns, options)
     own = dates(_object(clocks), options.date_order).day
@@ -70,6 +78,8 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
             when[i] = local_time(day[i], clock, zone)
             n_utc += clock.offset is not None and zone is None
     day = np.where(np.isnat(when), day, when.astype("datetime64[D]")).astype("datetime64[D]")
+    if (when == day)[~np.isnat(when)].all():
+        when[:] = "NaT"  # midnights of here, written in UTC
     about = _about_times(broken, read.is_ambiguous, n_utc)
     idle = _of_told_day(options.day, day, needed=unsaid & np.isnat(planned))
     return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *idle, *about])
@@ -140,8 +150,9 @@ def _cells(
     time = own_column("time", layer, taken)
     away = frozenset(name for name in (*taken, time) if name)
     date = options.column("date") or find("date", layer.columns, away)
-    clocks = texts_in(layer, time).tolist()
-    return texts_in(layer, date).tolist(), clocks if time is None else as_clocks(time, clocks)
+    days, clocks = texts_in(layer, date).tolist(), texts_in(layer, time).tolist()
+    clocks = clocks if time is None else as_clocks(time, clocks)
+    return without_midnights(days), without_midnights(clocks)
 
 
 def _no_day(cell: str) -> bool:

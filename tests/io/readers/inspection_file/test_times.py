@@ -43,6 +43,32 @@ def test_times_in_utc_become_local_where_the_zone_is_told_and_else_the_guess_is(
     assert moved.messages == []
 
 
+@pytest.mark.parametrize("midnight", ["2026-11-18 00:00:00", "2026-11-18T00:00:00Z", "45979.0"])
+@pytest.mark.parametrize("zone", [None, "America/Los_Angeles"])
+def test_a_day_that_a_program_stored_as_its_midnight_has_no_time(midnight, zone):
+    day = midnight[:10] if "-" in midnight else "2025-11-18"
+    for column in ("date", "time"):
+        times = read(InspectionOptions(zone=zone), **{column: [midnight, midnight]})
+        assert np.isnat(times.when).all()
+        assert times.day.astype(str).tolist() == [day, day]
+    # an empty time beside such a day, and a time beside it
+    times = read(date=[midnight, midnight], time=["", "08:30"])
+    assert np.isnat(times.when).tolist() == [True, False]
+    assert str(times.when[1]) == f"{day}T08:30:00"
+
+
+def test_midnights_of_here_written_in_utc_are_days_too():
+    jerusalem = InspectionOptions(zone="Asia/Jerusalem")
+    times = read(jerusalem, date=["2026-11-17T22:00:00Z", "2026-06-17T21:00:00Z"])
+    assert np.isnat(times.when).all()
+    assert times.day.astype(str).tolist() == ["2026-11-18", "2026-06-18"]
+
+
+def test_midnight_among_other_times_is_a_time():
+    times = read(time=["2026-11-18 00:00", "2026-11-18 00:10"])
+    assert times.when.astype(str).tolist() == ["2026-11-18T00:00:00", "2026-11-18T00:10:00"]
+
+
 def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
     told = InspectionOptions(day=np.datetime64("2026-11-20"))
     times = read(told, arrive=["2026-11-18T08:30:00", None])

@@ -136,7 +136,7 @@ def test_maps_are_called_by_their_folder_and_all_of_their_name(tmp_path):
 def test_two_maps_of_one_name_are_refused(tmp_path):
     write(tmp_path / "north A.map.csv", *(line.replace(",A,", ",B,") for line in OWN[:2]))
     write(tmp_path / "north.map.csv", *(line.replace(",A,", ",A B,") for line in OWN[:2]))
-    with pytest.raises(FileProblem, match="different names, .* 2 are called 'north A B 2025'"):
+    with pytest.raises(FileProblem, match=r"different names, .* 2 are called 'north A B 2025'"):
         read_plant_maps(tmp_path)
 
 

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import counted
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
@@ -17,7 +15,6 @@ from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers.adaptive import Adaptive
-from fieldmon.samplers.answers import must_name_plants
 from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.samplers.dynamic import Dynamic
 from fieldmon.samplers.sweeps import Naive
@@ -111,9 +108,6 @@ def found_at(
         )
         work = work_day(scene, sampler, plot.infested)
         if not len(work):
-            if not len(order):
-                day_h = scene.seconds_left / _HOUR_S
-                must_name_plants(sampler, plot.aisles, replace(robot, hours=day_h))
             break
         before_s = done_s[-1] if len(done_s) else 0.0
         done_s = np.concatenate([done_s, before_s + work.arrive_s + work.stop_s])
@@ -185,7 +179,9 @@ def sentences(rows: Sequence[MapRow]) -> list[str]:
 
     The rows are those of a `table`: on each map every sampler once, in one order.
     """
-    of = {who: [row for row in rows if row.who == who] for who in dict.fromkeys(r.who for r in rows)}
+    of: dict[str, list[MapRow]] = {}
+    for row in rows:
+        of.setdefault(row.who, []).append(row)
     others = {"naive": "a sweep (naive)", "dynamic": "dynamic", "tuned": "tuned"}
     others |= {who: who for who in of if who not in WHO}
     said = []
@@ -199,7 +195,7 @@ def _ratio_sentence(adaptive: list[MapRow], other: list[MapRow], called: str) ->
     """Return what Adaptive finds per hour, over what one other does, each on the same maps."""
     pairs = [(ours, theirs.per_hour[-1]) for ours, theirs in zip(adaptive, other, strict=True)]
     ratios = [(ours.per_hour[-1] / theirs, ours.name) for ours, theirs in pairs if theirs > 0.0]
-    after, maps = f"After {SHARES[-1]:.0%} of the plants", counted(len(pairs), "map")
+    after, maps = f"After {SHARES[-1]:.0%} of the plants", _maps(len(pairs))
     none = len(pairs) - len(ratios)
     reasons = [
         *(["finds nothing there"] if any(theirs == 0.0 for _, theirs in pairs) else []),
@@ -222,12 +218,15 @@ def _ratio_sentence(adaptive: list[MapRow], other: list[MapRow], called: str) ->
 def _stops_early(rows: list[MapRow]) -> list[str]:
     """Return on how many maps a sampler did not come so far, if there are any."""
     early = sum(np.isnan(row.per_inspection[-1]) for row in rows)
-    if not early:
-        return []
-    return [
+    said = (
         f"{rows[0].who} stopped before {SHARES[-1]:.0%} of the plants on {early} of "
-        f"{counted(len(rows), 'map')}: its figures are empty where it did not come so far."
-    ]
+        f"{_maps(len(rows))}: its figures are empty where it did not come so far."
+    )
+    return [said] if early else []
+
+
+def _maps(n: int) -> str:
+    return f"{n} map{'s' * (n != 1)}"
 
 
 def table_csv(rows: list[MapRow]) -> str:

@@ -108,7 +108,6 @@ def _plan_one(options: PlanOptions) -> None:
     from fieldmon.planning.bound_wording import share_above
     from fieldmon.planning.day_bound import with_bound
     from fieldmon.planning.plan import PlanSettings, first_day
-    from fieldmon.samplers.answers import must_name_plants
 
     refuse_unrecorded(None, options.output or [ROUTE])
     robot, starts = options.pest_options.seen(options.worker.robot()), options.starts()
@@ -123,7 +122,6 @@ def _plan_one(options: PlanOptions) -> None:
     tell_unusable(known.records, on, prior)
     today = first_day(known.plot, known.records, on, settings, known.risk)
     if not len(today.route):
-        must_name_plants(sampler, known.plot.aisles, robot)
         raise SettingError(
             f"The working day must be long enough to reach a plant and come back, but "
             f"{robot.hours:g} h are not. Give more --hours."

@@ -174,7 +174,7 @@ def _season(
         sprayed += [] if each.sprayed is None else [each.sprayed.zones]
         typer.echo(_line(each, apart=apart))
         rows.append(
-            f"{label_of(name)},{each.number + 1},{each.detection_pct:.4f},{each.visited_pct:.4f},"
+            f"{label_of(name)},{each.number + 1},{_detection(each, '.4f')},{each.visited_pct:.4f},"
             f"{each.ever_visited_pct:.4f},{each.found},{each.left}"
         )
         if apart:
@@ -192,17 +192,20 @@ def _season(
     return rows
 
 
+def _detection(day: SimulatedDay, form: str) -> str:
+    """Return how much of all infestations so far was found; "": there were none."""
+    return format(day.detection_pct, form) if day.ever_infested else ""
+
+
 def _line(day: SimulatedDay, *, apart: bool) -> str:
     """Return a day as a line of the table on the screen; with its visit where they are apart."""
     visit, visited, found = "", f"{day.visited_pct:.1f}", str(day.found)
+    detection = _detection(day, ".1f") or "-"
     if apart:
         visit = f"  {'-' if day.visit is None else day.visit + 1:>5}"
     if day.visit is None:
         visited = found = "-"
-    return (
-        f"{day.number + 1:4d}{visit}  {day.detection_pct:11.1f}  {visited:>9}  {found:>5}  "
-        f"{day.left:13d}"
-    )
+    return f"{day.number + 1:4d}{visit}  {detection:>11}  {visited:>9}  {found:>5}  {day.left:13d}"
 
 
 def _treating(options: SimulateOptions) -> TreatmentRule | None:

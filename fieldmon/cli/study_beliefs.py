@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,6 +13,9 @@ from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.compute.ranges import SEASONS, AllowedRange
 from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from fieldmon.studies.samplers.calibration import Calibration
 
 # how long the seasons are
 _DAYS = 12
@@ -81,9 +84,17 @@ def beliefs(
         typer.echo(
             f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "
             f"(as suspicious or not {c.suspicious_log_score:.4f}), skill {c.skill:.2f}, intervals "
-            f"of 90 and 50 % hold on {c.covered:.0%} and {c.half_covered:.0%} of mornings, "
+            f"of 90 and 50 % hold on {_held(c)}, "
             f"{1000 * c.seconds_a_day:.0f} ms a day"
         )
     days = "on each" if visit_every == 1 else f"every {visit_every} days"
     about = f"{chosen.name}; {seeds} seasons of {_DAYS} days, inspected {days} by {sampler}."
     write_all(output, {"beliefs.html": report_html(made, about, seeds)})
+
+
+def _held(of: Calibration) -> str:
+    """Return how often intervals held, and of how many mornings that is."""
+    if not of.mornings:
+        return "no morning: none but the first had infested plants"
+    shares = f"{100 * of.covered:.0f} and {100 * of.half_covered:.0f} %"
+    return f"{shares} of {of.mornings} morning{'s' * (of.mornings != 1)}"

@@ -124,7 +124,9 @@ def _on_maps(folder: Path, options: PriorOptions) -> None:
     with counting("Inspecting") as count:
         table = run_maps(maps, rules, options.seeds, options.seed, count)
     for row in table:
-        if row.visited_pct == 25.0 and row.seeds:
+        if row.visited_pct == 0.0 and row.sampler == table[0].sampler and not row.infested:
+            typer.echo(f"{f'{row.map} {row.date}'.rstrip()}: no plant is infested")
+        if row.visited_pct == 25.0 and row.seeds and row.infested:
             typer.echo(
                 f"{row.map} {row.date}: {row.sampler} finds {row.mean:.0f} % of {row.infested} "
                 "infested plants (less those found before) in the first 25 % visited"

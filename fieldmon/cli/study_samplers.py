@@ -243,4 +243,5 @@ def _on_maps(folder: Path, output: Path, samplers: Sequence[str]) -> None:
 
 
 def _columns(values: Iterable[float], form: str) -> str:
-    return " ".join(form.format(value) for value in values)
+    """Return numbers side by side; those that there are none of are a hyphen."""
+    return " ".join(form.format(value).replace("nan", "  -") for value in values)

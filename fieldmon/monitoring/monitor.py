@@ -45,7 +45,6 @@ from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot, must_be_robot
 from fieldmon.samplers import sampler_or_name
-from fieldmon.samplers.answers import must_name_plants
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 
 if TYPE_CHECKING:
@@ -530,7 +529,6 @@ class MonitorDay(AskedDay):
         if self._asked is None:
             if self._stops is None:
                 self._stops = self._sampler.walk(self._scene, self._would_find)
-                self._must_begin(self._stops)
             if self._next < len(self._stops.plant):
                 self._asked = self._stop(self._stops, self._next)
         return self._asked
@@ -570,13 +568,6 @@ class MonitorDay(AskedDay):
             self._would_find[stop.plant] = self._level(self._next) + 1
             self._stops = None
         self._next += 1
-
-    def _must_begin(self, stops: Stops) -> None:
-        """Raise `SettingError` where a sampler names no plant of a plot that nobody has seen."""
-        scene = self._scene
-        is_first = scene.day == 0 and scene.seconds_left == scene.robot.day_s
-        if is_first and not len(stops.plant) and (scene.last_inspected == NEVER).all():
-            must_name_plants(self._sampler, scene.aisles, scene.robot)
 
     def _begin(self, scene: Scene, since_s: float) -> None:
         self._scene, self._since_s, self._next = scene, since_s, 0

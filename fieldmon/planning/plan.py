@@ -24,7 +24,7 @@ from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot, must_be_robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.adaptive import Adaptive
-from fieldmon.samplers.answers import must_detect, must_name_plants
+from fieldmon.samplers.answers import must_detect
 from fieldmon.samplers.base import NEVER, Sampler, Scene
 
 _STARTS = time(6)
@@ -208,7 +208,6 @@ def plan_day(
     warn_of_left_out(given, day)
     today = first_day(plot, given, day, plans, risk)
     if not len(today.route):
-        must_name_plants(decides, plot.aisles, plans.robot)
         raise SettingError(
             worded(
                 "The working day must be long enough to reach a plant and "

@@ -16,14 +16,14 @@ from fieldmon.compute.jit import loop
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import GATE, travel_s
-from fieldmon.samplers.base import InspectionTimes, Sampler, Stops
+from fieldmon.samplers.base import NEVER, InspectionTimes, Sampler, Stops
 from fieldmon.samplers.own import asked
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.robot import Robot
-    from fieldmon.plot.travel import Aisles, Clock
+    from fieldmon.plot.travel import Clock
     from fieldmon.plot.travel_table import TravelTable
     from fieldmon.samplers.base import Scene, WouldFind
 
@@ -69,52 +69,85 @@ class Checked(Sampler):
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return its stops in a `scene`, by what it `would_find`, see `Sampler.walk`.
 
+        It is asked first as if nothing were found: where nothing is on the way, that is its day.
+        Where there is, it is asked with everything, and `_must_not_peek` asks again.
+
         Raises
         ------
         SettingError
-            If no robot can do that, or it knows what it has not seen.
+            If no robot can do that, it knows what it has not seen, or it names no plant of a plot
+            that nobody has seen.
         """
-        stops = self._stops(scene, would_find)
-        _must_be_plants(self._who, stops, scene)
-        _must_be_driven(self._who, stops, scene, self.inspection_times(scene.robot))
-        found = np.flatnonzero(would_find[stops.plant])
-        if found.size:
-            self._must_not_peek(scene, would_find, stops.plant[: int(found[0]) + 1])
+        stops = blind = self._stops(scene, np.zeros_like(would_find))
+        on_the_way = would_find[blind.plant].any() if blind.plant.size else would_find.any()
+        if on_the_way:
+            stops = self._stops(scene, would_find)
+        times = self.inspection_times(scene.robot)
+        _must_be_driven(self._who, stops, scene, times)
+        if on_the_way:
+            self._must_not_peek(scene, would_find, (stops.plant, blind.plant))
+        if not stops.plant.size:
+            _must_name_plants(self._who, scene, float(times.stop_s.min()))
         return stops
 
     def _stops(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return what it answers; it cannot write to what others read."""
         answer = asked(self._who, self.own.walk, scene.seen(), as_seen(would_find))
-        return _as_stops(self._who, answer)
+        stops = _as_stops(self._who, answer)
+        _must_be_plants(self._who, stops, scene)
+        return stops
 
-    def _must_not_peek(self, scene: Scene, would_find: WouldFind, first: NDArray[np.int32]) -> None:
-        """Raise unless plants ``(k,)`` up to the first find are those of a day without finds."""
-        nothing = self._stops(scene, np.zeros_like(would_find))
-        if not np.array_equal(nothing.plant[: len(first)], first):
+    def _must_not_peek(
+        self,
+        scene: Scene,
+        would_find: WouldFind,
+        answers: tuple[NDArray[np.int32], NDArray[np.int32]],
+    ) -> None:
+        """Raise unless its plants ``(k,)`` follow from what those before them showed.
+
+        Of its `answers`, with everything and as if nothing were found, it is asked for two more:
+        with the finds before one that the scene's key draws, and last with those of its own plants
+        alone. So what it keeps in mind is what a robot would know.
+        """
+        plants, blind = answers
+        finds = np.flatnonzero(would_find[plants])
+
+        def asked_with(known: NDArray[np.intp]) -> NDArray[np.int32]:
+            told = np.zeros_like(would_find)
+            told[plants[known]] = would_find[plants[known]]
+            return self._stops(scene, told).plant
+
+        ends = [*(finds + 1).tolist(), len(plants)]
+        agree: list[tuple[NDArray[np.int32], int | None]] = [(blind, ends[0])]
+        if finds.size > 1:
+            k = 1 + int(scene.key) % (finds.size - 1)
+            agree.append((asked_with(finds[:k]), ends[k]))
+        agree.append((asked_with(finds), None))
+        if not all(np.array_equal(other[:end], plants[:end]) for other, end in agree):
             raise SettingError(
-                f"{self._who} must choose plants up to the first find as if nothing were found, "
-                "and the same ones each time, but it does not. Read would_find only of plants "
-                "that were reached, and draw by scene.key."
+                f"{self._who} must choose each plant by what was found at those before it, and the "
+                "same ones each time, but it does not. Read would_find only of plants that were "
+                "reached, and draw by scene.key."
             )
 
 
-def must_name_plants(sampler: Sampler, aisles: Aisles, robot: Robot) -> None:
-    """Raise `SettingError` for one of somebody's own that named no plant, though hours reach one.
+def _must_name_plants(who: str, scene: Scene, stop_s: float) -> None:
+    """Raise for a sampler that names none of a plot nobody has seen, though hours reach one.
 
     Those of this package name what their hours reach.
     """
-    if not isinstance(sampler, Checked):
+    robot, ways = scene.robot, scene.aisles.for_robot(scene.robot)
+    plants = np.flatnonzero(~ways.too_narrow)
+    if scene.at != GATE or (scene.last_inspected[plants] != NEVER).any():
         return
-    ways = aisles.for_robot(robot)
-    way_s = ways.distance_m(GATE, np.flatnonzero(~ways.too_narrow)) / robot.speed_m_s
-    stop_s = float(sampler.inspection_times(robot).stop_s.min())
-    if way_s.min() * (2 if robot.returns else 1) + stop_s <= robot.day_s:
+    way_s = ways.distance_m(GATE, plants) / robot.speed_m_s
+    if way_s.min() * (2 if robot.returns else 1) + stop_s <= scene.seconds_left:
         raise SettingError(
             worded(
                 "{who} must name plants to inspect, but it names none, though {hours:g} h reach "
                 "some. Let its walk return Stops with plants.",
-                who=repr(sampler).strip("<>"),
-                hours=robot.hours,
+                who=who,
+                hours=float(f"{scene.seconds_left / 3600:.3g}"),
             )
         )
 

@@ -276,6 +276,7 @@ class Sampler(Protocol):
         ``would_find`` (n,) says of each plant from which of the sampler's inspection times on an
         inspection today would find it infested, counted from 1; 0: none would. Where there is one
         time only, that is whether it would.
-        A sampler may read an entry only when it has driven to that plant and inspected it: plants
-        before the first find are those of a day on which nothing is found.
+        A sampler may read an entry only when it has driven to that plant and inspected it: each
+        plant follows from what those before it showed. One of somebody's own is asked several times
+        a day, to see that it does.
         """

@@ -16,7 +16,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
-from fieldmon.samplers.answers import Checked, must_name_plants
+from fieldmon.samplers.answers import Checked
 from fieldmon.samplers.own import label_of
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run
@@ -300,7 +300,7 @@ def compare(
     ------
     SettingError
         If there is no such sampler, two share a name, there is none, `chance` does not fit the
-        plants, or one of your own names no plant on any day.
+        plants, or one of your own names no plant on the first day.
 
     Examples
     --------
@@ -327,9 +327,6 @@ def compare(
     with nullcontext(executor.here()) if own else executor.threads() as workers:
         run(experiment, workers, made, progress, stop or (lambda: False))
     by_seed = met_by_all(experiment, made)
-    for sampler, seasons in zip(decide.values(), zip(*by_seed.values(), strict=True), strict=False):
-        if not any(season.ever_visited_pct.any() for season in seasons):
-            must_name_plants(sampler, plot.aisles, chosen.robot)
     shape = len(decide), len(by_seed), chosen.season.n_days
     columns: dict[str, Any] = {name: _column(name, by_seed.values(), shape) for name in _COLUMNS}
     seeds = np.array([*by_seed], np.int64)

@@ -10,7 +10,6 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
-from fieldmon.samplers.answers import must_name_plants
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import SimulationSettings, check_start, simulated_days
 from fieldmon.simulation.start import Start, season_start
@@ -100,7 +99,7 @@ def simulate(
     Raises
     ------
     SettingError
-        If there is no such sampler, or one of your own names no plant on any day.
+        If there is no such sampler, or one of your own names no plant on the first day.
     PlotError
         If the start is of another plot.
 
@@ -117,11 +116,7 @@ def simulate(
     >>> season.visits, (season.worked_h > 0).nonzero()[0].tolist()
     (2, [0, 7])
     """
-    decides, worker = sampler_or_name(sampler), robot or Robot()
-    season = season_metrics(simulate_days(plot, start, decides, worker, settings, seed))
-    if not season.ever_visited_pct.any():
-        must_name_plants(decides, plot.aisles, worker)
-    return season
+    return season_metrics(simulate_days(plot, start, sampler, robot, settings, seed))
 
 
 @checked

@@ -163,7 +163,7 @@ def _why_another(there: dict[str, Any], said: dict[str, Any]) -> str:
         if changed := [name for name in own if asked.get(name, own[name]) != own[name]]:
             why.append(f"its seasons of {' and '.join(changed)} are of other code than the file's")
     if others:
-        why.append(f"its {' and '.join(called.get(name, name) for name in others)} are others")
+        why.append(f"it differs in {' and '.join(called.get(name, name) for name in others)}")
     return ", and ".join(why)
 
 

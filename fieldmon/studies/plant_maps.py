@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, replace
 from datetime import date
 from typing import TYPE_CHECKING
 
@@ -14,13 +15,13 @@ from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.tables import read_text_table
 from fieldmon.io.options import ReadOptions
 from fieldmon.io.parse.result_words import meaning
-from fieldmon.io.parse.values import number
+from fieldmon.io.parse.values import decimal_mark, number, numbers
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import Aisles
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Iterable
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -39,7 +40,7 @@ class PlantMap:
     Parameters
     ----------
     name
-        What it is called.
+        What it is called: its file in the folder of maps without the ending, and its part.
     dates
         ``(d,)`` as the file writes them, the earliest first.
     infested
@@ -65,6 +66,10 @@ class PlantMap:
                 f"The map {self.name} must have one entry a plant and date {shape}, "
                 f"but it has {self.infested.shape}."
             )
+
+    def name_on(self, date: str) -> str:
+        """Return what it is called on one of its dates."""
+        return f"{self.name} {date}".rstrip()
 
     def aisles(self) -> Aisles:
         """Return its plants and the ways between them."""
@@ -111,7 +116,9 @@ _OWN_ENDING, _OWN_COLUMNS = ".map.csv", ("row", "plant", "infested", "row_m", "p
 
 
 def read_plant_maps(folder: Path, public: Collection[str] = tuple(PUBLIC_MAPS)) -> list[PlantMap]:
-    """Return the maps of a folder and its folders, by file name; raise `FileProblem` if none.
+    """Return the maps of a folder and its folders, by file name.
+
+    Raise `FileProblem` if there is none, or two have one name.
 
     Read are the `public` maps, and maps of one's own: tables ``NAME.map.csv`` with the columns row,
     plant, infested, row_m and plant_m (the distances in metres), and date and plot where there are
@@ -128,14 +135,28 @@ def read_plant_maps(folder: Path, public: Collection[str] = tuple(PUBLIC_MAPS)) 
             f"your own: NAME{_OWN_ENDING} with the columns {', '.join(_OWN_COLUMNS)} (and date and "
             "plot if there are several). But it holds none."
         )
-    return [each for path in files for each in read_plant_map(path, _columns_of(path))]
+    maps = []
+    for path in files:
+        maps += read_plant_map(path, _columns_of(path), str(path.relative_to(folder).as_posix()))
+    _must_differ(each.name_on(date) for each in maps for date in each.dates)
+    return maps
+
+
+def _must_differ(names: Iterable[str]) -> None:
+    """Raise `FileProblem` unless each map and date has a name of its own."""
+    name, times = Counter(names).most_common(1)[0]
+    if times > 1:
+        raise FileProblem(
+            f"The maps of a folder must have different names, of file, plot and date, but {times} "
+            f"are called {name!r}. Give one of the files another name."
+        )
 
 
 def _columns_of(path: Path) -> MapColumns:
     """Return the columns of a public map, or of one's own."""
     if path.name in PUBLIC_MAPS:
         return PUBLIC_MAPS[path.name]
-    layer = _table(path)
+    layer = _table(path, (*_OWN_COLUMNS, "date", "plot"))
     missing = [name for name in _OWN_COLUMNS if name not in layer.columns]
     if missing:
         raise FileProblem(
@@ -149,27 +170,35 @@ def _columns_of(path: Path) -> MapColumns:
 
 def _distance(layer: Layer, column: str, file: str) -> float:
     """Return a distance, which is the same in each line."""
-    values = {number(text(value)) for value in layer.columns[column]}
-    (value,) = values if len(values) == 1 else (float("nan"),)
+    read = numbers(layer.columns[column])
+    value = float(read[0]) if len(read) and (read == read[0]).all() else float("nan")
     if not 0.0 < value < float("inf"):
+        cells = sorted({text(cell) for cell in layer.columns[column]})[:3]
         raise FileProblem(
             f"The column {column} of {file} must hold one distance in metres, the same in each "
-            f"line, but it holds {', '.join(sorted(map(str, values))[:3])}."
+            f"line, but it holds {', '.join(cell or 'an empty cell' for cell in cells)}."
         )
     return value
 
 
-def _table(path: Path) -> Layer:
+def _table(path: Path, wanted: Iterable[str]) -> Layer:
+    """Return the table of a file; its columns are called as `wanted`, in whatever case they are."""
     try:
-        return read_text_table(path, path.name, ReadOptions())
+        layer = read_text_table(path, path.name, ReadOptions())
+        lower = {name.casefold(): name for name in wanted if name not in layer.columns}
+        names = {name: lower.pop(name.casefold(), name) for name in layer.columns}
+        return replace(layer, columns={names[name]: cells for name, cells in layer.columns.items()})
     except OSError as error:
         raise FileProblem(f"{path} must be readable, but it is not ({error.strerror}).") from error
 
 
-def read_plant_map(path: Path, columns: MapColumns) -> list[PlantMap]:
-    """Return the plots of one file, each with all its dates."""
-    layer = _table(path)
+def read_plant_map(path: Path, columns: MapColumns, file: str = "") -> list[PlantMap]:
+    """Return the plots of one file, each with all its dates.
+
+    `file` is where it lies in the folder of maps, by which they are called; "": its name.
+    """
     needed = [name for name in vars(columns).values() if isinstance(name, str) and name]
+    layer = _table(path, needed)
     missing = [name for name in needed if name not in layer.columns]
     if missing:
         raise FileProblem(
@@ -177,7 +206,7 @@ def read_plant_map(path: Path, columns: MapColumns) -> list[PlantMap]:
             f"but {', '.join(missing)} is missing."
         )
     parts = _texts(layer, columns.part)
-    stem = path.name.removesuffix(_OWN_ENDING).removesuffix(path.suffix)
+    stem = (file or path.name).removesuffix(_OWN_ENDING).removesuffix(path.suffix)
     named = stem if columns.part == "" else f"{stem} "
     return [
         _map(named + part, layer.take(parts == part), columns, path.name)
@@ -206,7 +235,9 @@ def _map(name: str, layer: Layer, columns: MapColumns, file: str) -> PlantMap:
             f"{which % n_plants + 1}{f' on {dates[when]}' if columns.date else ''} has "
             f"{lines[when, which]}. Write NA as the state of a plant that nobody knows of."
         )
-    infested[at] = [_is_infested(value, columns.state, file) for value in _state(layer, columns)]
+    states = _texts(layer, columns.state).tolist()
+    mark = decimal_mark(states) or "."
+    infested[at] = [_is_infested(state, mark, (columns.state, file)) for state in states]
     order = _in_order(dates, file, columns.date)
     return PlantMap(
         name=name,
@@ -233,20 +264,19 @@ def _in_order(dates: NDArray[np.str_], file: str, column: str) -> list[int]:
     return sorted(range(len(times)), key=times.__getitem__)
 
 
-def _state(layer: Layer, columns: MapColumns) -> list[str]:
-    return [str(value) for value in _texts(layer, columns.state)]
+def _is_infested(state: str, mark: str, where: tuple[str, str]) -> bool:
+    """Tell what a state says: a count or a severity with a decimal mark, or a word.
 
-
-def _is_infested(state: str, column: str, file: str) -> bool:
-    """Tell what a state says: a count or a severity, or a word."""
+    `where` it stands: column and file.
+    """
     if state.casefold() in _UNKNOWN:
         return False
     if (said := meaning(state)) is not None:
         return said == PRESENT
-    value = number(state)
+    value = number(state, mark)
     if not 0.0 <= value < float("inf"):
         raise FileProblem(
-            f"The column {column} of {file} must say of each plant whether it is infested: a "
+            f"The column {where[0]} of {where[1]} must say of each plant whether it is infested: a "
             f"number from 0, a word as yes or clean, or NA; but it holds {state!r}."
         )
     return value > 0.0

@@ -14,6 +14,14 @@ def test_a_season_is_simulated_and_its_table_written(run, tmp_path):
     assert (tmp_path / "again.csv").read_text(encoding="utf-8").splitlines() == lines
 
 
+def test_where_nothing_was_infested_no_share_was_found(run, tmp_path):
+    words = ["simulate", ZIP, "--feature", "Nursery", "--days", 1, "--sampler", "naive"]
+    code, out, err, _ = run(*words, "--infested", 1e-9, "-o", "season.csv")
+    assert code == 0, err
+    assert out.splitlines()[-2].split()[:2] == ["1", "-"]
+    assert (tmp_path / "season.csv").read_text(encoding="utf-8").splitlines()[1][:9] == "naive,1,,"
+
+
 def test_a_season_may_be_treated_by_a_rule_and_says_what_that_came_to(run):
     words = ["simulate", ZIP, "--feature", "Nursery", "--days", 3, "--sampler", "naive"]
     plain = run(*words)[1]

@@ -1,5 +1,7 @@
 """`fieldmon study beliefs`, as a person runs it."""
 
+import re
+
 import pytest
 
 
@@ -21,5 +23,6 @@ def test_with_a_pest_the_map_that_follows_it_is_held_to_what_came_true(run):
     code, out, err, made = run("study", "beliefs", *words)
     assert code == 0, err
     assert [line.split("  ")[0] for line in out.splitlines() if "Brier" in line] == ["traced pairs"]
+    assert re.search(r"intervals of 90 and 50 % hold on \d+ and \d+ % of \d+ mornings?, ", out)
     (page,) = made
     assert "A, whitefly, clusters, prior none" in page.read_text(encoding="utf-8")

@@ -39,6 +39,15 @@ def test_mapped_plants_are_inspected(run, tmp_path):
     }
 
 
+def test_of_a_map_without_infested_plants_no_share_is_said(run, tmp_path):
+    lines = ["row,plant,infested,row_m,plant_m", *(f"1,{k},no,2,1" for k in range(1, 9))]
+    (tmp_path / "clean.map.csv").write_text("\n".join(lines), encoding="utf-8")
+    code, out, err, _ = run("study", "prior", "--maps", tmp_path, "--seeds", 2)
+    assert code == 0, err
+    assert [line for line in out.splitlines() if "clean" in line] == ["clean: no plant is infested"]
+    assert {row["mean"] for row in table(tmp_path / "prior_maps.csv")} <= {"", "nan"}
+
+
 def test_an_own_plot_is_played_from_its_records(run, tmp_path):
     words = ["study", "prior", "--plot", ZIP, "--feature", "Nursery", "--seeds", 2]
     code, out, err, made = run(*words, "--observations", MITES)

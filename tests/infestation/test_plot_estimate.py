@@ -8,14 +8,17 @@ from scipy.stats import binom
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
+from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.plot_estimate import (
     PlotEstimate,
     doubted_level,
     draw_fields,
     drawn_numbers,
+    estimate_of,
     estimate_plot,
 )
+from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.plot.layout import rectangle
 from tests.infestation.enumerated import Enumerated
 
@@ -152,3 +155,16 @@ def test_plants_that_were_found_and_left_do_not_make_a_clean_rest_impossible():
         "About 3 plants are infested (between 0 and 10) beside the 27 that were found and only "
         "flagged; the chance that the plot is clean is 16 %."
     )
+
+
+def test_of_two_plants_one_of_which_was_found_and_treated_one_can_be_infested():
+    two = rectangle(1, 2)
+    morning = TracedPairs.of(two, np.full(2, 0.6))
+    assert estimate_of(two, morning).high == 2
+    evening = morning.learn(np.array([0], np.int32), np.array([True]), Learning())
+    assert estimate_of(two, evening).high == 1
+
+
+def test_plants_as_good_as_clean_count_where_they_are_many():
+    many = rectangle(100, 200)
+    assert estimate_of(many, TracedPairs.of(many, np.full(20_000, 1e-6)), sure=0.999).high > 0

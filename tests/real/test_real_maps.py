@@ -17,7 +17,7 @@ RULES = MapRules(Robot().with_times("thesis"), CALIBRATED.spread)
 
 @pytest.fixture(scope="module")
 def maps(shared):
-    return {each.name: each for each in read_plant_maps(shared)}
+    return {each.name.rpartition("/")[2]: each for each in read_plant_maps(shared)}
 
 
 def test_every_map_is_read_as_its_papers_state_it(maps):

@@ -7,7 +7,7 @@ from fieldmon.studies.map_spread import intervals_in, scores
 
 @pytest.fixture(scope="module")
 def told(shared):
-    return {one.name: one for one in map(scores, intervals_in(shared))}
+    return {one.name.rpartition("/")[2]: one for one in map(scores, intervals_in(shared))}
 
 
 def test_every_interval_with_enough_new_plants_is_scored(told):

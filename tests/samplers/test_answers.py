@@ -60,6 +60,7 @@ def test_who_names_no_plant_is_named_where_hours_reach_one(returns):
     for asked in (
         lambda robot: fm.plan_day(plot, on="2026-11-18", robot=robot, sampler=nobody),
         lambda robot: fm.simulate(plot, start, nobody, robot, fm.SimulationSettings(n_days=2)),
+        lambda robot: list(fm.simulate_days(plot, start, nobody, robot)),
     ):
         with pytest.raises(SettingError, match=r"^Told must name plants .*, though 2 h reach some"):
             asked(day)
@@ -133,10 +134,49 @@ def test_who_knows_what_it_has_not_seen_is_refused():
     with pytest.raises(SettingError, match="Read would_find only of plants that were reached"):
         work_day(scene(), peeks, would_find)
 
+    def after_its_first(scene, would_find):
+        later = np.array([4, 5, 6, 7, 8, 9])
+        first = would_find[3] > 0
+        return honest(scene, 2, 3, *later[np.argsort(~would_find[later] if first else later)])
+
+    with pytest.raises(SettingError, match="by what was found at those before it"):
+        work_day(scene(), Answers(after_its_first), would_find)
+
+    def avoids(scene, would_find):  # what it leaves out tells of plants that it has not seen
+        return honest(scene, 2, 3, *([4] if would_find[9] else [5]))
+
+    with pytest.raises(SettingError, match="by what was found at those before it"):
+        work_day(scene(), Answers(avoids), would_find)
+
     def follows(scene, would_find):
         return honest(scene, 2, 3, *((4,) if would_find[3] else (9,)))
 
     assert work_day(scene(), Answers(follows), would_find).plant.tolist() == [2, 3, 4]
+
+
+def test_what_is_kept_in_mind_is_what_its_own_plants_showed():
+    class Keeps(Told):
+        def walk(self, scene, would_find):
+            self.kept = np.array(would_find)
+            return super().walk(scene, would_find)
+
+    would_find = np.zeros(len(scene().chance), bool)
+    would_find[[3, 5, 9]] = True
+    for plants, found in (((2, 4), []), ((2, 3), [3]), ((2, 3, 4, 5), [3, 5])):
+        own = Keeps(lambda scene, _, plants=plants: honest(scene, *plants))
+        assert work_day(scene(), Checked(own), would_find).plant.tolist() == [*plants]
+        assert np.flatnonzero(own.kept).tolist() == found
+
+
+def test_who_finds_nothing_on_its_way_is_asked_once_and_told_nothing():
+    asked = []
+
+    def walk(scene, would_find):
+        asked.append(would_find.any())
+        return honest(scene, 2, 4)
+
+    work_day(scene(), Answers(walk), np.arange(len(scene().chance)) == 3)
+    assert asked == [False]
 
 
 def test_a_season_and_a_robot_get_the_same_sentence():

@@ -80,9 +80,9 @@ def test_what_another_study_has_otherwise_is_named(tmp_path):
     says = r"its first day \(--date\) is 2026-11-02, not 2026-11-03\. Choose"
     with pytest.raises(SettingError, match=says):
         StudyFolder(tmp_path, [later], SMALL)
-    with pytest.raises(SettingError, match=r"03, and its days are others\."):
+    with pytest.raises(SettingError, match=r"03, and it differs in days\."):
         StudyFolder(tmp_path, [later], replace(SMALL, n_days=9))
-    with pytest.raises(SettingError, match=r"its plots or records are others\."):
+    with pytest.raises(SettingError, match=r": it differs in plots or records\."):
         StudyFolder(tmp_path, [plot(41.0)], SMALL)
 
 
@@ -93,7 +93,7 @@ def test_a_study_of_before_that_does_not_say_its_first_day_goes_on_and_says_it(t
     before = {name: value for name, value in said.items() if name != "first_day"}
     manifest.write_text(json.dumps(before), encoding="utf-8")
     assert results.first_day(tmp_path) is None
-    with pytest.raises(SettingError, match=r"its plots, records or first day \(--date\) are"):
+    with pytest.raises(SettingError, match=r"in plots, records or first day \(--date\)\."):
         StudyFolder(tmp_path, [replace(plot(), day=DAY + 1)], SMALL)
     StudyFolder(tmp_path, [plot()], SMALL)
     assert json.loads(manifest.read_text(encoding="utf-8")) == said
@@ -110,7 +110,7 @@ def test_seasons_of_a_sampler_whose_file_has_changed_are_not_mixed_with_those_of
     says = r"another study.*: its seasons of Mine are of other code than the file's\. Choose"
     with pytest.raises(SettingError, match=says):
         StudyFolder(folder, [plot()], asked)
-    with pytest.raises(SettingError, match=r": its samplers are others\."):
+    with pytest.raises(SettingError, match=r": it differs in samplers\."):
         StudyFolder(folder, [plot()], SMALL)
     file.write_text(code)
     StudyFolder(folder, [plot()], asked)

@@ -98,6 +98,7 @@ def test_known_maps_are_found_by_name_in_folders(tmp_path):
     write(tmp_path / "deep" / name, "x,y,t,i", "1,1,1991,1", "2,1,1991,0")
     write(tmp_path / "other.csv", "a", "b")
     (made,) = read_plant_maps(tmp_path)
+    assert made.name == "deep/citrus_ctv_IVI3and4"
     assert made.infested.tolist() == [[True, False]]
 
 
@@ -124,9 +125,34 @@ def test_a_map_of_ones_own_is_read_with_its_distances(tmp_path):
     assert [each.infested.tolist() for each in made] == [[[True]], [[False]]]
 
 
+def test_maps_are_called_by_their_folder_and_all_of_their_name(tmp_path):
+    for name in ("a/field", "b/field", "block.1", "block.2"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        write(tmp_path / f"{name}.map.csv", OWN[0], OWN[1])
+    names = [each.name_on("2025") for each in read_plant_maps(tmp_path)]
+    assert names == ["a/field A 2025", "b/field A 2025", "block.1 A 2025", "block.2 A 2025"]
+
+
+def test_two_maps_of_one_name_are_refused(tmp_path):
+    write(tmp_path / "north A.map.csv", *(line.replace(",A,", ",B,") for line in OWN[:2]))
+    write(tmp_path / "north.map.csv", *(line.replace(",A,", ",A B,") for line in OWN[:2]))
+    with pytest.raises(FileProblem, match=r"different names, .* 2 are called 'north A B 2025'"):
+        read_plant_maps(tmp_path)
+
+
+def test_a_map_is_read_with_decimal_commas_and_columns_in_any_case(tmp_path):
+    lines = ["ROW;Plant;infested;row_M;plant_m", "1;1;0,5;2,5;1,25", "1;2;0,0;2,5;1,25"]
+    write(tmp_path / "vines.map.csv", *lines)
+    (made,) = read_plant_maps(tmp_path)
+    assert (made.row_m, made.plant_m) == (2.5, 1.25)
+    assert made.infested.tolist() == [[True, False]]
+
+
 @pytest.mark.parametrize(
     ("lines", "says"),
     [
+        ([OWN[0], OWN[1].replace("1.2", "wide")], "one distance in metres, .* it holds wide"),
+        ([OWN[0], OWN[1].replace("1.2", "")], "it holds an empty cell"),
         (["row,plant,infested", "1,1,1"], "row_m, plant_m is missing"),
         ([*OWN[:2], OWN[2].replace("3.5", "3.6")], r"one distance .* it holds 3\.5, 3\.6"),
         ([OWN[0], OWN[1].replace("1.2", "0")], "one distance in metres"),

@@ -78,6 +78,8 @@ class Calibration:
         Reliability of the chance that the plot is clean, between `CLEAN_EDGES`.
     seconds_a_day
         Time to learn a day's findings and pass a night.
+    mornings
+        Of how many mornings `covered` and `half_covered` are the shares.
     """
 
     said: NDArray[np.float64]
@@ -93,6 +95,7 @@ class Calibration:
     clean_was: NDArray[np.float64]
     clean_count: NDArray[np.int64]
     seconds_a_day: float
+    mornings: int
 
 
 class _Watched:
@@ -229,6 +232,7 @@ def _compared(mornings: _Mornings) -> Calibration:
         _held(half_ahead, counts * ~np.array(told)),
         *_reliability(clean, counts == 0, CLEAN_EDGES),
         sum(seconds) / len(counts),
+        int(np.count_nonzero(counts * ~np.array(told))),
     )
 
 

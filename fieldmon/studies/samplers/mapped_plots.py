@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Sampler
-    from fieldmon.studies.plant_maps import PlantMap
     from fieldmon.studies.samplers.contenders import Added
 
     Believe = Callable[[PlantGrid, NDArray[np.float64]], Belief]
@@ -76,24 +75,19 @@ def plots_in(folder: Path) -> list[DatedMap]:
             f"inspected, but {small.name} has {small.n_rows * small.n_plants}."
         )
     return [
-        DatedMap(_name(each, date), each.aisles(), infested)
+        DatedMap(each.name_on(date), each.aisles(), infested)
         for each in maps
         for date, infested in zip(each.dates, each.infested, strict=True)
     ]
 
 
-def _name(of: PlantMap, date: str) -> str:
-    """Return the name of a map's file without its ending, its part and its date."""
-    file, _, part = of.name.partition(" ")
-    return " ".join(word for word in (file.split(".", maxsplit=1)[0], part, date) if word)
-
-
 def found_at(
     plot: DatedMap, sampler: Sampler, believe: Believe = PairApproximation.of
-) -> tuple[list[int], list[float]]:
+) -> tuple[list[float], list[float]]:
     """Return infested plants found, and hours worked, when each of `SHARES` was inspected.
 
     No plant is inspected twice, every infested one inspected is found, and none infects another.
+    Of a sampler that stops before, both are NaN from there on; `SettingError` if it names no plant.
     """
     n = len(plot.infested)
     robot = Robot(detection=1.0, returns=False).with_times("thesis")
@@ -121,8 +115,11 @@ def found_at(
         seen[work.plant] = True
         belief = belief.learn(work.plant, work.found, Learning(detection=1.0))
     finds = np.cumsum(plot.infested[order])
-    last = [min(round(share * n), len(order)) - 1 for share in SHARES]
-    return [int(finds[k]) for k in last], [float(done_s[k]) / _HOUR_S for k in last]
+    asked = [round(share * n) for share in SHARES]
+    reached = [k - 1 for k in asked if k <= len(order)]
+    never = [float("nan")] * (len(asked) - len(reached))
+    found = [float(finds[k]) for k in reached]
+    return found + never, [float(done_s[k]) / _HOUR_S for k in reached] + never
 
 
 def correlation(plot: DatedMap) -> float:
@@ -143,7 +140,8 @@ class MapRow(NamedTuple):
     who
         The sampler.
     per_inspection, per_hour
-        ``(4,)`` finds at `SHARES`; of random inspections the share expected, and no hours.
+        ``(4,)`` finds at `SHARES`, NaN where it stopped before; of random inspections the share
+        expected, and no hours.
     """
 
     name: str
@@ -177,28 +175,58 @@ def table(plots: list[DatedMap], added: Sequence[Added] = ()) -> list[MapRow]:
 
 
 def sentences(rows: Sequence[MapRow]) -> list[str]:
-    """Return what Adaptive finds per hour in proportion to each other, whichever way it falls."""
-    by = {(row.name, row.who): row.per_hour[-1] for row in rows if row.per_hour}
+    """Return what Adaptive finds per hour in proportion to each other, whichever way it falls.
+
+    The rows are those of a `table`: on each map every sampler once, in one order.
+    """
+    of: dict[str, list[MapRow]] = {}
+    for row in rows:
+        of.setdefault(row.who, []).append(row)
     others = {"naive": "a sweep (naive)", "dynamic": "dynamic", "tuned": "tuned"}
-    others |= {row.who: row.who for row in rows if row.who not in WHO}
+    others |= {who: who for who in of if who not in WHO}
     said = []
     for who, called in others.items():
-        ratios = {
-            row.name: by[row.name, "adaptive"] / by[row.name, who]
-            for row in rows
-            if row.who == who and by[row.name, who] > 0.0
-        }
-        if not ratios:
-            continue
-        low, high = (pick(ratios, key=ratios.__getitem__) for pick in (min, max))
-        fewer = sum(value < _EVEN[0] for value in ratios.values())
-        more = sum(value > _EVEN[1] for value in ratios.values())
-        said.append(
-            f"After {SHARES[-1]:.0%} of the plants adaptive finds {ratios[low]:.2f} ({low}) to "
-            f"{ratios[high]:.2f} ({high}) of the finds per hour of {called}: over "
-            f"{_EVEN[1]:.2f} on {more} of {len(ratios)} maps, under {_EVEN[0]:.2f} on {fewer}."
-        )
+        if who in of:
+            said += [_ratio_sentence(of["adaptive"], of[who], called), *_stops_early(of[who])]
     return said
+
+
+def _ratio_sentence(adaptive: list[MapRow], other: list[MapRow], called: str) -> str:
+    """Return what Adaptive finds per hour, over what one other does, each on the same maps."""
+    pairs = [(ours, theirs.per_hour[-1]) for ours, theirs in zip(adaptive, other, strict=True)]
+    ratios = [(ours.per_hour[-1] / theirs, ours.name) for ours, theirs in pairs if theirs > 0.0]
+    after, maps = f"After {SHARES[-1]:.0%} of the plants", _maps(len(pairs))
+    none = len(pairs) - len(ratios)
+    reasons = [
+        *(["finds nothing there"] if any(theirs == 0.0 for _, theirs in pairs) else []),
+        *(["stopped before"] if any(np.isnan(theirs) for _, theirs in pairs) else []),
+    ]
+    without = f"{called} {' or '.join(reasons)}"
+    if not ratios:
+        return f"{after} no ratio to {called} can be given on any of {maps}: {without}."
+    (low, where), (high, there) = min(ratios), max(ratios)
+    span = f"{low:.2f} ({where})" + (f" to {high:.2f} ({there})" if len(ratios) > 1 else "")
+    fewer = sum(value < _EVEN[0] for value, _ in ratios)
+    more = sum(value > _EVEN[1] for value, _ in ratios)
+    return (
+        f"{after} adaptive finds {span} of the finds per hour of {called}: over {_EVEN[1]:.2f} on "
+        f"{more} of {maps}, under {_EVEN[0]:.2f} on {fewer}"
+        + (f"; no ratio can be given on {none}: {without}." if none else ".")
+    )
+
+
+def _stops_early(rows: list[MapRow]) -> list[str]:
+    """Return on how many maps a sampler did not come so far, if there are any."""
+    early = sum(np.isnan(row.per_inspection[-1]) for row in rows)
+    said = (
+        f"{rows[0].who} stopped before {SHARES[-1]:.0%} of the plants on {early} of "
+        f"{_maps(len(rows))}: its figures are empty where it did not come so far."
+    )
+    return [said] if early else []
+
+
+def _maps(n: int) -> str:
+    return f"{n} map{'s' * (n != 1)}"
 
 
 def table_csv(rows: list[MapRow]) -> str:
@@ -211,9 +239,9 @@ def table_csv(rows: list[MapRow]) -> str:
     head = ["map", "neighbour_correlation", "sampler", *columns]
     lines.writerow([column.replace("%", "_pct") for column in head])
     for row in rows:
-        hours = [f"{v:.4f}" for v in row.per_hour] or [""] * len(SHARES)
-        values = [*(f"{v:.4f}" for v in row.per_inspection), *hours]
-        lines.writerow([row.name, f"{row.correlation:.3f}", row.who, *values])
+        values = [*row.per_inspection, *(row.per_hour or [np.nan] * len(SHARES))]
+        cells = ["" if np.isnan(value) else f"{value:.4f}" for value in values]
+        lines.writerow([row.name, f"{row.correlation:.3f}", row.who, *cells])
     return text.getvalue()
 
 

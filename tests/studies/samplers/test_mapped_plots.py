@@ -5,12 +5,14 @@ import csv
 import numpy as np
 import pytest
 
-from fieldmon.errors import FileProblem
+import fieldmon as fm
+from fieldmon.errors import FileProblem, SettingError
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
+from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.sweeps import Naive
-from fieldmon.studies.samplers.contenders import added
+from fieldmon.studies.samplers.contenders import Added, added
 from fieldmon.studies.samplers.mapped_plots import (
     FILES,
     SHARES,
@@ -99,8 +101,8 @@ def test_plots_are_named_by_file_and_date_or_part(tmp_path):
     assert made == {
         "citrus_ctv_IVI3and4 1991": [0],
         "citrus_ctv_IVI3and4 1992": [0, 1],
-        "gumpertz F1": [0],
-        "gumpertz F2": [1],
+        "gumpertz.pepper F1": [0],
+        "gumpertz.pepper F2": [1],
         "vines north 2025": [2],
     }
 
@@ -122,7 +124,56 @@ def test_what_adaptive_comes_to_is_said_whichever_way_it_falls():
     ]
     (said,) = sentences(rows)
     assert "0.90 (a) to 1.50 (b) of the finds per hour of a sweep (naive)" in said
+    assert said.endswith(
+        "over 1.05 on 1 of 3 maps, under 0.95 on 1; no ratio can be given on 1: a sweep (naive) "
+        "finds nothing there."
+    )
+    (said,) = sentences(rows[-2:])
+    assert said.endswith(
+        "no ratio to a sweep (naive) can be given on any of 1 map: a sweep (naive) finds nothing "
+        "there."
+    )
+
+
+def test_maps_of_one_name_are_all_counted():
+    def row(who, per_hour):
+        return MapRow("a", 0.1, who, [0.0] * 4, [per_hour] * 4)
+
+    rows = [row("adaptive", 9.0), row("naive", 10.0), row("adaptive", 15.0), row("naive", 10.0)]
+    (said,) = sentences(rows)
+    assert "0.90 (a) to 1.50 (a)" in said
     assert said.endswith("over 1.05 on 1 of 2 maps, under 0.95 on 1.")
+
+
+class StopsEarly(fm.Sampler):
+    """Inspects so many plants, and no more."""
+
+    def __init__(self, most):
+        self.most = most
+
+    def walk(self, scene, would_find):
+        stops = Naive().walk(scene, would_find)
+        left = max(self.most - np.count_nonzero(scene.last_inspected >= 0), 0)
+        return fm.Stops(stops.plant[:left], stops.arrive_s[:left])
+
+
+def test_who_stops_early_has_no_figures_from_there_on():
+    finds, hours = found_at(mapped(0, 5, 19, 39, 100), sampler_or_name(StopsEarly(39)))
+    assert (np.isnan(finds) == [False, False, True, True]).all()
+    assert (np.isnan(hours) == [False, False, True, True]).all()
+    assert finds[:2] == [2, 3]
+    early = Added("Early", "Early", "of your own", lambda: sampler_or_name(StopsEarly(39)))
+    rows = table([mapped(0, 5, 19, 39, 100)], [early])
+    ratio, says = sentences(rows)[-2:]
+    assert ratio.endswith("no ratio to Early can be given on any of 1 map: Early stopped before.")
+    assert says.startswith("Early stopped before 40% of the plants on 1 of 1 map: its figures are")
+    (line,) = (line for line in csv.reader(table_csv(rows).splitlines()) if line[2] == "Early")
+    assert [bool(cell) for cell in line[3:]] == [True, True, False, False] * 2
+
+
+def test_who_names_no_plant_is_refused_as_everywhere():
+    with pytest.raises(SettingError, match=r"^StopsEarly must name plants to inspect"):
+        found_at(mapped(0, 5), sampler_or_name(StopsEarly(0)))
 
 
 def test_a_folder_without_maps_is_refused(tmp_path):

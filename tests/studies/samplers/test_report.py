@@ -73,7 +73,7 @@ def a_calibration(seed):
     rng = np.random.default_rng(seed)
     said, was, count = rng.random(9), rng.random(9), rng.integers(10, 90, 9)
     clean = (rng.random(6), rng.random(6), np.array([0, 3, 0, 1, 2, 0]))
-    return Calibration(said, was, count, *rng.random(6).tolist(), *clean, 0.0123)
+    return Calibration(said, was, count, *rng.random(6).tolist(), *clean, 0.0123, 6)
 
 
 def test_every_score_of_a_belief_stands_in_its_row():

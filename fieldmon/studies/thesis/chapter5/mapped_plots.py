@@ -67,7 +67,7 @@ class MapRules:
 class MapMeasure:
     """Percent found of the infested plants of a date, after visiting a share of all plants.
 
-    NaN where no day got that far.
+    NaN where no day got that far, and where no plant is infested.
     """
 
     map: str
@@ -177,7 +177,8 @@ def _rows(plants: PlantMap, name: str, found: Floats) -> list[MapMeasure]:
     for day, date in enumerate(plants.dates):
         infested = int(np.count_nonzero(plants.infested[day]))
         for k, share in enumerate(SHARES_PCT):
-            ours = summary_statistics(found[:, day, k])
+            # of none, no share is found
+            ours = summary_statistics(found[: len(found) if infested else 0, day, k])
             table.append(
                 MapMeasure(
                     plants.name,

@@ -75,6 +75,12 @@ def test_rows_of_the_table_come_a_map_date_and_sampler():
     assert {(row.date, row.infested) for row in table} == {("0", 1), ("1", 2)}
 
 
+def test_where_no_plant_is_infested_no_share_is_found():
+    rows = run_maps([mapped([3], [])], SURE, seeds=2)
+    assert {row.seeds > 0 for row in rows if row.date == "0"} == {True}
+    assert {(row.seeds, str(row.mean)) for row in rows if row.date == "1"} == {(0, "nan")}
+
+
 def test_maps_and_rules_that_do_not_fit_are_refused():
     with pytest.raises(ObservationError, match="one entry a plant"):
         PlantMap("bad", ("1",), np.zeros((1, 3), bool), 2, 2, 1.0, 1.0)

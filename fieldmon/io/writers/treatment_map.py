@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,13 +12,22 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.units import Units
+from fieldmon.compute.wording import joined, worded
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import why_not_written, write_whole
+from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.spray_rate import must_be_rate
 from fieldmon.io.writers.isoxml import isoxml_taskdata
-from fieldmon.io.writers.zone_cells import ZoneCells, narrowest_m, rates_geotiff, zone_cells
+from fieldmon.io.writers.zone_cells import (
+    MOST_CELLS,
+    ZoneCells,
+    beside_and_missed,
+    cell_for,
+    rates_geotiff,
+    zone_cells,
+)
 from fieldmon.plot.projection import Frame
 
 if TYPE_CHECKING:
@@ -26,7 +36,7 @@ if TYPE_CHECKING:
     import geopandas as gpd
 
 _WGS84 = "EPSG:4326"
-_LEAST_CELL_M = 0.1
+_IN_CELLS = re.compile(r"\.grid\d|\.tif$")
 # what is narrower than twice that, between zones and beside them, comes of how plants were measured
 _SLIM_M = 0.1
 _GRID_DEG = 1e-8  # a millimetre, as GeoJSON is written: nothing collapses there
@@ -246,7 +256,31 @@ def _taskdata(version: int, grid: int | None = None) -> Callable[[TreatmentMap],
 
 def _cells(of: TreatmentMap, kind: int = 1) -> ZoneCells:
     zones = _clean_areas(of)[0]
-    return zone_cells(of.boundary, zones, max(narrowest_m(zones), _LEAST_CELL_M), kind)
+    return zone_cells(of.boundary, zones, cell_for(of.boundary, zones)[1], kind)
+
+
+def said_of_cells(of: TreatmentMap, name: str, units: Units | None = None) -> str:
+    """Return what cells spray beside the zones, and miss; "" for a file whose format has none."""
+    if not _IN_CELLS.search(checked_ending(name)):
+        return ""
+    units = units or Units()
+    zones = _clean_areas(of)[0]
+    should, is_m = cell_for(of.boundary, zones)
+    beside, missed = beside_and_missed(zones, zone_cells(of.boundary, zones, is_m))
+    m2 = sum(map(area_m2, zones))
+    said = worded(
+        "Cells of {cell} spray {beside} beside the zones and miss {missed} of their {whole}.",
+        cell=units.metres(is_m, 2), beside=units.square(beside * m2),
+        missed=units.square(missed * m2), whole=units.square(m2),
+    )  # fmt: skip
+    if is_m == should:
+        return said
+    coarser = worded(
+        "They are coarser than {should}, since a grid may hold {most:,} cells: where that matters, "
+        "take a file of areas.",
+        should=units.metres(should, 2), most=MOST_CELLS,
+    )  # fmt: skip
+    return joined(" ", [said, coarser])
 
 
 def _geotiff(of: TreatmentMap) -> bytes:

@@ -12,7 +12,8 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.io.writers.treatment_map import TreatmentMap, write_treatment_map
+from fieldmon.io.writers import zone_cells
+from fieldmon.io.writers.treatment_map import TreatmentMap, said_of_cells, write_treatment_map
 from fieldmon.plot.projection import Frame
 
 PLOT = MultiPolygon([shapely.box(35.15, 30.36, 35.152, 30.362)])
@@ -88,6 +89,21 @@ def test_terminals_get_the_version_and_the_grid_that_the_name_says(tmp_path, nam
         if grid:
             assert b'I="%c"' % grid[-1].encode() in task
             assert "TASKDATA/GRD00001.bin" in archive.namelist()
+
+
+@pytest.mark.parametrize("name", ["t.grid1.xml.zip", "t.v3.grid2.xml.zip", "t.tif"])
+def test_it_is_said_what_cells_spray_beside_the_zones_and_miss(name, monkeypatch):
+    said = said_of_cells(MAP, name)
+    assert re.fullmatch(
+        r"Cells of 1\.00 m spray 0\.00\d+ ha beside the zones and miss 0\.00\d+ ha of their "
+        r"0\.33 ha\.", said,
+    )  # fmt: skip
+    monkeypatch.setattr(zone_cells, "MOST_CELLS", 2_000)
+    assert re.search(
+        r"Cells of 4\.\d+ m .* coarser than 1\.00 m, since .* take a file of areas",
+        said_of_cells(MAP, name),
+    )
+    assert said_of_cells(MAP, "t.xml.zip") == said_of_cells(MAP, "t.geojson") == ""
 
 
 def test_a_plot_that_is_all_zone_has_no_rest(tmp_path):

@@ -17,7 +17,7 @@ from fieldmon.compute.arguments import must_be, must_be_name_of_file
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.atomic_write import HELD, require_folder, sqlite_code
-from fieldmon.monitoring import journals, outside_changes, season_log
+from fieldmon.monitoring import journals, outside_changes, qgis_project, season_log
 from fieldmon.monitoring.file_problems import damaged, no_file, sentences
 from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.migrations import MIGRATIONS
@@ -152,6 +152,7 @@ class Store:
         with _draft_folder(target) as folder:
             draft = Path(folder) / "copy.gpkg"
             copy_season(self.path, draft, target)
+            _name_in_project(draft, target)
             _put(draft, target)
 
     def move(self, to: str | Path) -> None:
@@ -171,6 +172,7 @@ class Store:
             db.execute("BEGIN EXCLUSIVE")
             _put(self.path, target)
             self.path.unlink(missing_ok=True)
+        _name_in_project(target, target)
 
     @classmethod
     @contextmanager
@@ -397,6 +399,12 @@ def copy_season(path: Path, to: Path, named: Path | None = None) -> None:
         said = copy.execute("PRAGMA quick_check(1)").fetchone()[0]
         if said != "ok":
             raise damaged(path, said)
+
+
+def _name_in_project(path: Path, named: Path) -> None:
+    """Let QGIS open the file that it opens the project of, not the one that was copied."""
+    with _sentences(path, named), closing(connect(path)) as db:
+        qgis_project.rename(db, named.name)
 
 
 def _must_be_there(path: Path) -> None:

@@ -23,6 +23,7 @@ from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.migrations import MIGRATIONS
 from fieldmon.monitoring.schema import (
     COMES,
+    LIES,
     LOGS_SINCE,
     NEEDS,
     OPEN,
@@ -111,11 +112,18 @@ class Store:
         with self.reading() as db:
             version = _version(db)
             _refuse_views(db, self.path)
-            is_parted = not has_more and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
+            is_parted = (
+                not has_more
+                and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
+                and (not version or get_meta(db, LIES) != journals.place_of(self.path))
+            )
             needs = get_meta(db, "needs") if version else None
         self._checked: tuple[int, str] | None = None
         #: what is to be doubted of the file, in a sentence, or None
-        self.doubt = journals.PARTED.format(path=self.path) if is_parted else None
+        self.doubt: str | None = None
+        if is_parted:
+            beside = journals.wal_of(self.path).name
+            self.doubt = journals.PARTED.format(path=self.path, beside=beside)
         if version is None:
             raise FileProblem(
                 worded(
@@ -190,6 +198,7 @@ class Store:
                 _mark(db)
                 yield db
                 set_meta(db, OPEN, "0")
+                set_meta(db, LIES, journals.place_of(draft))  # which stays when it gets its name
                 db.execute("COMMIT")
             _put(draft, target)
 
@@ -239,6 +248,7 @@ class Store:
             db.execute("BEGIN IMMEDIATE")
             set_meta(db, OPEN, "1")  # what is changed from here on is changed by us
             set_meta(db, COMES, secrets.token_hex(8))
+            set_meta(db, LIES, journals.place_of(self.path))
             if _version(db) == VERSION:
                 self._checked = season_log.refuse_changed(db, self._checked)
                 if not is_watched(db):  # somebody took away what would note changes

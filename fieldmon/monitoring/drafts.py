@@ -16,7 +16,7 @@ from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import RESULT_NAMES, Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.monitoring import inspection_lots, inspection_table, said_beside
-from fieldmon.monitoring.geopackage import geometry, touch
+from fieldmon.monitoring.geopackage import beside_plot, geometry, touch
 from fieldmon.monitoring.recorded_before import contradictions, said_before
 from fieldmon.monitoring.schema import INSPECTIONS
 
@@ -122,6 +122,7 @@ def keep(
             news = news.and_those(draft.inspection)
         else:
             values = said_beside.standing_back(db, draft.known, 0, made)
+        values["geom"] = beside_plot(db, values["geom"])
         names = ", ".join(f"{name} = ?" for name in values)
         db.execute(
             f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours

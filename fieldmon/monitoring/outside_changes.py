@@ -24,7 +24,7 @@ from fieldmon.monitoring import (
     season_log,
     treatments,
 )
-from fieldmon.monitoring.geopackage import point_blobs
+from fieldmon.monitoring.geopackage import beside_plot, point_blobs
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
 if TYPE_CHECKING:
@@ -216,7 +216,8 @@ def is_kept(change: OutsideChange) -> bool:
 def keep_before(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> None:
     """Keep what stood there before a change, until the correction is taken back."""
     before = replaced.as_it_was(change.before)
-    (before["geom"],) = point_blobs(grid.lonlat(np.array([before["plant"]])))
+    (geom,) = point_blobs(grid.lonlat(np.array([before["plant"]])))
+    before["geom"] = beside_plot(db, geom)
     if before["undone"] == replaced.COUNTS:
         before["undone"] = replaced.STANDS_BACK
     # what was deleted leaves its number free
@@ -271,6 +272,7 @@ def take_row(
             )
         ) from error
     values = dict(zip(INSPECTIONS.names, made, strict=True))
+    values["geom"] = beside_plot(db, values["geom"])
     del values["undone"]
     was = replaced.as_it_was(change.before)["digest"] if change.before else None
     if was != values["digest"]:  # others stay with what it was: what they say goes along

@@ -11,7 +11,7 @@ from shapely import LineString
 
 from fieldmon.compute.digest import digest
 from fieldmon.monitoring import schema
-from fieldmon.monitoring.geopackage import blob, insert, point_blobs, touch
+from fieldmon.monitoring.geopackage import beside_plot, blob, insert, point_blobs, touch
 from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.travel import GATE
@@ -57,7 +57,7 @@ def keep(
         return False
     line = route.line_lonlat()
     row = {
-        "geom": blob(LineString(line)) if len(line) > 1 else None,
+        "geom": beside_plot(db, blob(LineString(line))) if len(line) > 1 else None,
         "day": day,
         "date": str(settings.date(day)),
         "revision": 1 if last is None else last.revision + 1,

@@ -20,6 +20,7 @@ from fieldmon.io.atomic_write import why_not_written, write_whole
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.spray_rate import must_be_rate
 from fieldmon.io.writers.isoxml import isoxml_taskdata
+from fieldmon.io.writers.qml import GPKG_VERSION
 from fieldmon.io.writers.zone_cells import (
     MOST_CELLS,
     ZoneCells,
@@ -28,7 +29,7 @@ from fieldmon.io.writers.zone_cells import (
     rates_geotiff,
     zone_cells,
 )
-from fieldmon.plot.projection import Frame
+from fieldmon.plot.projection import Frame, turned_to
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -137,7 +138,7 @@ def _clean_areas(of: TreatmentMap) -> tuple[list[MultiPolygon], MultiPolygon]:
     What is narrower than some centimetres between and in zones is theirs, and beside them nobody's.
     """
     middle = of.boundary.envelope.centroid
-    frame = Frame(middle.x, middle.y)
+    frame = Frame(middle.x - 360.0 if middle.x > 180.0 else middle.x, middle.y)
     zones = [frame.geometry_m(zone) for zone in of.zones]
     apart = shapely.union_all(zones)
     whole = shapely.union(apart, _grown(_grown(apart, _SLIM_M), -_SLIM_M))
@@ -149,7 +150,8 @@ def _clean_areas(of: TreatmentMap) -> tuple[list[MultiPolygon], MultiPolygon]:
         made.append(MultiPolygon([_filled(one) for one in parts if one.intersects(zone)]))
     rest = _polygons(shapely.difference(frame.geometry_m(of.boundary), shapely.union_all(made)))
     rest = MultiPolygon([one for one in rest.geoms if not _is_slim(one)])
-    *sprayed, rest = (_polygons(frame.geometry_lonlat(one), _GRID_DEG) for one in (*made, rest))
+    degrees = (turned_to(frame.geometry_lonlat(one), middle.x) for one in (*made, rest))
+    *sprayed, rest = (_polygons(one, _GRID_DEG) for one in degrees)
     return sprayed, rest
 
 
@@ -194,7 +196,7 @@ def _frame(of: TreatmentMap) -> gpd.GeoDataFrame:
 
 
 def _gpkg(of: TreatmentMap) -> bytes:
-    return _one_file(of, "treatment.gpkg", "GPKG", layer="treatment")
+    return _one_file(of, "treatment.gpkg", "GPKG", layer="treatment", VERSION=GPKG_VERSION)
 
 
 def _geojson(of: TreatmentMap) -> bytes:

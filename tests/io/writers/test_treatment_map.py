@@ -2,6 +2,7 @@
 
 import io
 import re
+import sqlite3
 import zipfile
 
 import geopandas as gpd
@@ -104,6 +105,19 @@ def test_it_is_said_what_cells_spray_beside_the_zones_and_miss(name, monkeypatch
         said_of_cells(MAP, name),
     )
     assert said_of_cells(MAP, "t.xml.zip") == said_of_cells(MAP, "t.geojson") == ""
+
+
+def test_zones_of_a_plot_across_longitude_180_lie_in_its_one_piece(tmp_path):
+    plot = MultiPolygon([shapely.box(179.9996, -16.8005, 180.0008, -16.8)])
+    east = MultiPolygon([shapely.box(-179.9998, -16.8005, -179.9995, -16.8003)])
+    of = TreatmentMap("Taveuni", plot, [east], 300.0)
+    path = write_treatment_map(of, tmp_path / "t.gpkg")
+    read = gpd.read_file(path)
+    assert read.total_bounds[[0, 2]].tolist() == pytest.approx([179.9996, 180.0008])
+    assert read.geometry[0].bounds[0] == pytest.approx(180.0002)
+    with sqlite3.connect(path) as db:
+        assert db.execute("pragma user_version").fetchone() == (10300,)  # QGIS 3.22 warns of 1.4
+    assert said_of_cells(of, "t.tif").startswith("Cells of 1.00 m")
 
 
 def test_a_plot_that_is_all_zone_has_no_rest(tmp_path):

@@ -236,6 +236,8 @@ def test_qgis_opens_the_project_edits_and_saves_and_the_season_records_it(season
         env={"QT_QPA_PLATFORM": "offscreen", "HOME": str(tmp_path), "PATH": os.environ["PATH"]},
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
+    assert copy.read_bytes()[18:20] == b"\2\2"  # QGIS leaves its mark
+    assert Season(copy).store.doubt is None  # and closed the season where it lies
     plant = int(done.stdout.split()[-1])
     from fieldmon.io.readers.inspections import read_inspections
     from fieldmon.monitoring.brought_findings import counting_copy

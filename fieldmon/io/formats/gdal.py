@@ -136,10 +136,11 @@ def _mend_names(path: Path) -> list[str]:
     """
     mended: list[str] = []
     lines = path.read_bytes().split(b"\n")
+    whole = {line.split()[0].decode("utf-8", "replace") for line in lines if line.strip()}
     for k, line in enumerate(lines):
         plain = line.decode("utf-8", "ignore")
         if plain.encode() != line and (found := _COLUMN.match(plain)):
-            mended.append(f"{found[1]}{k}" if found[1] in mended else found[1])
+            mended.append(f"{found[1]}{k}" if found[1] in {*whole, *mended} else found[1])
             plain = f"    {mended[-1]} {found[2]}"
         lines[k] = plain.encode()
     path.write_bytes(b"\n".join(lines))

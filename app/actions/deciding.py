@@ -13,7 +13,7 @@ from fieldmon.decisions.leaves import of_leaves
 from fieldmon.decisions.thresholds import read_thresholds
 from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.io.options import Upload
-from fieldmon.io.writers.treatment_map import treatment_map_bytes
+from fieldmon.io.writers.treatment_map import said_of_cells, treatment_map_bytes
 from fieldmon.reports.advice import advice_report
 from fieldmon.reports.html import html_text
 from fieldmon.reports.pdf import pdf_bytes
@@ -178,6 +178,8 @@ def files(choices: Choices, advice: Advice) -> None:
         type="secondary" if advice.is_below else "primary",
         key="decide download", on_click="ignore",
     )  # fmt: skip
+    if said := said_of_cells(of(), name, choices.units.of_library):
+        st.caption(in_words(said))
 
 
 def treated(choices: Choices, advice: Advice) -> None:

@@ -74,7 +74,7 @@ def new_path(name: str) -> Path:
 def backup_of(path: Path) -> bytes:
     """Return a season's file as it is now, whoever works on it."""
     with working_folder() as here:
-        copy = Path(here) / f"copy{_ENDING}"
+        copy = Path(here) / path.name  # as the download is called
         Store(path).back_up(copy)
         return copy.read_bytes()
 

@@ -316,7 +316,7 @@ def _write(asked: _AdviceAsked, paths: list[Path]) -> SettingError | None:
     if not paths:
         return None
     from fieldmon.compute.units import Units
-    from fieldmon.io.writers.treatment_map import write_treatment_map
+    from fieldmon.io.writers.treatment_map import said_of_cells, write_treatment_map
     from fieldmon.reports.advice import advice_report
     from fieldmon.reports.write import write_report
 
@@ -333,4 +333,6 @@ def _write(asked: _AdviceAsked, paths: list[Path]) -> SettingError | None:
         return none
     for path in zones:
         typer.echo(f"Zones written to {write_treatment_map(of, path)}")
+        if said := said_of_cells(of, path.name):
+            typer.echo(said)
     return None

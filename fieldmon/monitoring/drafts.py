@@ -17,7 +17,7 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.parse.result_words import GONE, gone_note
 from fieldmon.monitoring import inspection_lots, inspection_table, repeated_recordings
-from fieldmon.monitoring.geopackage import geometry, touch
+from fieldmon.monitoring.geopackage import beside_plot, geometry, touch
 from fieldmon.monitoring.recorded_before import contradictions, said_before
 from fieldmon.monitoring.schema import INSPECTIONS
 
@@ -123,6 +123,7 @@ def keep(
             news = news.and_those(draft.inspection)
         else:
             values = repeated_recordings.standing_back(db, draft.known, 0, made)
+        values["geom"] = beside_plot(db, values["geom"])
         names = ", ".join(f"{name} = ?" for name in values)
         db.execute(
             f"UPDATE inspections SET {names} WHERE fid = ?",  # noqa: S608 - names of ours

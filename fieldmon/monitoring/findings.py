@@ -30,7 +30,7 @@ from fieldmon.monitoring import (
     scouts,
     season_log,
 )
-from fieldmon.monitoring.geopackage import insert, point_blobs, touch
+from fieldmon.monitoring.geopackage import beside_plot, insert, point_blobs, touch
 from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import as_written
 from fieldmon.monitoring.scouts import Scout
@@ -469,6 +469,7 @@ def _insert(db: sqlite3.Connection, row: tuple[object, ...], told: str) -> int:
         row = (*row[:mark], own, *row[mark + 1 :])
     marks = ", ".join("?" * len(names))
     into = f"INSERT INTO inspections ({', '.join(names)}) VALUES ({marks})"  # noqa: S608 - ours
+    row = (beside_plot(db, row[0]), *row[1:])
     return int(db.execute(into, row).lastrowid or 0)
 
 

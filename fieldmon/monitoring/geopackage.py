@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
+from fieldmon.plot.projection import turned_to
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -24,6 +26,8 @@ APPLICATION_ID = 0x47504B47  # "GPKG"
 _USER_VERSION = 10301
 WGS84 = 4326
 _POINT_BYTES = 29
+# what is known of the plot stays as it was given, to the bit
+_AS_GIVEN = {"plots", "places", "observations"}
 _HEADER = b"GP\x00\x01" + WGS84.to_bytes(4, "little")  # little endian, no envelope
 
 _WGS84_WKT = (
@@ -132,9 +136,32 @@ def insert(
     db: sqlite3.Connection, table: GeoPackageTable, rows: Sequence[tuple[object, ...]]
 ) -> None:
     """Add rows, each with a value for every one of the table's `names`."""
+    if table.shape and table.name not in _AS_GIVEN and rows:
+        rows = [(beside_plot(db, row[0]), *row[1:]) for row in rows] if _across(db) else rows
     marks = ", ".join("?" * len(table.names))
     into = f"INSERT INTO {table.name} ({', '.join(table.names)}) VALUES ({marks})"  # noqa: S608 - names of ours
     db.executemany(into, rows)
+
+
+def beside_plot(db: sqlite3.Connection, geom: Any) -> Any:  # noqa: ANN401 - None where nothing lies
+    """Return a geometry where the season's plot lies, which may be drawn on across longitude 180.
+
+    Else a part of a layer lies at the other end of the world.
+    """
+    own = _across(db)
+    if own is None or geom is None:
+        return geom
+    return blob(turned_to(geometry(geom), (own[0] + own[2]) / 2))
+
+
+def _across(db: sqlite3.Connection) -> tuple[float, float, float, float] | None:
+    """Return how far the season's plot reaches if that is across longitude 180."""
+    reach: tuple[Any, ...] | None = db.execute(
+        "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'plots'"
+    ).fetchone()
+    if reach is None or None in reach or (reach[0] >= -180.0 and reach[2] <= 180.0):
+        return None
+    return reach
 
 
 def touch(
@@ -151,6 +178,8 @@ def touch(
         (name,),
     )
     if bounds is not None:
+        if (own := _across(db)) is not None and name not in _AS_GIVEN:
+            bounds = own
         db.execute(
             "UPDATE gpkg_contents SET min_x = ?, min_y = ?, max_x = ?, max_y = ? "
             "WHERE table_name = ?",

@@ -15,7 +15,7 @@ from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspection_columns import BESIDE, COUNT, IDENTIFYING
 from fieldmon.infestation.inspections import FOUND, RESULT_CODES, RESULT_NAMES, Inspections
 from fieldmon.monitoring import schema
-from fieldmon.monitoring.geopackage import point_blobs, touch
+from fieldmon.monitoring.geopackage import beside_plot, point_blobs, touch
 from fieldmon.monitoring.rows_that_count import COUNTS, as_it_was
 from fieldmon.plot.grid import row_label
 
@@ -202,7 +202,7 @@ def store(db: sqlite3.Connection, made: list[tuple[object, ...]]) -> NDArray[np.
         f"VALUES ({', '.join('?' * len(names))})"
     )
     # counted without what the file itself notes of them
-    new = [db.execute(into, row).rowcount > 0 for row in made]
+    new = [db.execute(into, (beside_plot(db, row[0]), *row[1:])).rowcount > 0 for row in made]
     touch(db, schema.INSPECTIONS.name)
     return np.array(new, bool)
 

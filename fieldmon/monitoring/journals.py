@@ -7,6 +7,8 @@ Source: the SQLite file format, section 4, "The Write-Ahead Log".
 
 from __future__ import annotations
 
+import hashlib
+import platform
 import shutil
 import sqlite3
 import time
@@ -20,11 +22,12 @@ from fieldmon.errors import FileProblem
 #: where a file says that changes may lie beside it, and how it says so
 _AT, _WAL_MODE = 18, b"\x02\x02"
 _HEADER, _FRAME_HEADER = 32, 24
-#: of a season that was open elsewhere, and whose other file is not here
+#: of a season that was open elsewhere, and that may be a copy without the file beside it
 PARTED = (
-    "{path} was open in another program (QGIS?) that keeps changes in a file beside it, and that "
-    "file is not here. If this is a copy, what was done last may be missing: bring the other file "
-    "too, or copy the season after that program was closed."
+    "{path} was open in another program (QGIS?) that keeps changes in a file beside it until it is "
+    "closed, and whether it was closed before this file came here cannot be told. If it was, "
+    "nothing is missing. If not, look here for what was done last: if it is not there, bring "
+    "{beside} too, or copy the season again. The next recording or plan ends this question."
 )
 
 
@@ -39,6 +42,16 @@ _LOOKS, _LOOK_AGAIN_S = 4, 0.25
 def wal_of(path: Path) -> Path:
     """Return where such changes lie."""
     return path.with_name(f"{path.name}-wal")
+
+
+def place_of(path: Path) -> str:
+    """Return a mark of the place of a file on this machine's disk: a copy has another.
+
+    A file that lies where it was written lost nothing with a missing file beside it: programs
+    take that away once all of it is in the season.
+    """
+    place = f"{platform.node()} {path.stat().st_ino}"
+    return hashlib.blake2b(place.encode(), digest_size=8).hexdigest()
 
 
 def refuse_foreign_wal(path: Path) -> bool:

@@ -35,7 +35,7 @@ from fieldmon.monitoring import (
     season_log,
     treatments,
 )
-from fieldmon.monitoring.geopackage import geometry, point_blobs
+from fieldmon.monitoring.geopackage import beside_plot, geometry, point_blobs
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
 if TYPE_CHECKING:
@@ -237,7 +237,8 @@ def is_kept(change: OutsideChange) -> bool:
 def keep_before(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> None:
     """Keep what stood there before a change, until the correction is taken back."""
     before = rows_that_count.as_it_was(change.before)
-    (before["geom"],) = point_blobs(grid.lonlat(np.array([before["plant"]])))
+    (geom,) = point_blobs(grid.lonlat(np.array([before["plant"]])))
+    before["geom"] = beside_plot(db, geom)
     if before["undone"] == rows_that_count.COUNTS:
         before["undone"] = rows_that_count.STANDS_BACK
     # what was deleted leaves its number free
@@ -311,6 +312,7 @@ def _made_anew(
             )
         ) from error
     values = dict(zip(INSPECTIONS.names, made, strict=True))
+    values["geom"] = beside_plot(db, values["geom"])
     del values["undone"]
     return values
 

@@ -2,7 +2,8 @@
 
 QGIS and QField list it with the file and open it with one tap, without a network. It is XML in a
 zip, in hexadecimal, as QGIS itself keeps projects in GeoPackages (``qgsgeopackageprojectstorage``).
-It names the file that it is in: a copy under another name gets its own with the next recording.
+It names the file that it is in: a copy by fieldmon gets its own, one made by other programs with
+the next recording.
 """
 
 from __future__ import annotations
@@ -11,12 +12,14 @@ import io
 import math
 import re
 import zipfile
-from html import escape
+import zlib
+from html import escape, unescape
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.io.parse.result_words import GONE
 from fieldmon.io.writers.qml import choice_list, field, numbered, option
-from fieldmon.monitoring.qgis_styles import ASKED_STYLES, PHOTO_STYLES, STYLES
+from fieldmon.monitoring.qgis_styles import ASKED_STYLES, PHOTO_STYLES, STYLES, routes_of
 
 if TYPE_CHECKING:
     import sqlite3
@@ -28,6 +31,7 @@ _TABLE = (
 )
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 _MOST_DAYS = 14
+_MOST_BYTES = 20_000_000  # of a project that somebody brings with a season
 _LAST_DAY = '(SELECT max("date") FROM "routes")'
 _SHAPES = {"POINT": "Point", "LINESTRING": "Line", "MULTIPOLYGON": "Polygon"}
 _RESULTS = (
@@ -120,13 +124,34 @@ def keep(
         # of a damaged file: there is no plot to look at
         return
     shapes = dict(db.execute("SELECT table_name, geometry_type_name FROM gpkg_geometry_columns"))
-    content = _packed(_project(file, (today, earlier), shapes, box))
+    team = [who for (who,) in db.execute("SELECT DISTINCT who FROM routes ORDER BY who")]
+    styles = STYLES | PHOTO_STYLES | ASKED_STYLES
+    if len(team) > 1:
+        styles["routes"] = routes_of(team)
+    content = _packed(_project(file, (today, earlier), (shapes, styles), box))
     db.execute(_TABLE)
     held = db.execute("SELECT content FROM qgis_projects WHERE name = ?", (PROJECT,)).fetchone()
     if held is None or held[0] != content:
         told = '{"last_modified_time": "2026-01-01T00:00:00", "last_modified_user": "fieldmon"}'
         db.execute("INSERT OR REPLACE INTO qgis_projects VALUES (?, ?, ?)",
                    (PROJECT, told, content))  # fmt: skip
+
+
+def rename(db: sqlite3.Connection, file: str) -> None:
+    """Let the project, if there is one, name the file that its season is called from now on."""
+    there = "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'qgis_projects'"
+    if db.execute(there).fetchone() is None:  # of a version that kept none
+        return
+    held = db.execute("SELECT content FROM qgis_projects WHERE name = ?", (PROJECT,)).fetchone()
+    project = None if held is None else _unpacked(held[0])
+    own = None if project is None else re.search(r'\./([^|<>"]*)\|layername=plots\b', project)
+    if project is None or own is None or own[1] == escape(file):  # or somebody's own project
+        return
+    project = project.replace(f"./{own[1]}|layername=", f"./{escape(file)}|layername=")
+    before, after = (escape(Path(name).stem) for name in (unescape(own[1]), file))
+    for named in ('projectname="{}"', "<title>{}</title>"):
+        project = project.replace(named.format(before), named.format(after))
+    db.execute("UPDATE qgis_projects SET content = ? WHERE name = ?", (_packed(project), PROJECT))
 
 
 def _last_routes(day: str, gone: Iterable[str]) -> str:
@@ -144,10 +169,28 @@ def _packed(project: str) -> str:
     return data.getvalue().hex()
 
 
+def _unpacked(content: object) -> str | None:
+    """Return a project; None: it is not packed as one, or too large for one."""
+    try:
+        packed = content.decode() if isinstance(content, bytes) else str(content)
+        with zipfile.ZipFile(io.BytesIO(bytes.fromhex(packed))) as archive:
+            (inner,) = (one for one in archive.infolist() if one.filename.endswith(".qgs"))
+            if inner.file_size > _MOST_BYTES:
+                return None
+            return archive.read(inner).decode()
+    except (ValueError, OSError, RuntimeError, zipfile.BadZipFile, zlib.error):
+        return None
+
+
 def _project(
-    file: str, days: tuple[tuple[Shown, ...], ...], shapes: dict[str, str], box: tuple[float, ...]
+    file: str,
+    days: tuple[tuple[Shown, ...], ...],
+    drawn_as: tuple[dict[str, str], dict[str, str]],
+    box: tuple[float, ...],
 ) -> str:
     today, earlier = days
+    shapes, styles = drawn_as
+    title = escape(Path(file).stem)
     layers = [*today, *earlier, *_PLOT]
     tree = (
         _group("Today", today)
@@ -159,10 +202,10 @@ def _project(
         f' {name}="{value}"' for name, value in zip(("xmin", "ymin", "xmax", "ymax"), view,
                                                       strict=True)
     )  # fmt: skip
-    drawn = "".join(_layer(file, one, shapes[one.table]) for one in layers)
+    drawn = "".join(_layer(file, one, shapes[one.table], styles[one.table]) for one in layers)
     return (
         "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>"
-        '<qgis version="3.22.0" projectname="fieldmon"><title>fieldmon</title>'
+        f'<qgis version="3.22.0" projectname="{title}"><title>{title}</title>'
         f"<projectCrs>{_system(3857)}</projectCrs><layer-tree-group>{tree}</layer-tree-group>"
         f'<mapcanvas name="theMapCanvas"><units>meters</units><extent>'
         + "".join(f"<{n}>{v}</{n}>" for n, v in zip(("xmin", "ymin", "xmax", "ymax"), view,
@@ -171,7 +214,10 @@ def _project(
         f"<ProjectViewSettings><DefaultViewExtent{extent}>{_system(3857)}</DefaultViewExtent>"
         f"</ProjectViewSettings><projectlayers>{drawn}</projectlayers>{_themes(today, earlier)}"
         '<properties><SpatialRefSys><ProjectionsEnabled type="int">1</ProjectionsEnabled>'
-        '</SpatialRefSys><Paths><Absolute type="bool">false</Absolute></Paths></properties></qgis>'
+        '</SpatialRefSys>'
+        # else QGIS measures on the web map's plane, a third too much at 30 degrees
+        '<Measure><Ellipsoid type="QString">EPSG:7030</Ellipsoid></Measure>'
+        '<Paths><Absolute type="bool">false</Absolute></Paths></properties></qgis>'
     )  # fmt: skip
 
 
@@ -191,9 +237,8 @@ def _checked(on: bool) -> str:  # noqa: FBT001 - one flag
     return "Qt::Checked" if on else "Qt::Unchecked"
 
 
-def _layer(file: str, one: Shown, shape: str) -> str:
+def _layer(file: str, one: Shown, shape: str, style: str) -> str:
     source = f"./{file}|layername={one.table}" + (f"|subset={one.only}" if one.only else "")
-    style = (STYLES | PHOTO_STYLES | ASKED_STYLES)[one.table]
     parts = r"<mapTip>.*</mapTip>|<renderer-v2.*</renderer-v2>|<labeling.*</labeling>"
     drawn = "".join(re.findall(parts, style, re.DOTALL))
     return (

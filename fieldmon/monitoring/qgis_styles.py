@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 from fieldmon.io.writers.qml import (
@@ -21,6 +22,7 @@ from fieldmon.io.writers.qml import (
 
 if TYPE_CHECKING:
     import sqlite3
+    from collections.abc import Iterable
 
 _RAMP = (
     (0.01, "189,201,170,255"),
@@ -28,6 +30,11 @@ _RAMP = (
     (0.15, "254,153,41,255"),
     (0.4, "217,95,14,255"),
     (1.0, "153,52,4,255"),
+)
+# of the routes of a team (Okabe & Ito 2008), those that stand out from a light map
+_EACH = (
+    *(BLUE, RED, "0,158,115,255", "204,121,167,255"),
+    *("86,180,233,255", "230,159,0,255", BLACK),
 )
 
 
@@ -79,6 +86,12 @@ STYLES = {
     "hot_spots": single(Symbol("fill", RED, 0.8)),
     "treatments": single(Symbol("fill", BLUE, 0.6)),
 }
+
+
+def routes_of(team: Iterable[str]) -> str:
+    """Return how the routes of a team are drawn: each of its own colour."""
+    each = zip(team, cycle(_EACH), strict=False)
+    return by_value("who", {who: (who, Symbol("line", color, 0.7)) for who, color in each})
 
 
 # QGIS shows it over a photo's place, where map tips are on

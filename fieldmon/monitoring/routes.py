@@ -11,7 +11,7 @@ from shapely import LineString
 
 from fieldmon.compute.digest import digest
 from fieldmon.monitoring import schema
-from fieldmon.monitoring.geopackage import blob, insert, point_blobs, touch
+from fieldmon.monitoring.geopackage import beside_plot, blob, insert, point_blobs, touch
 from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.travel import GATE
@@ -53,7 +53,7 @@ def keep(
         return False
     last = kept_last(db, today.scene.day).get(person_key(who))
     revision, line = 1 if last is None else last.revision + 1, today.route.line_lonlat()
-    row = _row(settings, today, line) | {"revision": revision, "who": who}
+    row = _row(db, settings, today, line) | {"revision": revision, "who": who}
     cursor = db.execute(
         f"INSERT INTO routes ({', '.join(row)}) VALUES ({', '.join('?' * len(row))})",  # noqa: S608 - ours
         tuple(row.values()),
@@ -66,12 +66,12 @@ def keep(
 
 
 def _row(
-    settings: MonitoringSettings, today: DayPlan, line: NDArray[np.float64]
+    db: sqlite3.Connection, settings: MonitoringSettings, today: DayPlan, line: NDArray[np.float64]
 ) -> dict[str, object]:
     """Return what the table of routes says of a day's route, whose driven line is given."""
     day, route = today.scene.day, today.route
     return {
-        "geom": blob(LineString(line)) if len(line) > 1 else None,
+        "geom": beside_plot(db, blob(LineString(line))) if len(line) > 1 else None,
         "day": day,
         "date": str(settings.date(day)),
         "sampler": settings.sampler,

@@ -327,6 +327,8 @@ _WATCHED: dict[str, tuple[str, tuple[str, ...]]] = {
 OPEN = "open"
 #: in `fieldmon`: a random name of what we wrote last, and of what is being written
 WRITTEN, COMES = "written", "comes"
+#: in `fieldmon`: a mark of where on which disk we wrote it last
+LIES = "lies"
 #: in `fieldmon`: how often a row of the inspections was added, changed or deleted, by whomever
 INSPECTIONS_CHANGED = "inspections"
 #: rows of inspections are kept once more in lots: a row's lot is its number without so many bits

@@ -17,12 +17,13 @@ from fieldmon.compute.arguments import must_be, must_be_name_of_file
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.atomic_write import HELD, require_folder, sqlite_code
-from fieldmon.monitoring import journals, outside_changes, season_log
+from fieldmon.monitoring import journals, outside_changes, qgis_project, season_log
 from fieldmon.monitoring.file_problems import damaged, no_file, sentences
 from fieldmon.monitoring.geopackage import APPLICATION_ID
 from fieldmon.monitoring.migrations import MIGRATIONS
 from fieldmon.monitoring.schema import (
     COMES,
+    LIES,
     LOGS_SINCE,
     NEEDS,
     OPEN,
@@ -111,11 +112,18 @@ class Store:
         with self.reading() as db:
             version = _version(db)
             _refuse_views(db, self.path)
-            is_parted = not has_more and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
+            is_parted = (
+                not has_more
+                and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
+                and (not version or get_meta(db, LIES) != journals.place_of(self.path))
+            )
             needs = get_meta(db, "needs") if version else None
         self._checked: tuple[int, str] | None = None
         #: what is to be doubted of the file, in a sentence, or None
-        self.doubt = journals.PARTED.format(path=self.path) if is_parted else None
+        self.doubt: str | None = None
+        if is_parted:
+            beside = journals.wal_of(self.path).name
+            self.doubt = journals.PARTED.format(path=self.path, beside=beside)
         if version is None:
             raise FileProblem(
                 worded(
@@ -152,6 +160,7 @@ class Store:
         with _draft_folder(target) as folder:
             draft = Path(folder) / "copy.gpkg"
             copy_season(self.path, draft, target)
+            _name_in_project(draft, target)
             _put(draft, target)
 
     def move(self, to: str | Path) -> None:
@@ -171,6 +180,7 @@ class Store:
             db.execute("BEGIN EXCLUSIVE")
             _put(self.path, target)
             self.path.unlink(missing_ok=True)
+        _name_in_project(target, target)
 
     @classmethod
     @contextmanager
@@ -188,6 +198,7 @@ class Store:
                 _mark(db)
                 yield db
                 set_meta(db, OPEN, "0")
+                set_meta(db, LIES, journals.place_of(draft))  # which stays when it gets its name
                 db.execute("COMMIT")
             _put(draft, target)
 
@@ -237,6 +248,7 @@ class Store:
             db.execute("BEGIN IMMEDIATE")
             set_meta(db, OPEN, "1")  # what is changed from here on is changed by us
             set_meta(db, COMES, secrets.token_hex(8))
+            set_meta(db, LIES, journals.place_of(self.path))
             if _version(db) == VERSION:
                 self._checked = season_log.refuse_changed(db, self._checked)
                 if not is_watched(db):  # somebody took away what would note changes
@@ -397,6 +409,12 @@ def copy_season(path: Path, to: Path, named: Path | None = None) -> None:
         said = copy.execute("PRAGMA quick_check(1)").fetchone()[0]
         if said != "ok":
             raise damaged(path, said)
+
+
+def _name_in_project(path: Path, named: Path) -> None:
+    """Let QGIS open the file that it opens the project of, not the one that was copied."""
+    with _sentences(path, named), closing(connect(path)) as db:
+        qgis_project.rename(db, named.name)
 
 
 def _must_be_there(path: Path) -> None:

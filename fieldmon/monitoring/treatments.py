@@ -16,7 +16,7 @@ from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import irac_groups
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.geopackage import blob, geometry, touch, unpacked
+from fieldmon.monitoring.geopackage import beside_plot, blob, geometry, touch, unpacked
 from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.rows_that_count import COUNTS, STANDS_BACK, TAKEN_BACK
 from fieldmon.monitoring.waiting_periods import WaitingPeriod, end_of
@@ -127,6 +127,7 @@ def store(
     """
     place = said[0]
     row = _row(treatment, said, clock)
+    row["geom"] = beside_plot(db, row["geom"])
     if any(row[name] is not None for name in FILLED):
         row["by_label"] = "+".join(by_label)
     row |= {"batch": batch, "digest": digest_of(row), "undone": COUNTS}

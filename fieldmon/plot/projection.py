@@ -45,6 +45,19 @@ def on_both_sides() -> str:
     )
 
 
+def turned_to(geometry: G, lon: float) -> G:
+    """Return a lon/lat geometry whose longitudes are, by whole rounds, those nearest to `lon`.
+
+    So all that belongs to a plot across 180 lies in one piece.
+    """
+
+    def turned(lonlat: Float) -> Float:
+        rounds = np.round((lon - lonlat[:, 0]) / 360.0)
+        return np.stack([lonlat[:, 0] + 360.0 * rounds, lonlat[:, 1]], axis=1)
+
+    return shapely.transform(geometry, turned)
+
+
 def _eastward(lonlat: Float) -> Float:
     return np.stack([lonlat[:, 0] % 360.0, lonlat[:, 1]], axis=1)
 

@@ -47,13 +47,14 @@ def test_zones_that_only_pay_are_told_from_what_the_threshold_asks_for(run, seas
 
 def test_the_zones_are_written_for_the_sprayer(run, season):
     words = ["decide", season, "--threshold", "0.1%", *CHEAP, "--product", "soap"]
-    code, out, err, made = run(*words, "-o", "z.gpkg", "-o", "z.xml.zip", "--rate", "250")
+    code, out, err, made = run(*words, "-o", "z.gpkg", "-o", "z.xml.zip", "-o", "z.tif",
+                               "--rate", "250")  # fmt: skip
     assert code == 0, err
-    assert {path.name for path in made} == {"z.gpkg", "z.xml.zip"}
+    assert {path.name for path in made} == {"z.gpkg", "z.xml.zip", "z.tif"}
     zones = gpd.read_file(season.parent / "z.gpkg")
     assert set(zones["RATE"]) <= {0.0, 250.0}
     assert (zones["PRODUCT"] == "soap").all()
-    assert "Zones written to z.xml.zip" in out
+    assert "Zones written to z.xml.zip\nZones written to z.tif\nCells of 1.00 m spray " in out
 
 
 def test_a_treatment_is_taken_to_work_as_the_season_learnt(run, season):

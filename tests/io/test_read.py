@@ -204,7 +204,7 @@ def test_a_bow_tie_is_repaired_and_said(tmp_path):
 @pytest.mark.parametrize(
     ("name", "data", "said"),
     [
-        ("none.geojson", b'{"type":"FeatureCollection","features":[]}', "without any geometry"),
+        ("none.geojson", b'{"type":"FeatureCollection","features":[]}', "but it is empty"),
         ("empty.csv", b"", "is empty"),
         ("cut.geojson", b'{"type":"FeatureCollection","features":[', "breaks off"),
         ("page.kml", b"<!DOCTYPE html><html></html>", "web page"),

@@ -7,6 +7,7 @@ import zlib
 from contextlib import closing
 from dataclasses import replace
 
+import geopandas as gpd
 import numpy as np
 import pyogrio
 import pytest
@@ -17,7 +18,7 @@ from hypothesis.extra.numpy import arrays
 from shapely import LineString, MultiPolygon, Point, box
 
 from fieldmon.decisions.labels import ProductLabel
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season, geopackage, photos, scouts
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.geopackage import (
@@ -30,8 +31,11 @@ from fieldmon.monitoring.geopackage import (
     unpacked,
 )
 from fieldmon.monitoring.photos_asked import ask_no_more, ask_photo
+from fieldmon.plot.field import Field
+from fieldmon.plot.planting import Planting
+from fieldmon.plot.plot import Plot
 from tests.monitoring.phone import JPEG, NOW, a_finding
-from tests.monitoring.seasons import BEGINS, on, some_results
+from tests.monitoring.seasons import BEGINS, ROBOT, on, some_results
 from tests.monitoring.test_drafts import add
 
 TABLE = GeoPackageTable("spots", ("number INTEGER", "name TEXT NOT NULL"), "POINT", "Some spots.")
@@ -232,3 +236,34 @@ def test_what_is_packed_unpacks_to_no_more_than_may_be_and_never_in_part(data):
     for one, most in ((packed, len(data) - 1), (packed[:-1], 1000), (b"x" + packed, 1000)):
         with pytest.raises(sqlite3.DatabaseError, match="what is packed"):
             unpacked(one, most)
+
+
+def test_all_layers_of_a_plot_across_longitude_180_lie_in_one_piece(tmp_path):
+    """As the plot itself, given from 0 to 360: else half lies at the other end of the world."""
+    area = MultiPolygon([box(179.9996, -16.8005, 180.0004, -16.8)])
+    season = Season.create(
+        tmp_path / "taveuni.gpkg",
+        Plot.of(Field("Taveuni", area, gate=(179.9996, -16.8)), Planting()),
+        begins=BEGINS,
+        robot=ROBOT,
+    )
+    season.plan(BEGINS)
+    near = np.flatnonzero(season.plot.grid.lonlat()[:, 0] < 0)[0]
+    day = np.datetime64(BEGINS, "D")
+    plants = np.array([0, near, near + 1])
+    season.record(Inspections.of(plants, np.array([CLEAN, FOUND, FOUND]), day), "x")
+    layers = pyogrio.list_layers(season.path)[:, 0].tolist()
+    for layer in ("plots", "plants", "rows", "chance", "inspections", "routes", "stops"):
+        assert layer in layers
+        west, _, east, _ = gpd.read_file(season.path, layer=layer).total_bounds
+        assert 179.9995 < west < east < 180.0005, layer
+    with season.store.reading() as db:
+        said = db.execute(
+            "SELECT min_x, max_x FROM gpkg_contents WHERE min_x IS NOT NULL"
+        ).fetchall()
+    assert all(179.9995 < west < east < 180.0005 for west, east in said)
+    assert len(said) >= 6
+    again = Season(season.path)
+    assert again.verify() == ()
+    assert again.history.inspections.plant.tolist() == plants.tolist()
+    assert (again.plot.grid.lonlat() == season.plot.grid.lonlat()).all()

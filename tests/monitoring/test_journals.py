@@ -74,10 +74,31 @@ def test_a_season_whose_changes_lie_elsewhere_says_so_until_it_is_written_again(
     crashed.with_name("season.gpkg-wal").unlink()
     season = Season(crashed)
     (doubt,) = season.verify()
-    assert "what was done last may be missing" in doubt
+    assert "cannot be told" in doubt
+    assert "bring season.gpkg-wal too" in doubt
     assert len(season.history.inspections) == 12
     season.record(three_results(), "x")
     assert Season(crashed).verify() == ()
+
+
+@pytest.mark.parametrize("begun_here", [False, True])
+def test_a_season_that_another_program_closed_where_it_lies_is_not_doubted(
+    path, tmp_path, begun_here
+):
+    if begun_here:
+        path.unlink()
+        a_season(path)
+    else:
+        Season(path).record(three_results(), "x")
+    with closing(as_qgis(path)) as qgis:
+        qgis.execute("UPDATE gpkg_contents SET description = 'QGIS was here'")
+    assert beside(path) == ["season.gpkg"]
+    assert path.read_bytes()[18:20] == b"\2\2"  # its mark
+    assert Season(path).verify() == ()
+    copy = shutil.copy(path, tmp_path / "copy.gpkg")
+    assert len(Season(copy).verify()) == 1
+    renamed = path.rename(tmp_path / "renamed.gpkg")
+    assert Season(renamed).verify() == ()
 
 
 @pytest.mark.parametrize("kind", ["of another season", "of an earlier day", "beside a closed file"])

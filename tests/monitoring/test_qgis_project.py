@@ -17,7 +17,8 @@ import pytest
 from pyproj import Transformer
 
 from fieldmon.infestation.inspections import RESULT_NAMES
-from fieldmon.monitoring import Season
+from fieldmon.io.parse.geometry import area_m2
+from fieldmon.monitoring import Season, Store
 from fieldmon.monitoring.qgis_project import _mercator
 from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.plot.robot import Robot
@@ -147,14 +148,69 @@ def test_a_copy_under_another_name_gets_a_project_of_its_own(season, tmp_path):
     assert kept == {"./vines.gpkg"}
 
 
+def test_a_copy_by_fieldmon_and_a_season_renamed_have_a_project_of_their_own(season, tmp_path):
+    """Else whoever opens a copy beside the season in QGIS works in the season."""
+    season.store.back_up(copy := tmp_path / "o'clock & more.gpkg")
+    season.store.back_up(tmp_path / "again.gpkg")
+    Store(tmp_path / "again.gpkg").move(moved := tmp_path / "moved.gpkg")
+    for path in (season.path, copy, moved):
+        project = project_of(path)
+        sources = {one.find("datasource").text.partition("|")[0]
+                   for one in project.iter("maplayer")}  # fmt: skip
+        assert sources == {f"./{path.name}"}
+        assert project.find("title").text == project.get("projectname") == path.stem
+    before, after = (layers(project_of(path)) for path in (season.path, copy))
+    assert {name: len(rows_shown(season.path, one)) for name, one in before.items()} == {
+        name: len(rows_shown(copy, one)) for name, one in after.items()
+    }
+
+
+@pytest.mark.parametrize("content", [None, 7, "zz", b"\xff", "00", "other"])
+def test_a_project_that_is_somebody_s_own_stays_in_a_copy_as_it_was(season, tmp_path, content):
+    shutil.copy(season.path, path := tmp_path / "season.gpkg")
+    if content == "other":
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w") as archive:
+            archive.writestr("mine.qgs", "<qgis><datasource>./roads.gpkg|layername=r</datasource>")
+        content = packed.getvalue().hex()
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("UPDATE qgis_projects SET content = ?", (content,))
+        db.commit()
+    Store(path).back_up(copy := tmp_path / "copy.gpkg")
+    with closing(sqlite3.connect(copy)) as db:
+        assert db.execute("SELECT content FROM qgis_projects").fetchall() == [(content,)]
+        db.execute("DROP TABLE qgis_projects")
+        db.commit()
+    Store(copy).back_up(tmp_path / "another.gpkg")
+
+
+def test_routes_of_a_team_have_a_colour_each_and_one_alone_is_black(season, tmp_path):
+    team = a_season(tmp_path / "team.gpkg", team=team_of(2, Robot(hours=0.5)))
+    team.plan_each(BEGINS)
+    drawn = layers(project_of(team.path))["Route today"]
+    with closing(sqlite3.connect(team.path)) as db:
+        names = [who for (who,) in db.execute("SELECT who FROM routes ORDER BY who")]
+    assert [one.get("value") for one in drawn.iter("category")] == names
+    colours = [one.get("value") for one in drawn.iter("Option") if one.get("name") == "line_color"]
+    assert len(set(colours)) == len(colours) == 2
+    alone = layers(project_of(season.path))["Route today"]
+    assert not list(alone.iter("category"))
+
+
 _ASK_QGIS = """
 import sys
-from qgis.core import QgsApplication, QgsProject, QgsVectorLayerUtils, edit
+from qgis.core import QgsDistanceArea, QgsApplication, QgsProject, QgsVectorLayerUtils, edit
 app = QgsApplication([], False); app.initQgis()
 project = QgsProject.instance()
 assert project.read(f"geopackage:{sys.argv[1]}?projectName=fieldmon")
 layers = {one.name(): one for one in project.mapLayers().values()}
 assert all(one.isValid() for one in layers.values()), layers
+measured = QgsDistanceArea()
+measured.setSourceCrs(layers["Plot"].crs(), project.transformContext())
+measured.setEllipsoid(project.ellipsoid())
+plot = next(layers["Plot"].getFeatures()).geometry()
+assert abs(measured.measureArea(plot) / float(sys.argv[3]) - 1) < 1e-4, measured.measureArea(plot)
+assert project.title() == "field"
 assert [one["day"] for one in layers["Route today"].getFeatures()] == [2]
 assert layers["Plot"].readOnly() and not layers["Findings"].readOnly()
 findings, stop = layers["Findings"], next(layers["Stops today"].getFeatures())
@@ -176,11 +232,14 @@ def test_qgis_opens_the_project_edits_and_saves_and_the_season_records_it(season
     shutil.copy(season.path, copy)
     Season(copy).rebuild()
     done = subprocess.run(
-        ["/usr/bin/python3", "-c", _ASK_QGIS, str(copy), str(BEGINS)],
+        ["/usr/bin/python3", "-c", _ASK_QGIS, str(copy), str(BEGINS),
+         str(area_m2(season.plot.field.boundary))],
         check=False, capture_output=True, text=True,
         env={"QT_QPA_PLATFORM": "offscreen", "HOME": str(tmp_path), "PATH": os.environ["PATH"]},
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
+    assert copy.read_bytes()[18:20] == b"\2\2"  # QGIS leaves its mark
+    assert Season(copy).store.doubt is None  # and closed the season where it lies
     plant = int(done.stdout.split()[-1])
     from fieldmon.io.readers.inspections import read_inspections
     from fieldmon.monitoring.brought_findings import counting_copy

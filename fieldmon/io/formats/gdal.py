@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ import pyogrio.raw
 import shapely
 from pyogrio.errors import DataLayerError, DataSourceError
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.wkb import shapes
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 
 _UNREADABLE = (DataSourceError, DataLayerError, RuntimeError, ValueError, OSError)
 _OWN_TABLE = re.compile(rb'\btype\s+"?(native|dbf)\b')
+# of a column in it: its name and what follows
+_COLUMN = re.compile(r"\s*(\S+?)_* +(\S.*;\s*)$")
+_NAMED = 5
 _BYTE_FOR_BYTE = "ISO-8859-1"
 
 
@@ -109,7 +113,38 @@ def read_mapinfo(path: Path, name: str) -> Layer:
                     name=name,
                 )
             )
-    return read_layer(path, name, None)
+    try:
+        return read_layer(path, name, None)
+    except FileProblem as problem:
+        if path.suffix != ".tab" or not isinstance(problem.__cause__, UnicodeDecodeError):
+            raise
+        names = _mend_names(path)
+        layer = read_layer(path, name, None)
+        mended = repaired(
+            worded(
+                "Names of columns that were cut in the midst of a letter are read as {names}.",
+                names=first_few([repr(one) for one in names], _NAMED),
+            )
+        )
+        return replace(layer, messages=(*layer.messages, mended))
+
+
+def _mend_names(path: Path) -> list[str]:
+    """Leave out of the columns' names in a staged MapInfo table what is no letter; return these.
+
+    QGIS 3.22 writes such names where they are long and not Latin.
+    """
+    mended: list[str] = []
+    lines = path.read_bytes().split(b"\n")
+    whole = {line.split()[0].decode("utf-8", "replace") for line in lines if line.strip()}
+    for k, line in enumerate(lines):
+        plain = line.decode("utf-8", "ignore")
+        if plain.encode() != line and (found := _COLUMN.match(plain)):
+            mended.append(f"{found[1]}{k}" if found[1] in {*whole, *mended} else found[1])
+            plain = f"    {mended[-1]} {found[2]}"
+        lines[k] = plain.encode()
+    path.write_bytes(b"\n".join(lines))
+    return mended
 
 
 def _stated_encoding(path: Path) -> str | None:

@@ -43,7 +43,7 @@ def read_risk(
     mean, and `ChoiceNeeded` if neither `settings` nor the file says what that is. A plant's value
     is the mean on its ground unless `how` says otherwise.
     """
-    read = read_raster(source, options, plot.field)
+    read = read_raster(source, options, plot.field, plot.grid.lonlat())
     values = read.value.of_plants(plot.grid, how or "mean")
     settings = settings or meaning_of(source_name(source), values, read.value.described)
     chance = risk_chance(values, settings)
@@ -86,7 +86,7 @@ def read_missing(
     Plants that the raster does not show count as there. A plant's value is the highest on its
     ground unless `how` says otherwise. Raise what `read_raster` raises.
     """
-    read = read_raster(source, options, plot.field)
+    read = read_raster(source, options, plot.field, plot.grid.lonlat())
     values = read.value.of_plants(plot.grid, how or "highest")
     missing = values < below
     said = worded(

@@ -33,7 +33,10 @@ _FULL = 0.999
 
 
 def read_raster(
-    source: Source, options: RasterOptions | None = None, near: Field | None = None
+    source: Source,
+    options: RasterOptions | None = None,
+    near: Field | None = None,
+    plants: NDArray[np.float64] | None = None,
 ) -> Imported[Raster]:
     """Return one band of a raster.
 
@@ -45,6 +48,8 @@ def read_raster(
         What was chosen about how to read it.
     near
         Read only what lies about this plot; the share of the plot that has values is told.
+    plants
+        ``(n, 2)`` degrees: that share is of these; None: of its area.
 
     Raises
     ------
@@ -56,7 +61,7 @@ def read_raster(
     read: Imported[Raster] = _read("reading:raster", source, options, near)
     if near is None:
         return read
-    return read.having(read.value, _coverage(read.value, near, source_name(source)))
+    return read.having(read.value, _coverage(read.value, near, source_name(source), plants))
 
 
 def read_backdrop(
@@ -99,9 +104,12 @@ def _read(task: str, source: Source, options: RasterOptions | None, near: Field 
         return process.call(f"fieldmon.io.rasters.{task}", folder, source, options, bounds)
 
 
-def _coverage(raster: Raster, field: Field, name: str) -> list[ImportMessage]:
+def _coverage(
+    raster: Raster, field: Field, name: str, plants: NDArray[np.float64] | None
+) -> list[ImportMessage]:
     """Return a doubt where the plot has values in part only; refuse where it has none."""
-    covered = float(np.mean(~np.isnan(raster.at(_within(field)))))
+    places = _within(field) if plants is None else plants
+    covered = float(np.mean(~np.isnan(raster.at(places))))
     if covered == 0.0:
         raise FileProblem(
             worded(

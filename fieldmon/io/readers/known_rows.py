@@ -30,13 +30,15 @@ class KnownRows(NamedTuple):
 
 
 _NAMED = 5
+# to which a longer name is cut
+_LETTERS_OF_SHAPEFILE = 10
 # nothing that is grown in rows stands so far apart
 _VERY_FAR_M = 30.0
 _NO_UNITS = frozenset({"", "deg", "degree", "degrees", "°"})
 #: rows or plants and how they stand; or, alone, what only they have
 _OF_ROWS = re.compile(
     r"^(?:row|rows|vine|vines|plant|plants|tree|trees|reihen?|zeilen?|pflanz|pflanzen|rebstock)"
-    r"(?:spac|dist|abstand|gap$|width|weite|bearing|azimu|orient|direction|richtung|heading)"
+    r"(?:spac|dist|abstand|gap$|width|weite|beari|azimu|orient|direction|richtung|heading)"
     r"|^(?:inter|between|in|intra|within)rows?(?:spac|dist|width)?$|spacing|abstand$"
     r"|^distancia(?:entre)?(?:filas|hileras|plantas)|^(?:inter|entre)(?:rang|linea|linha|fila)"
     r"|^marco(?:de)?plantaci|^sesto|^headland"
@@ -119,15 +121,21 @@ def _unread(columns: list[str]) -> list[ImportMessage]:
     alike = [column for column in columns if _OF_ROWS.search(plain(column))]
     if not alike:
         return []
-    return [
-        doubtful(
-            worded(
-                "What seems to be said of rows or plants is not read: {names}. Call such columns "
-                "row_bearing_deg, row_spacing_m and plant_spacing_m, or say it by hand.",
-                names=first_few([repr(column) for column in alike], _NAMED),
-            )
+    names = first_few([repr(column) for column in alike], _NAMED)
+    if any(len(column) == _LETTERS_OF_SHAPEFILE for column in alike):
+        said = worded(
+            "What seems to be said of rows or plants is not read: {names}. Call such columns "
+            "bearing, row_m and plant_m, since a shapefile cuts names after 10 letters, or say it "
+            "by hand.",
+            names=names,
         )
-    ]
+    else:
+        said = worded(
+            "What seems to be said of rows or plants is not read: {names}. Call such columns "
+            "row_bearing_deg, row_spacing_m and plant_spacing_m, or say it by hand.",
+            names=names,
+        )
+    return [doubtful(said)]
 
 
 def left_aside(

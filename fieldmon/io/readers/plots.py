@@ -369,6 +369,14 @@ def _refuse_without_areas(layer: Layer, n_lines: int, n_points: int) -> None:
             "kind",
             offers,
         )
+    if not len(layer):
+        raise FileProblem(
+            worded(
+                "{file} must hold at least one plot with a boundary, but it is empty. Choose "
+                "another file or layer.",
+                file=layer.name,
+            )
+        )
     raise FileProblem(
         worded(
             "{file} must hold at least one plot with a boundary, but it holds {n} "

@@ -7,7 +7,7 @@ import sqlite3
 import zipfile
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import geopandas as gpd
 import pandas as pd
@@ -21,11 +21,14 @@ from fieldmon.io.atomic_write import why_not_written
 from fieldmon.io.writers import qml
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
+from fieldmon.plot.projection import goes_round, turned_to
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from fieldmon.io.writers.day_file import HandoffPlan
+
+G = TypeVar("G", Point, LineString)
 
 _WGS84 = "EPSG:4326"
 _MOST_BYTES = 254  # of text in a cell of a shapefile's table
@@ -129,6 +132,8 @@ def _made(write: Callable[[Path], bytes]) -> bytes:
 
 
 def _write(frame: gpd.GeoDataFrame, path: Path, driver: str, **more: Any) -> None:  # noqa: ANN401
+    if driver == "GPKG" and not path.exists():
+        more["VERSION"] = qml.GPKG_VERSION
     pyogrio.write_dataframe(frame, path, driver=driver, append=path.exists(), **more)
 
 
@@ -154,7 +159,7 @@ def _stops(plan: HandoffPlan) -> gpd.GeoDataFrame:
     for name, kind in (("found", object), ("count", "Int32"), ("who", object), ("notes", object)):
         said = plan.notes.who if name == "who" else None
         columns[name] = pd.Series([said] * len(stops), dtype=kind)
-    points = [Point(stop.lon, stop.lat) for stop in stops]
+    points = _in_one_piece(plan, [Point(stop.lon, stop.lat) for stop in stops])
     return gpd.GeoDataFrame(columns, geometry=points, crs=_WGS84)
 
 
@@ -170,9 +175,15 @@ def _line(plan: HandoffPlan) -> gpd.GeoDataFrame:
         "drive_m": figures["drive_m"],
         **({"bound": _cut(plan.bound)} if plan.bound else {}),
     }
-    lines = [LineString(plan.line_lonlat)] if there else []
+    lines = _in_one_piece(plan, [LineString(plan.line_lonlat)] if there else [])
     columns = {name: pd.Series([value] * len(lines)) for name, value in row.items()}
     return gpd.GeoDataFrame(columns, geometry=lines, crs=_WGS84)
+
+
+def _in_one_piece(plan: HandoffPlan, shapes: list[G]) -> list[G]:
+    """Return what belongs to a day in one piece: across longitude 180, from 0 to 360."""
+    across = len(plan.line_lonlat) > 0 and goes_round(plan.line_lonlat[:, 0])
+    return [turned_to(shape, 180.0) for shape in shapes] if across else shapes
 
 
 def _cut(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,14 +12,24 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely import MultiPolygon, Polygon
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.units import Units
+from fieldmon.compute.wording import joined, worded
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.atomic_write import why_not_written, write_whole
+from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.spray_rate import must_be_rate
 from fieldmon.io.writers.isoxml import isoxml_taskdata
-from fieldmon.io.writers.zone_cells import ZoneCells, narrowest_m, rates_geotiff, zone_cells
-from fieldmon.plot.projection import Frame
+from fieldmon.io.writers.qml import GPKG_VERSION
+from fieldmon.io.writers.zone_cells import (
+    MOST_CELLS,
+    ZoneCells,
+    beside_and_missed,
+    cell_for,
+    rates_geotiff,
+    zone_cells,
+)
+from fieldmon.plot.projection import Frame, turned_to
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,7 +37,7 @@ if TYPE_CHECKING:
     import geopandas as gpd
 
 _WGS84 = "EPSG:4326"
-_LEAST_CELL_M = 0.1
+_IN_CELLS = re.compile(r"\.grid\d|\.tif$")
 # what is narrower than twice that, between zones and beside them, comes of how plants were measured
 _SLIM_M = 0.1
 _GRID_DEG = 1e-8  # a millimetre, as GeoJSON is written: nothing collapses there
@@ -127,7 +138,7 @@ def _clean_areas(of: TreatmentMap) -> tuple[list[MultiPolygon], MultiPolygon]:
     What is narrower than some centimetres between and in zones is theirs, and beside them nobody's.
     """
     middle = of.boundary.envelope.centroid
-    frame = Frame(middle.x, middle.y)
+    frame = Frame(middle.x - 360.0 if middle.x > 180.0 else middle.x, middle.y)
     zones = [frame.geometry_m(zone) for zone in of.zones]
     apart = shapely.union_all(zones)
     whole = shapely.union(apart, _grown(_grown(apart, _SLIM_M), -_SLIM_M))
@@ -139,7 +150,8 @@ def _clean_areas(of: TreatmentMap) -> tuple[list[MultiPolygon], MultiPolygon]:
         made.append(MultiPolygon([_filled(one) for one in parts if one.intersects(zone)]))
     rest = _polygons(shapely.difference(frame.geometry_m(of.boundary), shapely.union_all(made)))
     rest = MultiPolygon([one for one in rest.geoms if not _is_slim(one)])
-    *sprayed, rest = (_polygons(frame.geometry_lonlat(one), _GRID_DEG) for one in (*made, rest))
+    degrees = (turned_to(frame.geometry_lonlat(one), middle.x) for one in (*made, rest))
+    *sprayed, rest = (_polygons(one, _GRID_DEG) for one in degrees)
     return sprayed, rest
 
 
@@ -184,7 +196,7 @@ def _frame(of: TreatmentMap) -> gpd.GeoDataFrame:
 
 
 def _gpkg(of: TreatmentMap) -> bytes:
-    return _one_file(of, "treatment.gpkg", "GPKG", layer="treatment")
+    return _one_file(of, "treatment.gpkg", "GPKG", layer="treatment", VERSION=GPKG_VERSION)
 
 
 def _geojson(of: TreatmentMap) -> bytes:
@@ -246,7 +258,31 @@ def _taskdata(version: int, grid: int | None = None) -> Callable[[TreatmentMap],
 
 def _cells(of: TreatmentMap, kind: int = 1) -> ZoneCells:
     zones = _clean_areas(of)[0]
-    return zone_cells(of.boundary, zones, max(narrowest_m(zones), _LEAST_CELL_M), kind)
+    return zone_cells(of.boundary, zones, cell_for(of.boundary, zones)[1], kind)
+
+
+def said_of_cells(of: TreatmentMap, name: str, units: Units | None = None) -> str:
+    """Return what cells spray beside the zones, and miss; "" for a file whose format has none."""
+    if not _IN_CELLS.search(checked_ending(name)):
+        return ""
+    units = units or Units()
+    zones = _clean_areas(of)[0]
+    should, is_m = cell_for(of.boundary, zones)
+    beside, missed = beside_and_missed(zones, zone_cells(of.boundary, zones, is_m))
+    m2 = sum(map(area_m2, zones))
+    said = worded(
+        "Cells of {cell} spray {beside} beside the zones and miss {missed} of their {whole}.",
+        cell=units.metres(is_m, 2), beside=units.square(beside * m2),
+        missed=units.square(missed * m2), whole=units.square(m2),
+    )  # fmt: skip
+    if is_m == should:
+        return said
+    coarser = worded(
+        "They are coarser than {should}, since a grid may hold {most:,} cells: where that matters, "
+        "take a file of areas.",
+        should=units.metres(should, 2), most=MOST_CELLS,
+    )  # fmt: skip
+    return joined(" ", [said, coarser])
 
 
 def _geotiff(of: TreatmentMap) -> bytes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 # cells across the narrowest thing that must be told apart
 _ACROSS = 2.0
+_LEAST_CELL_M, _USUAL_CELL_M = 0.1, 1.0
+#: of a grid: terminals hold it in memory
+MOST_CELLS = 1_000_000
 #: where nothing is said of a cell: outside the plot
 NODATA = -1.0
 
@@ -37,8 +40,8 @@ class ZoneCells:
     north_size, east_size
         Size of a cell, degrees.
     sprayed, within
-        ``(rows, columns)`` from the south-west: whether the middle of a cell is in a zone, and in
-        the plot.
+        ``(rows, columns)`` from the south-west: whether the middle of a cell is in a zone and
+        nothing of the cell beyond plot and zones; and whether its middle is in either.
     kind
         As grids of ISO 11783-10 are written: 1, a zone's number in each cell; 2, a rate.
     """
@@ -75,7 +78,7 @@ def zone_cells(
     boundary, zones
         Lon/lat.
     cell_m
-        Side of a cell; half of the narrowest zone shows all of them.
+        Side of a cell; see `cell_for`.
     kind
         See `ZoneCells`.
 
@@ -108,7 +111,66 @@ def zone_cells(
     shapely.prepare(boundary)
     sprayed: NDArray[np.bool_] = np.asarray(shapely.contains_xy(whole, lon, lat))
     within: NDArray[np.bool_] = sprayed | np.asarray(shapely.contains_xy(boundary, lon, lat))
-    return ZoneCells(float(south), float(west), north_size, float(east_size), sprayed, within, kind)
+    size = north_size, float(east_size)
+    cells = ZoneCells(float(south), float(west), *size, sprayed, within, kind)
+    near = _sprayed_at_the_rim(shapely.union(boundary, whole), cells)
+    beyond = near.at[~near.inside]
+    sprayed[beyond[:, 1], beyond[:, 0]] = False
+    return cells
+
+
+class _AtTheRim(NamedTuple):
+    """Sprayed cells at the rim of an area, and maybe some beside these.
+
+    `at` is ``(n, 2)`` column and row, `inside` ``(n,)`` whether a cell lies wholly in the area,
+    `boxes` ``(n,)`` the cells.
+    """
+
+    at: NDArray[np.int64]
+    inside: NDArray[np.bool_]
+    boxes: NDArray[np.object_]
+
+
+def _sprayed_at_the_rim(area: shapely.Geometry, cells: ZoneCells) -> _AtTheRim:
+    size, corner = np.array([cells.east_size, cells.north_size]), [cells.west, cells.south]
+    # of two points half a cell apart, what lies between is in the cell of either or next to it
+    rim = shapely.segmentize(shapely.boundary(area), size.min() / 2)
+    on = np.unique(np.floor((shapely.get_coordinates(rim) - corner) / size).astype(int), axis=0)
+    around = [(dx, dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
+    at = np.unique((on[:, None] + around).reshape(-1, 2), axis=0)
+    rows, columns = cells.sprayed.shape
+    at = at[((at >= 0) & (at < [columns, rows])).all(axis=1)]
+    at = at[cells.sprayed[at[:, 1], at[:, 0]]]
+    west, south = (at * size + corner).T
+    boxes = shapely.box(west, south, west + size[0], south + size[1])
+    shapely.prepare(area)
+    return _AtTheRim(at, np.asarray(shapely.covers(area, boxes)), np.asarray(boxes))
+
+
+def beside_and_missed(zones: Iterable[MultiPolygon], cells: ZoneCells) -> tuple[float, float]:
+    """Return which share of the zones' area is sprayed beside them, and which of it is missed."""
+    whole = shapely.union_all(list(zones))
+    boxes = _sprayed_at_the_rim(whole, cells).boxes
+    beside = float(shapely.area(shapely.difference(boxes, whole)).sum())
+    sprayed = np.count_nonzero(cells.sprayed) * cells.north_size * cells.east_size
+    return beside / whole.area, 1.0 - (sprayed - beside) / whole.area
+
+
+def cell_for(boundary: MultiPolygon, zones: list[MultiPolygon]) -> tuple[float, float]:
+    """Return how large cells should be, metres, and how large they are: no more than `MOST_CELLS`.
+
+    A metre, or half of the narrowest zone: coarser cells miss too much along rims.
+    """
+    should = min(max(narrowest_m(zones), _LEAST_CELL_M), _USUAL_CELL_M)
+    west, south, east, north = shapely.total_bounds([boundary, *zones])
+    wide_m = (east - west) * M_PER_DEGREE * np.cos(np.radians((south + north) / 2))
+    high_m = (north - south) * M_PER_DEGREE
+    # as many whole cells each way, and one that is cut
+    both = wide_m + high_m
+    least = (both + np.sqrt(both**2 + 4 * (MOST_CELLS - 1) * wide_m * high_m)) / (
+        2 * (MOST_CELLS - 1)
+    )
+    return should, max(should, float(least))
 
 
 def narrowest_m(zones: Iterable[MultiPolygon]) -> float:

@@ -77,8 +77,13 @@ def test_zones_noted_as_treated_are_those_on_the_page_whatever_another_session_f
     assert one.place.plants.tolist() == seen.tolist()
 
 
-def test_by_boxes_that_were_changed_since_the_page_was_drawn_nothing_is_noted(season_app, season):
+def test_cells_are_told_of_and_by_boxes_changed_since_the_page_was_drawn_nothing_is_noted(
+    season_app, season
+):
     go(season_app, "decide")
+    assert "beside the zones" not in texts_of(season_app)
+    season_app.selectbox(key="decide file").set_value(".tif").run()
+    assert re.search(r"Cells of .* beside the zones and miss ", texts_of(season_app))
     season_app.number_input(key="decide ring").set_value(3)
     boxed(season_app.number_input, "efficacy").set_value(80)
     press(season_app, texts.TREAT_BUTTON)

@@ -9,7 +9,7 @@ import pytest
 from shapely import Point, box
 
 from fieldmon.errors import FileProblem
-from fieldmon.io.formats.gdal import list_layers, read_layer, read_shapefile
+from fieldmon.io.formats.gdal import list_layers, read_layer, read_mapinfo, read_shapefile
 from fieldmon.io.import_report import Severity
 from fieldmon.io.sandbox import limits
 from tests.io.tables_of_cells import sentences
@@ -107,3 +107,26 @@ def test_areas_come_in_as_areas(tmp_path):
     gpd.GeoDataFrame({"n": [1]}, geometry=[box(0, 0, 1, 1)], crs=4326).to_file(tmp_path / "a.fgb")
     (shape,) = read_layer(tmp_path / "a.fgb", "a", None).geometry
     assert shape.equals(box(0, 0, 1, 1))
+
+
+def test_columns_of_a_mapinfo_table_whose_names_were_cut_within_a_letter_are_read(tmp_path):
+    """As QGIS 3.22 writes long names in Hebrew: half letters, or a name that ends in one."""
+    frame = gpd.GeoDataFrame(
+        {"name": ["north"], "one": [3.0], "two": [4.0], "three": [5.0], "b": 6.0, "four": 7.0},
+        geometry=[box(35.15, 30.36, 35.152, 30.362)], crs=4326,
+    )  # fmt: skip
+    path = tmp_path / "plots.tab"
+    pyogrio.write_dataframe(frame, path, driver="MapInfo File")
+    said = path.read_bytes()
+    cut = {b"one": b"a\xd7_\xd7__\xd7", b"two": b"a\xd7_", b"three": "שורות_ב".encode() + b"\xd7",
+           b"four": b"b\xd7_"}  # fmt: skip
+    for name, half in cut.items():
+        said = said.replace(b" " + name + b" ", b" " + half + b" ")
+    path.write_bytes(said)
+    layer = read_mapinfo(path, "plots")
+    cells = [layer.columns[name][0] for name in ("name", "a", "שורות_ב", "b")]
+    assert cells == ["north", 3.0, 5.0, 6.0]
+    assert len(layer.columns) == 6
+    (said,) = layer.messages
+    assert said.severity is Severity.REPAIRED
+    assert "cut in the midst of a letter are read as 'a', 'a" in said.sentence

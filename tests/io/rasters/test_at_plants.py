@@ -10,6 +10,7 @@ from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.io.rasters.at_plants import read_missing, read_risk
 from fieldmon.io.rasters.read import RasterOptions
+from fieldmon.io.writers.chance_raster import write_chance_raster
 from fieldmon.plot.plot import Plot
 from tests.io.rasters.raster_files import PLOT, TO_UTM, corner, expected, ramp, write
 
@@ -68,6 +69,15 @@ def test_chances_that_have_much_of_the_plot_infested_are_doubted(tmp_path):
         assert ("By it alone 50 % of all" in said) is is_doubted
         small = "All its percents are below 1" in said
         assert small is (settings.meaning == "percent")
+
+
+def test_our_own_chance_map_has_a_value_at_every_plant_and_is_not_doubted(tmp_path):
+    """It says nothing of the plot's rim, where no plant stands."""
+    chance = np.linspace(0.01, 0.1, len(HOME.grid))
+    write_chance_raster(HOME.grid, chance, tmp_path / "chance.tif")
+    read = read_risk(tmp_path / "chance.tif", ANY, HOME, None, "nearest")
+    assert [one.sentence for one in read.messages if one.severity is Severity.DOUBTFUL] == []
+    np.testing.assert_allclose(read.value, chance, rtol=1e-5)
 
 
 def half_without_value():

@@ -99,6 +99,15 @@ def test_what_seems_to_be_said_of_rows_and_is_not_read_is_named(column):
     assert f"is not read: {column!r}. Call such columns row_bearing_deg" in doubt.sentence
 
 
+@pytest.mark.parametrize("column", ["row_spacin", "plant_spac", "row_bearin"])
+def test_a_name_that_a_shapefile_cut_is_doubted_with_names_that_fit(column):
+    known, (doubt,) = known_rows(table(**{column: ["3", "4"]}), NAMES)
+    assert known == {}
+    assert "Call such columns bearing, row_m and plant_m, since a shapefile" in doubt.sentence
+    fitting = known_rows(table(bearing=[68, 68], row_m=[4, 4], plant_m=[3, 3]), NAMES)[0]
+    assert fitting["a"] == (68.0, 4.0, 3.0)
+
+
 def test_spacings_that_may_be_in_another_unit_are_doubted():
     known, (_, doubt) = known_rows(table(row_spacing=[250, 4]), NAMES)
     assert known["a"].row_spacing_m == 250.0

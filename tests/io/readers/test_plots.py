@@ -104,6 +104,8 @@ def test_lines_and_points_alone_are_offered_as_what_they_can_be():
     assert (asked.value.option, asked.value.choices) == ("kind", ("lines", "plants"))
     with pytest.raises(FileProblem, match="without any geometry"):
         plots_of(layer_of([None, None]), ANY)
+    with pytest.raises(FileProblem, match="but it is empty"):
+        plots_of(layer_of([]), ANY)
 
 
 def test_parts_and_holes_are_kept_and_said():

@@ -5,6 +5,7 @@ import re
 import sqlite3
 import struct
 import zipfile
+from dataclasses import replace
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -16,6 +17,7 @@ from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.projection import Frame
 from tests.io.writers.handed import CM, apart_m, crooked, day, usual
 
 
@@ -52,7 +54,28 @@ def test_geopackage_is_one_by_its_own_standard(tmp_path):
         assert db.execute("pragma integrity_check").fetchall() == [("ok",)]  # requirement 6
         assert db.execute("pragma foreign_key_check").fetchall() == []  # requirement 7
         kinds = dict(db.execute("select table_name, geometry_type_name from gpkg_geometry_columns"))
+        assert db.execute("pragma user_version").fetchone() == (10300,)  # QGIS 3.22 warns of 1.4
     assert kinds == {"stops": "POINT", "route": "LINESTRING"}
+
+
+@pytest.mark.parametrize("name", ["route.gpkg", "route.shp.zip"])
+def test_a_day_across_longitude_180_lies_in_one_piece_and_is_read_back(tmp_path, name):
+    grid = replace(rectangle(9, 14), frame=Frame(179.9999, -16.8))
+    plan = day(grid)
+    assert np.ptp(plan.route.stops_lonlat()[:, 0]) > 300
+    (path,) = write_handoff(plan, tmp_path / name)
+    layers = {}
+    for layer in ("stops", "route"):
+        inside = (path, layer) if name.endswith("gpkg") else (f"/vsizip/{path}/{layer}.shp",)
+        layers[layer] = pyogrio.read_dataframe(*inside)
+        west, _, east, _ = layers[layer].total_bounds
+        assert 179.999 < west < 180.0 < east < 180.001
+    found = layers["stops"]
+    found["found"] = "yes"
+    found["date"] = "2026-04-06"
+    pyogrio.write_dataframe(found.drop(columns=["plant"]), edited := tmp_path / "edited.gpkg")
+    read = read_inspections(edited, grid).value
+    assert sorted(read.plant.tolist()) == sorted(plan.route.plant.tolist())
 
 
 def test_the_geopackage_comes_back_edited(tmp_path):

@@ -2,6 +2,7 @@
 
 import io
 import re
+import sqlite3
 import zipfile
 
 import geopandas as gpd
@@ -12,7 +13,8 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.io.writers.treatment_map import TreatmentMap, write_treatment_map
+from fieldmon.io.writers import zone_cells
+from fieldmon.io.writers.treatment_map import TreatmentMap, said_of_cells, write_treatment_map
 from fieldmon.plot.projection import Frame
 
 PLOT = MultiPolygon([shapely.box(35.15, 30.36, 35.152, 30.362)])
@@ -88,6 +90,34 @@ def test_terminals_get_the_version_and_the_grid_that_the_name_says(tmp_path, nam
         if grid:
             assert b'I="%c"' % grid[-1].encode() in task
             assert "TASKDATA/GRD00001.bin" in archive.namelist()
+
+
+@pytest.mark.parametrize("name", ["t.grid1.xml.zip", "t.v3.grid2.xml.zip", "t.tif"])
+def test_it_is_said_what_cells_spray_beside_the_zones_and_miss(name, monkeypatch):
+    said = said_of_cells(MAP, name)
+    assert re.fullmatch(
+        r"Cells of 1\.00 m spray 0\.00\d+ ha beside the zones and miss 0\.00\d+ ha of their "
+        r"0\.33 ha\.", said,
+    )  # fmt: skip
+    monkeypatch.setattr(zone_cells, "MOST_CELLS", 2_000)
+    assert re.search(
+        r"Cells of 4\.\d+ m .* coarser than 1\.00 m, since .* take a file of areas",
+        said_of_cells(MAP, name),
+    )
+    assert said_of_cells(MAP, "t.xml.zip") == said_of_cells(MAP, "t.geojson") == ""
+
+
+def test_zones_of_a_plot_across_longitude_180_lie_in_its_one_piece(tmp_path):
+    plot = MultiPolygon([shapely.box(179.9996, -16.8005, 180.0008, -16.8)])
+    east = MultiPolygon([shapely.box(-179.9998, -16.8005, -179.9995, -16.8003)])
+    of = TreatmentMap("Taveuni", plot, [east], 300.0)
+    path = write_treatment_map(of, tmp_path / "t.gpkg")
+    read = gpd.read_file(path)
+    assert read.total_bounds[[0, 2]].tolist() == pytest.approx([179.9996, 180.0008])
+    assert read.geometry[0].bounds[0] == pytest.approx(180.0002)
+    with sqlite3.connect(path) as db:
+        assert db.execute("pragma user_version").fetchone() == (10300,)  # QGIS 3.22 warns of 1.4
+    assert said_of_cells(of, "t.tif").startswith("Cells of 1.00 m")
 
 
 def test_a_plot_that_is_all_zone_has_no_rest(tmp_path):

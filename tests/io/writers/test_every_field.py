@@ -13,6 +13,7 @@ import pyogrio
 import pytest
 import yaml
 
+from fieldmon.compute.wording import chance_figure
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
@@ -162,9 +163,7 @@ def test_waypoints_of_gpx_say_plant_arrival_pause_and_chance_in_words(tmp_path, 
         assert plant == f"plant {told['plant'][k]}"
         assert arrive == f"arrive {told['arrive'][k]}"
         assert float(pause.split()[1]) == told["look_s"][k]
-        assert float(chance.split()[1].rstrip("%")) == pytest.approx(
-            100 * told["chance"][k], abs=0.06
-        )
+        assert chance == f"chance {chance_figure(told['chance'][k], 1)}"
         assert float(detects.removeprefix("detects ")) == pytest.approx(told["detects"][k])
 
 

@@ -193,8 +193,8 @@ class Movement:
         Otherwise: new infestations a day that an infested plant sends out. None, of ``"adjacent"``
         only: nobody said it, and a season's usual 0.02 holds.
     at_c
-        Temperature at which `per_day` holds; at others it goes with the pest's rate of increase.
-        None: at any.
+        Temperature at which `per_day` holds; at others it goes with the pest's rate of increase,
+        which must be above 0 there. None: at any.
     by_hour
         Whether it is simulated by the hour rather than by the night.
     least_rain_mm
@@ -391,6 +391,26 @@ class Pest:
             value = getattr(self, name)
             if value is not None:
                 _must("pest", name, value, "a chance in 0..1", 0 <= value <= 1)
+        self._must_go_with_increase()
+
+    def _must_go_with_increase(self) -> None:
+        """Raise `SettingError` unless movement can be told at every temperature."""
+        at_c = self.movement.at_c
+        if self.increase is None or at_c is None:
+            return
+        if not float(self.increase.at(at_c)) > 0.0:
+            raise SettingError(
+                worded(
+                    "The at_c of movement must be a temperature at which the pest increases, but "
+                    "at {at_c:g} °C its rate is 0, and at others it moves by how many times that "
+                    "rate theirs is. Give the per_day of a warmer day.",
+                    at_c=at_c,
+                )
+            )
+        if self.movement.kernel != "adjacent":
+            most = float(np.max(self.infests_per_day(np.array(self.increase.at_c))))
+            rule = f"{_MOST_PER_DAY:.0f} at most where the pest increases fastest"
+            _must("movement", "per_day", most, rule, most <= _MOST_PER_DAY)
 
     @property
     def assumed(self) -> tuple[Assumed, ...]:
@@ -409,7 +429,7 @@ class Pest:
         if temperature_c is None or self.increase is None or self.movement.at_c is None:
             return np.full(np.shape(temperature_c) if temperature_c is not None else (), usual)
         at_usual = float(self.increase.at(self.movement.at_c))
-        ratio = self.increase.at(temperature_c) / at_usual if at_usual > 0 else 1.0
+        ratio = self.increase.at(temperature_c) / at_usual
         if self.movement.kernel != "adjacent":
             return np.asarray(usual * ratio)
         return np.asarray(1.0 - (1.0 - usual) ** ratio)

@@ -448,6 +448,26 @@ class Pest:
         return next((one for one in self.citations if one.part == part), None)
 
 
+def tells_detection(robot: Robot) -> bool:
+    """Tell whether somebody chose how a robot detects."""
+    usual = type(robot)()
+    return (robot.detection, robot.viewpoints) != (usual.detection, usual.viewpoints)
+
+
+def seen_by_pest(robot: Robot, pest: Pest | None, before: Pest | None = None) -> Robot:
+    """Return the robot with the chance of detection that the pest says, if one does.
+
+    Where another pest was looked for `before`, what that one said holds no more.
+    """
+    if before is not None and before != pest and before.seen_by(robot) == robot:
+        usual = type(robot)()
+        if before.viewpoints is not None:
+            robot = replace(robot, viewpoints=usual.viewpoints)
+        if before.detection is not None:
+            robot = replace(robot, detection=usual.detection)
+    return robot if pest is None else pest.seen_by(robot)
+
+
 def _at_most(of: str, name: str, value: float, most: float) -> None:
     _must(of, name, value, f"{most:.0f} at most", value <= most)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -163,7 +163,9 @@ def learnt_from(
         *_more_than_told(belief),
         Learnt("detection", found.value, found.low, found.high),
         Learnt(_INFESTED_AT_START, *astuple(at_start)),
-        Learnt("arrivals a night", *astuple(arrivals), told=_told_to_arrive(belief, spread)),
+        replace(
+            Learnt("arrivals a night", *astuple(arrivals)), told=_told_to_arrive(belief, spread)
+        ),
         Learnt("jumps beyond neighbours", jumps, jumps, jumps),
         *_length(belief),
         *_hiding(belief),

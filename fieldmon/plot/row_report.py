@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import counted, worded
+from fieldmon.plot.measured_rows import LEAST_TRACED
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.strands import row_deviations
 
@@ -306,7 +307,7 @@ def row_report(
         said.label is not None or not scattered,
         () if decided else found.directions,
         said.misnamed,
-        said.label is not None,
+        said.label is not None and len(xy_m) >= LEAST_TRACED,
         said.of_trial,
         _paired_share(xy_m),
         *_zigzag(left_m, row),

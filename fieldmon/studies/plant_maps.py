@@ -118,7 +118,8 @@ def read_plant_maps(folder: Path, public: Collection[str] = tuple(PUBLIC_MAPS)) 
     several.
     """
     if not folder.is_dir():
-        raise FileProblem(f"The folder of maps {folder} must exist, but it does not.")
+        but = "is a file" if folder.exists() else "does not exist"
+        raise FileProblem(f"Maps must be in a folder that exists, but {folder} {but}.")
     files = sorted(
         path for path in folder.rglob("*") if path.name in public or path.name.endswith(_OWN_ENDING)
     )
@@ -140,7 +141,7 @@ def _columns_of(path: Path) -> MapColumns:
     if missing:
         raise FileProblem(
             f"{path.name} must have the columns {', '.join(_OWN_COLUMNS)}, but "
-            f"{', '.join(missing)} is missing."
+            f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing."
         )
     row_m, plant_m = (_distance(layer, name, path.name) for name in _OWN_COLUMNS[3:])
     date, part = (name if name in layer.columns else "" for name in ("date", "plot"))
@@ -149,12 +150,13 @@ def _columns_of(path: Path) -> MapColumns:
 
 def _distance(layer: Layer, column: str, file: str) -> float:
     """Return a distance, which is the same in each line."""
-    values = {number(text(value)) for value in layer.columns[column]}
+    told = sorted({text(value) for value in layer.columns[column]})
+    values = {number(one) for one in told}
     (value,) = values if len(values) == 1 else (float("nan"),)
     if not 0.0 < value < float("inf"):
         raise FileProblem(
             f"The column {column} of {file} must hold one distance in metres, the same in each "
-            f"line, but it holds {', '.join(sorted(map(str, values))[:3])}."
+            f"line, with a point before decimals, but it holds {', '.join(told[:3])}."
         )
     return value
 
@@ -174,7 +176,7 @@ def read_plant_map(path: Path, columns: MapColumns) -> list[PlantMap]:
     if missing:
         raise FileProblem(
             f"{path.name} must have the columns {', '.join(needed)}, "
-            f"but {', '.join(missing)} is missing."
+            f"but {', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing."
         )
     parts = _texts(layer, columns.part)
     stem = path.name.removesuffix(_OWN_ENDING).removesuffix(path.suffix)

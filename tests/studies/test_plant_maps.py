@@ -88,8 +88,11 @@ def test_files_that_are_no_maps_are_refused_in_a_sentence(tmp_path, lines, says)
 def test_a_folder_without_maps_is_refused(tmp_path):
     with pytest.raises(FileProblem, match="hold a map"):
         read_plant_maps(tmp_path)
-    with pytest.raises(FileProblem, match="must exist"):
+    with pytest.raises(FileProblem, match=r"a folder that exists, but .*none does not exist"):
         read_plant_maps(tmp_path / "none")
+    file = write(tmp_path / "a.map.csv", "row")
+    with pytest.raises(FileProblem, match=r"a folder that exists, but .*a\.map\.csv is a file"):
+        read_plant_maps(file)
 
 
 def test_known_maps_are_found_by_name_in_folders(tmp_path):
@@ -127,9 +130,13 @@ def test_a_map_of_ones_own_is_read_with_its_distances(tmp_path):
 @pytest.mark.parametrize(
     ("lines", "says"),
     [
-        (["row,plant,infested", "1,1,1"], "row_m, plant_m is missing"),
+        (["row,plant,infested", "1,1,1"], "row_m, plant_m are missing"),
         ([*OWN[:2], OWN[2].replace("3.5", "3.6")], r"one distance .* it holds 3\.5, 3\.6"),
         ([OWN[0], OWN[1].replace("1.2", "0")], "one distance in metres"),
+        (
+            [OWN[0].replace(",", ";"), OWN[1].replace(",", ";").replace("3.5", "3,5")],
+            "a point before decimals, but it holds 3,5",
+        ),
     ],
 )
 def test_a_map_of_ones_own_that_lacks_something_is_a_sentence(tmp_path, lines, says):

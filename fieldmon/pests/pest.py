@@ -198,7 +198,8 @@ class Movement:
     by_hour
         Whether it is simulated by the hour rather than by the night.
     least_rain_mm
-        It moves only in hours or days with so much rain or more; 0: whatever the weather.
+        It moves only on days with so much rain or more, whenever it falls, or `by_hour` in hours
+        with so much; 0: whatever the weather.
 
     Examples
     --------

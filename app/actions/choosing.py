@@ -12,6 +12,7 @@ from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.import_report import ImportMessage, Severity
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.monitoring.settings import MOST_DAYS
+from fieldmon.pests.pest import seen_by_pest
 from fieldmon.plot import robot as robots
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.samplers import USUAL
@@ -192,7 +193,7 @@ def _from_files(source: str, wait: Wait, work: Work) -> Choices | None:
     pest, prior = chosen_pest.pest(), chosen_pest.prior(assumptions.prior(), made.plot, today, day)
     return Choices(
         made.key, made.plot, made.records, made.messages,
-        robot if pest is None else pest.seen_by(robot), sampler, str(day),
+        seen_by_pest(robot, pest), sampler, str(day),
         chosen_units.units(), None, outline.key, made.risk, today, made.left_out, prior,
     )  # fmt: skip
 

@@ -86,12 +86,6 @@ def _use(choices: Choices) -> str:
     pest, weather = chosen_pest.pest(), chosen_pest.met(choices)
     if pest is None and weather is not None:
         raise SettingError(texts.WEATHER_NEEDS_PEST)
-    robot, team = settings.robot, settings.team
-    if pest is not None:
-        robot = pest.seen_by(robot)
-        team = tuple(replace(one, robot=pest.seen_by(one.robot)) for one in team)
-    wanted = replace(
-        settings, pest=pest, weather=weather or settings.weather, robot=robot, team=team
-    )
+    wanted = replace(settings, pest=pest, weather=weather or settings.weather)
     season.change(wanted, settings)
     return texts.PEST_CHANGED

@@ -78,7 +78,8 @@ def _figures(pest: Pest) -> list[str]:
     if moves.wind == "with":
         made.append(texts.PEST_WITH_WIND)
     if moves.least_rain_mm > 0:
-        made.append(texts.PEST_IN_RAIN.format(rain=number(moves.least_rain_mm, "g")))
+        form = texts.PEST_IN_RAINY_HOURS if moves.by_hour else texts.PEST_IN_RAIN
+        made.append(form.format(rain=number(moves.least_rain_mm, "g")))
     return [*made, *_rest(pest)]
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.pest_in_weather import seen_in_weather
 from fieldmon.infestation.spread import Spread
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
@@ -84,7 +85,7 @@ def simulated_season(
     n_days, share, rate, visit_every, seed = numbers
     streams = RandomStreams(seed)
     plot, chance, pest_in_weather = _laid
-    robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
+    robot = seen_in_weather(robot, pest_in_weather)
     start = season_start(plot.grid, chance, share, streams)
     spread = Spread(rate)
     settings = SimulationSettings(n_days, spread, pest=pest_in_weather, visit_every=visit_every)

@@ -274,7 +274,9 @@ PEST_MOVES = {
     "cauchy": "A plant sends out {per_day} a day, half of them farther than {reach} m.",
 }
 PEST_RATE_ASSUMED = "Its file does not say that chance: it is assumed."
-PEST_WITH_WIND, PEST_IN_RAIN = "It goes with the wind.", "It moves only in rain of {rain} mm on."
+PEST_WITH_WIND = "It goes with the wind."
+PEST_IN_RAIN = "It moves only on days with {rain} mm of rain or more."
+PEST_IN_RAINY_HOURS = "It moves only in hours with {rain} mm of rain or more."
 PEST_ENTERS = (
     "It comes in with a chance of {edge} a day at the edge, {paths} beside a path, {anywhere} "
     "anywhere."

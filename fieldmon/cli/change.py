@@ -23,7 +23,7 @@ from fieldmon.cli.options import (
     WorkerOptions,
     sampler_settings,
 )
-from fieldmon.cli.pest_options import SAYS_ITSELF, PestOptions, tell_pest
+from fieldmon.cli.pest_options import SAYS_ITSELF, PestOptions, tell_half_life, tell_pest
 from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
@@ -182,8 +182,7 @@ class ChangeOptions:
             new = replace(new, pest=None)
         elif (pest := told.named()) is not None:
             tell_pest(pest)
-            team = tuple(replace(one, robot=pest.seen_by(one.robot)) for one in new.team)
-            new = replace(new, pest=pest, robot=pest.seen_by(new.robot), team=team)
+            new = replace(new, pest=pest)
         if (weather := told.met(plot)) is None:
             return new
         if new.pest is None:
@@ -229,6 +228,7 @@ def change(options: ChangeOptions) -> None:
         season.change(new, seen, options.who)
         whom = f" for {', '.join(m.name for m in new.team)}" if options.of_worker else ""
         typer.echo(f"Changed{whom if new.team else ''}; fieldmon plan uses it from now on.")
+        tell_half_life(season.settings.prior, seen.prior)
         _tell_day_of_before(season)
 
 

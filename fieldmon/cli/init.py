@@ -107,8 +107,6 @@ class InitOptions:
         self, begins: datetime, team: tuple[TeamMember, ...], pest_in_weather: PestInWeather | None
     ) -> MonitoringSettings:
         """Return how the season is worked."""
-        from dataclasses import replace
-
         from fieldmon.monitoring import MonitoringSettings, Season
         from fieldmon.monitoring.history import BeliefSettings
         from fieldmon.planning.members import Teamwork
@@ -120,7 +118,7 @@ class InitOptions:
         return MonitoringSettings(
             begins.date(),
             begins.time(),
-            self.pest_options.seen(self.worker.robot()),
+            self.worker.robot(),
             self.sampler,
             sampler_settings(self.sampler, self.every),
             belief=belief if self.spread is None else _spreading(belief, self.spread),
@@ -128,7 +126,7 @@ class InitOptions:
             prior=prior_of(pest_in_weather, begins.date(), self.background),
             pest=None if pest_in_weather is None else pest_in_weather.pest,
             weather=None if pest_in_weather is None else pest_in_weather.weather,
-            team=tuple(replace(one, robot=self.pest_options.seen(one.robot)) for one in team),
+            team=team,
             teamwork=Teamwork(
                 contact_s=60.0 * self.contact,
                 least_gain=self.least_gain,

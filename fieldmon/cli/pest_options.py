@@ -94,8 +94,9 @@ class PestOptions:
 
     def seen(self, robot: Robot) -> Robot:
         """Return the robot with the pest's own chance of detection, if it has one."""
-        pest = self.named()
-        return robot if pest is None else pest.seen_by(robot)
+        from fieldmon.pests.pest import seen_by_pest
+
+        return seen_by_pest(robot, self.named())
 
     def in_weather(self, field: Field, begins: date) -> PestInWeather | None:
         """Return the pest in its weather from a day on; None: no pest was named."""
@@ -149,13 +150,17 @@ def prior_of(
     if pest_in_weather is None:
         return usual
     made = prior_for(usual, pest_in_weather.pest, pest_in_weather.weather, on)
-    if made.half_life_days != usual.half_life_days:
-        typer.echo(
-            f"Records count half after {made.half_life_days:g} days: the last generation took so "
-            "long in this weather.",
-            err=True,
-        )
+    tell_half_life(made, usual)
     return made
+
+
+def tell_half_life(prior: PriorSettings, before: PriorSettings) -> None:
+    """Print after how many days records count half, if it was otherwise before."""
+    if prior.half_life_days == before.half_life_days:
+        return
+    usual = prior.half_life_days == type(prior)().half_life_days
+    why = "." if usual else ": the last generation took so long in this weather."
+    typer.echo(f"Records count half after {prior.half_life_days:g} days{why}", err=True)
 
 
 def tell_pest(pest: Pest) -> None:

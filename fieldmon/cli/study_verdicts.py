@@ -56,16 +56,25 @@ def verdicts(
 
     can_be_folder(output)
     pest_in_weather = pest_in_weather_of(pest)
-    questions = usual_questions() + ([] if maps is None else real_questions(maps))
+    real, left = ([], []) if maps is None else real_questions(maps)
+    if left:
+        typer.echo(
+            f"Left out: {', '.join(left)}. Only maps are asked about of which between 0.5 % and "
+            "half of the plants are infested.",
+            err=True,
+        )
+    questions = usual_questions() + real
     questions = [replace(each, pest_in_weather=pest_in_weather) for each in questions]
     study, file = study_of_verdicts(questions, range(seeds)), output / "verdicts.csv"
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], VerdictOutcome)
     with going_on(file), counting("Plots") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
-    typer.echo(f"{'question':34} {'contender':26} looks  of W  right  apart  none")
-    for one in summaries(table.asked()):
+    told = summaries(table.asked())
+    wide = max(34, *(len(one.question) for one in told))
+    typer.echo(f"{'question':{wide}} {'contender':26} looks  of W  right  apart  none")
+    for one in told:
         typer.echo(
-            f"{one.question[:34]:34} {one.contender:26} {one.looks:5.0f} {one.of_w:5.2f} "
+            f"{one.question:{wide}} {one.contender:26} {one.looks:5.0f} {one.of_w:5.2f} "
             f"{one.right:6.2f} {one.right_apart:6.2f} {one.undecided:5.2f}"
         )
     typer.echo(

@@ -29,12 +29,22 @@ def weather(
     Example: fieldmon study weather --seeds 20 --shape "steady wind"
     """
     from fieldmon.io.readers.pest_file import pest_of
-    from fieldmon.studies.weather_known import CARRIED, SHAPES, worth_of_weather
+    from fieldmon.studies.weather_known import (
+        CARRIED,
+        SHAPES,
+        changes_nothing,
+        must_be_shapes,
+        worth_of_weather,
+    )
 
+    names = [shape] if shape else list(SHAPES)
+    must_be_shapes(names, days)
     lives = pest_of(pest) if pest else CARRIED
     if pest:
         tell_pest(lives)
-    for name in [shape] if shape else SHAPES:
+    for said in changes_nothing(lives):
+        typer.echo(said, err=True)
+    for name in names:
         with counting(name) as count:
             (worth,) = worth_of_weather(range(seeds), [name], lives, days, count)
         typer.echo(worth.sentence())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +11,6 @@ from fieldmon.compute.wording import chance_figure, estimate, worded
 from fieldmon.infestation.jump_reach import kernel_means
 from fieldmon.infestation.origins import (
     ANYWHERE,
-    ARRIVE,
-    ARRIVE_BY_EDGE,
     AT_START,
     AT_START_ELSEWHERE,
     BY_EDGE,
@@ -20,7 +18,9 @@ from fieldmon.infestation.origins import (
     SIGMAS,
     Estimate,
 )
+from fieldmon.infestation.pest_in_weather import PestSpread
 from fieldmon.infestation.plot_estimate import estimate_plot
+from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
@@ -43,12 +43,15 @@ class Learnt:
         ``"more than told"`` (the share that the map goes on with, as if it had been told).
     value, low, high
         The guess and the interval; both ends are the guess where the number is a chance itself.
+    told
+        What the file of the pest says of it; None: nothing, or there is none.
     """
 
     name: str
     value: float
     low: float
     high: float
+    told: float | None = None
 
     @property
     def is_share(self) -> bool:
@@ -76,11 +79,16 @@ class Learnt:
                 high=high,
             )
         if self.name == "arrivals a night":
+            said = {"value": value, "low": low, "high": high}
+            if self.told is None or (told := estimate(self.told)) == value:
+                return worded(
+                    "{value} plants a night are infested from outside ({low} to {high}).", **said
+                )
             return worded(
-                "{value} plants a night are infested from outside ({low} to {high}).",
-                value=value,
-                low=low,
-                high=high,
+                "{value} plants a night are infested from outside ({low} to {high}); the file of "
+                "the pest says {told}.",
+                **said,
+                told=told,
             )
         if self.name == "length of jumps":
             return worded(
@@ -120,10 +128,21 @@ def worth_saying(learnt: Iterable[Learnt]) -> tuple[Learnt, ...]:
     return tuple(one for one in told if not (no_jumps and one.name == "length of jumps"))
 
 
-def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
+def learnt_from(
+    belief: Belief, detection: float, night: Spread | None = None
+) -> tuple[Learnt, ...]:
     """Return what a belief has learnt, where inspections were told to have a `detection`.
 
     Nothing for beliefs that learn no more than where the insects are.
+
+    Parameters
+    ----------
+    belief
+        What is believed.
+    detection
+        What inspections were told to find of what is there.
+    night
+        What insects are told to do in a night; None: as they do where nobody said anything.
 
     Examples
     --------
@@ -137,13 +156,16 @@ def learnt_from(belief: Belief, detection: float) -> tuple[Learnt, ...]:
     if not isinstance(belief, TracedPairs):
         return ()
     found = belief.counts.detection(detection)
-    at_start, arrivals = _come_from_none(belief)
+    spread = Spread() if night is None else night
+    at_start, arrivals = _come_from_none(belief, spread)
     jumps = belief.jumps
     return (
         *_more_than_told(belief),
         Learnt("detection", found.value, found.low, found.high),
         Learnt(_INFESTED_AT_START, *astuple(at_start)),
-        Learnt("arrivals a night", *astuple(arrivals)),
+        replace(
+            Learnt("arrivals a night", *astuple(arrivals)), told=_told_to_arrive(belief, spread)
+        ),
         Learnt("jumps beyond neighbours", jumps, jumps, jumps),
         *_length(belief),
         *_hiding(belief),
@@ -175,7 +197,14 @@ def with_start(
     return tuple(agreeing(one) if one.name == _INFESTED_AT_START else one for one in learnt)
 
 
-def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:
+def _told_to_arrive(belief: TracedPairs, night: Spread) -> float | None:
+    """Return how many plants a night the file of the pest says; None: no pest was named."""
+    if not isinstance(night, PestSpread):
+        return None
+    return len(belief.chance) * sum(belief.said_from_outside(night))
+
+
+def _come_from_none(belief: TracedPairs, night: Spread) -> tuple[Estimate, Estimate]:
     """Return how many were infested at the start, and how many a night are from outside.
 
     By the ancestry of finds where there is one: of 61 at the start it says 57 to 67 (a week of
@@ -187,6 +216,7 @@ def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:
         if at_start is not None:
             return at_start, belief.ancestry.arrivals
     n, estimate = len(belief.chance), belief.counts.estimate
+    anywhere, by_edge = belief.told_from_outside(night)
     suspected, elsewhere = map(float, belief.at_start)
     # an earlier season tells of other origins, but never of those at the start
     if belief.counts.expected[[AT_START, AT_START_ELSEWHERE]].any():
@@ -198,7 +228,7 @@ def _come_from_none(belief: TracedPairs) -> tuple[Estimate, Estimate]:
         at_start = Estimate(suspected + elsewhere, now.low * told, now.high * told)
     return (
         at_start,
-        estimate(ANYWHERE, n * ARRIVE) + estimate(BY_EDGE, n * ARRIVE_BY_EDGE),
+        estimate(ANYWHERE, n * anywhere) + estimate(BY_EDGE, n * by_edge),
     )
 
 

@@ -16,6 +16,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.kernels import DistanceKernel
 from fieldmon.infestation.spread import Spread
 from fieldmon.pests.degree_days import Thresholds, degree_days_of_hours
+from fieldmon.pests.pest import seen_by_pest
 from fieldmon.pests.usual_days import LEAST_HOURS, UsualDays
 from fieldmon.pests.weather import HOUR_S
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from fieldmon.pests.pest import Movement, Pest
     from fieldmon.pests.weather import Weather
     from fieldmon.plot.projection import Frame
+    from fieldmon.plot.robot import Robot
 
     Floats = NDArray[np.float64]
 
@@ -273,6 +275,11 @@ class PestInWeather:
         warm = {on: day for on, day in self._known.items() if not np.isnan(day.temperature_c).any()}
         days = warm or self._known
         return list(days.values()), UsualDays(np.array(list(days), "datetime64[D]"))
+
+
+def seen_in_weather(robot: Robot, known: PestInWeather | None) -> Robot:
+    """Return the robot with the chance of detection of the pest that is known, if one is."""
+    return robot if known is None else seen_by_pest(robot, known.pest)
 
 
 def hours_of_movement(movement: Movement) -> Floats:

@@ -8,18 +8,35 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.pests.degree_days import Thresholds
 from fieldmon.pests.development import daily_warmth, whole_generation
 
 if TYPE_CHECKING:
     from datetime import date
 
-    from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.pests.pest import Pest
     from fieldmon.pests.weather import Weather
 
 # looked back for a generation so far; a record older than that is of another season
 _FARTHEST_DAYS = 120
+_USUAL_DAYS = PriorSettings().half_life_days
+
+
+def prior_of_now(
+    settings: PriorSettings,
+    on: date,
+    now: tuple[Pest | None, Weather | None],
+    before: tuple[Pest | None, Weather | None] = (None, None),
+) -> PriorSettings:
+    """Return `prior_for` of the pest and the weather of `now`, unless a half-life was chosen.
+
+    One that is neither the usual nor that of those `before` was chosen, and stays.
+    """
+    usual = replace(settings, half_life_days=_USUAL_DAYS)
+    made = prior_for(usual, *now, on)
+    by_pest = usual, prior_for(usual, *before, on)
+    return made if settings in by_pest else settings
 
 
 def prior_for(

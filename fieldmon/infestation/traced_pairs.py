@@ -536,7 +536,7 @@ class TracedPairs:
         hiding = self.latency.likely if self.latency is not None else self.ancestry.hiding
         # what goes far comes from anywhere
         sends *= 1.0 - self.reach.anywhere
-        night = ToldNight(sends, self._told_from_outside(spread), wind_m_s=by_origins.wind_m_s)
+        night = ToldNight(sends, self.told_from_outside(spread), wind_m_s=by_origins.wind_m_s)
         if isinstance(spread, PestSpread):
             night = night._replace(length=(spread.days, *spread.warmth))
         ancestry, chance = replace(self.ancestry, hiding=hiding).overnight(night)
@@ -631,19 +631,27 @@ class TracedPairs:
 
     def _from_outside(self, reach: Reach, spread: Spread) -> tuple[float, Floats]:
         """Return what a night brings a plant from outside: anywhere, and by the edge ``(n,)``."""
-        scale, (anywhere, by_edge) = self.counts.scale, self._told_from_outside(spread)
+        scale, (anywhere, by_edge) = self.counts.scale, self.told_from_outside(spread)
         return anywhere * float(scale[ANYWHERE]), by_edge * scale[BY_EDGE] * reach.at_edge
 
-    def _told_from_outside(self, spread: Spread) -> tuple[float, float]:
-        """Return the share of all plants infested from outside in a night, as told.
+    def told_from_outside(self, spread: Spread) -> tuple[float, float]:
+        """Return the share of all plants taken to be infested from outside in a night.
+
+        Anywhere, and by the edge: as said, but never less than a little. What is said may be wrong,
+        and a find far from all others must have come from somewhere.
+        """
+        anywhere, by_edge = self.said_from_outside(spread)
+        return max(anywhere, ARRIVE), max(by_edge, ARRIVE_BY_EDGE)
+
+    def said_from_outside(self, spread: Spread) -> tuple[float, float]:
+        """Return the share of all plants that is said to be infested from outside in a night.
 
         Anywhere, and by the edge.
         """
-        by_edge = ARRIVE_BY_EDGE
-        if isinstance(spread, PestSpread):
-            # told of plants at the edge
-            by_edge = max(by_edge, spread.edge_per_day / float(self.reach.at_edge.max()))
-        return max(spread.arrivals_per_day, ARRIVE), by_edge
+        if not isinstance(spread, PestSpread):
+            return spread.arrivals_per_day, 0.0
+        # said of plants at the edge
+        return spread.arrivals_per_day, spread.edge_per_day / float(self.reach.at_edge.max())
 
     def _shares_after(self, beside: Floats, gain: Floats, brought: Floats) -> NDArray[np.float32]:
         """Return the shares of the origins after a night that brought so much."""

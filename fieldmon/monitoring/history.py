@@ -470,8 +470,8 @@ class History:
         """
         told = self.mean_detection(day) if detection is None else detection
         if np.all(self.until(day).result == SKIPPED):  # nights alone teach nothing
-            return learnt_from(self.first_morning, told)
-        learnt = learnt_from(self.in_hindsight(morning, day), told)
+            return learnt_from(self.first_morning, told, self.night(day))
+        learnt = learnt_from(self.in_hindsight(morning, day), told, self.night(day))
         if not learnt or self._ended_unfound(day):
             return learnt
         ever = self._ever_infested(morning, day)

@@ -28,6 +28,7 @@ from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.forecast import NIGHTS, forecast
 from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.pest_in_weather import seen_in_weather
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
@@ -179,7 +180,7 @@ class Monitor:
     sampler
         Name of a sampler, or one of your own (see `fieldmon.samplers.base.Sampler`).
     robot
-        Who inspects; None: the usual `Robot`.
+        Who inspects; None: the usual `Robot`, which sees the `pest` as its file says.
     chance
         ``(n,)`` chance of infestation on the first morning; None: what is believed of a plot
         without records.
@@ -230,7 +231,7 @@ class Monitor:
         must_be_of("A seed", "int", seed)
         must_be_of("'pest' of Monitor", "PestInWeather | None", pest)
         self.plot = plot
-        self.robot = robot or Robot()
+        self.robot = robot or seen_in_weather(Robot(), pest)
         self.belief_settings = belief_settings or BeliefSettings()
         if pest is not None and not self.belief_settings.traces:
             raise SettingError("A pest needs its finds traced. Give BeliefSettings(traces=True).")

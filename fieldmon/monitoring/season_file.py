@@ -221,6 +221,7 @@ class Season(SeasonPlans, SeasonFrames):
             If nobody could work so, or the season is to begin on another day though
             something was recorded or planned.
         """
+        settings = settings.of_its_pest(seen)
         _must_work(settings, self.plot.field, seen)
         with self._lock, self.store.writing() as db:
             if as_json(settings_of(db)) != as_json(seen):
@@ -368,6 +369,7 @@ def _chosen_for(
                 names=", ".join(chosen),
             )
         )
+    settings = settings.of_its_pest()
     _must_work(settings, plot.field)
     if settings.belief.earlier is not None:
         settings.belief.earlier.must_end_before(settings.begins)

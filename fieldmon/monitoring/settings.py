@@ -18,10 +18,12 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.earlier_season import earlier_from
 from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.pest_prior import prior_of_now
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.pest_json import kept_weather, pest_json, pest_of_json, weather_json
+from fieldmon.pests.pest import seen_by_pest, tells_detection
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ, person_key
 from fieldmon.plot.robot import ROBOT_TIMES, Robot, Viewpoints
 from fieldmon.samplers import USUAL, sampler
@@ -65,9 +67,11 @@ class MonitoringSettings:
     teamwork
         How they work together.
     pest
-        What is looked for; None: nobody said, and nights are as `belief` has them.
+        What is looked for; None: nobody said, and nights are as `belief` has them. In a season
+        whoever works detects it as its file says, if it does.
     weather
-        What the pest met and is forecast to meet; None: it is as the pest's figures hold.
+        What the pest met and is forecast to meet; None: it is as the pest's figures hold. In a
+        season earlier records count half after its last generation, unless `prior` says otherwise.
     harvest
         The first day of harvest, which treatments have to wait for; None: not known.
     language
@@ -139,6 +143,34 @@ class MonitoringSettings:
     def pest_in_weather(self) -> PestInWeather | None:
         """Return the pest in its weather, day by day; None: no pest was named."""
         return None if self.pest is None else _pest_in_weather(self.pest, self.weather, self.begins)
+
+    def of_its_pest(self, before: MonitoringSettings | None = None) -> MonitoringSettings:
+        """Return these as the pest has them, and the weather: whoever works sees it as it says.
+
+        And earlier records count half after its generation, unless a half-life was chosen.
+
+        Parameters
+        ----------
+        before
+            What counted until now: what is no other than in it stays; None: nothing did.
+        """
+        made, was = self, (None, None) if before is None else (before.pest, before.weather)
+        if (now := (self.pest, self.weather)) != was:
+            made = replace(made, prior=prior_of_now(self.prior, self.begins, now, was))
+        if before is not None and (self.pest, self.robot, self.team) == (
+            before.pest,
+            before.robot,
+            before.team,
+        ):
+            return made
+
+        def seeing(robot: Robot) -> Robot:
+            # a detection that is told to hold from now on, of the pest looked for, is that
+            told = before is not None and self.pest == was[0] and tells_detection(robot)
+            return robot if told else seen_by_pest(robot, self.pest, was[0])
+
+        team = tuple(replace(one, robot=seeing(one.robot)) for one in self.team)
+        return replace(made, robot=seeing(self.robot), team=team)
 
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""

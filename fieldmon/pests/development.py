@@ -189,13 +189,15 @@ def whole_generation(pest: Pest) -> Stage | None:
     """Return a generation as one stage: the published one, or all stages if they share a threshold.
 
     Where thresholds differ and nobody published the whole, it is counted above their mean, each
-    stage weighing as much as it needs.
+    stage weighing as much as it needs, to a tenth of a degree or to as many digits as theirs have.
     """
     if pest.generation is not None or not pest.stages:
         return pest.generation
     needs = np.array([stage.degree_days for stage in pest.stages])
     thresholds = np.array([stage.threshold_c for stage in pest.stages])
-    threshold = float(np.average(thresholds, weights=needs))
+    mean = float(np.average(thresholds, weights=needs))
+    digits = max(len(f"{one:g}".partition(".")[2]) for one in thresholds)
+    threshold = round(mean, max(digits, 1))
     return replace(pest.stages[0], name="generation", threshold_c=threshold,
                    degree_days=float(needs.sum()))  # fmt: skip
 

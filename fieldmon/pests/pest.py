@@ -193,12 +193,13 @@ class Movement:
         Otherwise: new infestations a day that an infested plant sends out. None, of ``"adjacent"``
         only: nobody said it, and a season's usual 0.02 holds.
     at_c
-        Temperature at which `per_day` holds; at others it goes with the pest's rate of increase.
-        None: at any.
+        Temperature at which `per_day` holds; at others it goes with the pest's rate of increase,
+        which must be above 0 there. None: at any.
     by_hour
         Whether it is simulated by the hour rather than by the night.
     least_rain_mm
-        It moves only in hours or days with so much rain or more; 0: whatever the weather.
+        It moves only on days with so much rain or more, whenever it falls, or `by_hour` in hours
+        with so much; 0: whatever the weather.
 
     Examples
     --------
@@ -391,6 +392,26 @@ class Pest:
             value = getattr(self, name)
             if value is not None:
                 _must("pest", name, value, "a chance in 0..1", 0 <= value <= 1)
+        self._must_go_with_increase()
+
+    def _must_go_with_increase(self) -> None:
+        """Raise `SettingError` unless movement can be told at every temperature."""
+        at_c = self.movement.at_c
+        if self.increase is None or at_c is None:
+            return
+        if not float(self.increase.at(at_c)) > 0.0:
+            raise SettingError(
+                worded(
+                    "The at_c of movement must be a temperature at which the pest increases, but "
+                    "at {at_c:g} °C its rate is 0, and at others it moves by how many times that "
+                    "rate theirs is. Give the per_day of a warmer day.",
+                    at_c=at_c,
+                )
+            )
+        if self.movement.kernel != "adjacent":
+            most = float(np.max(self.infests_per_day(np.array(self.increase.at_c))))
+            rule = f"{_MOST_PER_DAY:.0f} at most where the pest increases fastest"
+            _must("movement", "per_day", most, rule, most <= _MOST_PER_DAY)
 
     @property
     def assumed(self) -> tuple[Assumed, ...]:
@@ -409,7 +430,7 @@ class Pest:
         if temperature_c is None or self.increase is None or self.movement.at_c is None:
             return np.full(np.shape(temperature_c) if temperature_c is not None else (), usual)
         at_usual = float(self.increase.at(self.movement.at_c))
-        ratio = self.increase.at(temperature_c) / at_usual if at_usual > 0 else 1.0
+        ratio = self.increase.at(temperature_c) / at_usual
         if self.movement.kernel != "adjacent":
             return np.asarray(usual * ratio)
         return np.asarray(1.0 - (1.0 - usual) ** ratio)
@@ -426,6 +447,26 @@ class Pest:
     def source(self, part: str) -> Citation | None:
         """Return where a part comes from; None: the file does not speak of it."""
         return next((one for one in self.citations if one.part == part), None)
+
+
+def tells_detection(robot: Robot) -> bool:
+    """Tell whether somebody chose how a robot detects."""
+    usual = type(robot)()
+    return (robot.detection, robot.viewpoints) != (usual.detection, usual.viewpoints)
+
+
+def seen_by_pest(robot: Robot, pest: Pest | None, before: Pest | None = None) -> Robot:
+    """Return the robot with the chance of detection that the pest says, if one does.
+
+    Where another pest was looked for `before`, what that one said holds no more.
+    """
+    if before is not None and before != pest and before.seen_by(robot) == robot:
+        usual = type(robot)()
+        if before.viewpoints is not None:
+            robot = replace(robot, viewpoints=usual.viewpoints)
+        if before.detection is not None:
+            robot = replace(robot, detection=usual.detection)
+    return robot if pest is None else pest.seen_by(robot)
 
 
 def _at_most(of: str, name: str, value: float, most: float) -> None:

@@ -10,6 +10,7 @@ from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.pests.pest import seen_by_pest
 from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.assumed import Assumed
@@ -161,4 +162,4 @@ def _robot(task: Task) -> Robot:
             raise SettingError(said)
     settings: dict[str, Any] = task.stated | orders.robot
     robot = replace(base, **settings)
-    return robot if orders.pest is None else orders.pest.seen_by(robot)
+    return seen_by_pest(robot, orders.pest)

@@ -44,8 +44,8 @@ _NEARER, _CROSSED = 0.75, 0.1
 _ASKED, _NEAR = 5000, 6
 # blocks that change within more rows than this, without a gap, are a trial's
 _MOST_CUT = 0.3
-# rows of fewer plants are not traced
-_LEAST_TRACED = 3
+#: rows of fewer plants are not traced: two stand in one row, whatever they name
+LEAST_TRACED = 3
 
 
 class SaidRows(NamedTuple):
@@ -79,7 +79,8 @@ class SaidRows(NamedTuple):
         xy_m = frame_around(lonlat).xy_m(lonlat)
         traced = trace(xy_m)
         if traced is None:
-            return self
+            apart = self.label is not None and self.label.any() and len(lonlat) < LEAST_TRACED
+            return self._replace(misnamed=_NONSENSE) if apart else self
         if self.block is not None and _cut_rows(traced, self.block) > _MOST_CUT:
             self = self._replace(block=None, of_trial=True)  # noqa: PLW0642 - what is left of it
         if self.label is None:
@@ -138,7 +139,7 @@ def rows_in_blocks(lonlat: Float, frame: Frame, said: SaidRows) -> tuple[TracedR
 
 def _rows_of_block(lonlat: Float, frame: Frame, label: Int | None) -> TracedRows:
     """Return the rows of the plants of one block, which may be straight, in metres of a frame."""
-    if len(lonlat) < _LEAST_TRACED:
+    if len(lonlat) < LEAST_TRACED:
         return _one_row(frame.xy_m(lonlat))
     found = rows_from_plants(lonlat)
     own = frame.turned(found.bearing_deg)
@@ -327,6 +328,6 @@ def _spacings(traced: TracedRows, planting: Planting) -> Float:
     for column, (of, metres) in enumerate(known):
         for block in range(n_blocks):
             mine = metres[of == block]
-            if len(mine) >= _LEAST_TRACED:
+            if len(mine) >= LEAST_TRACED:
                 each[block, column] = np.median(mine)
     return each[traced.block]

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import Worded, counted, worded
 from fieldmon.plot.crossed_rows import CrossedRows, crossed_rows
-from fieldmon.plot.measured_rows import nearer_share
+from fieldmon.plot.measured_rows import LEAST_TRACED, nearer_share
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.strands import row_deviations
 
@@ -316,7 +316,7 @@ def row_report(
         said.label is not None or not scattered,
         () if decided else found.directions,
         said.misnamed,
-        said.label is not None,
+        said.label is not None and len(xy_m) >= LEAST_TRACED,
         said.of_trial,
         _paired_share(xy_m),
         *_zigzag(left_m, row),

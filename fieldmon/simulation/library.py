@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.arguments import chances_of
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.pest_in_weather import seen_in_weather
 from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
@@ -83,7 +84,7 @@ def simulate(
     sampler
         Name of a sampler, or one of your own.
     robot
-        Who inspects; None: the usual `Robot`.
+        Who inspects; None: the usual `Robot`, which sees the pest of `settings` as its file says.
     settings
         Days, visits, and what insects do at night; None: a visit on each of 25 days, see
         `SimulationSettings`.
@@ -160,6 +161,9 @@ def simulate_days(
     """
     check_start(plot.aisles, start)
     decides, chosen = sampler_or_name(sampler), settings or SimulationSettings()
-    return simulated_days(
-        plot.aisles, robot or Robot(), decides, start, chosen, RandomStreams(seed)
-    )
+    worker = robot or _usual_robot(chosen)
+    return simulated_days(plot.aisles, worker, decides, start, chosen, RandomStreams(seed))
+
+
+def _usual_robot(settings: SimulationSettings | None) -> Robot:
+    return seen_in_weather(Robot(), None if settings is None else settings.pest)

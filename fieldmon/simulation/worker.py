@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.errors import FieldmonError
+from fieldmon.infestation.pest_in_weather import seen_in_weather
 from fieldmon.infestation.pest_prior import prior_for
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
@@ -107,7 +108,7 @@ def simulated_season(
     spread = Spread(levels.spread)
     settings = SimulationSettings(n_days, spread, pest=pest_in_weather, visit_every=visit_every)
     robot = replace(robot, hours=levels.hours, look_s=levels.look_s)
-    robot = robot if pest_in_weather is None else pest_in_weather.pest.seen_by(robot)
+    robot = seen_in_weather(robot, pest_in_weather)
     insects = SameInsects(plot, chance, levels.infested, settings)
     return insects.season(sampler_or_name(levels.sampler), robot, seed, team)
 

@@ -125,7 +125,8 @@ def read_plant_maps(folder: Path, public: Collection[str] = tuple(PUBLIC_MAPS)) 
     several.
     """
     if not folder.is_dir():
-        raise FileProblem(f"The folder of maps {folder} must exist, but it does not.")
+        but = "is a file" if folder.exists() else "does not exist"
+        raise FileProblem(f"Maps must be in a folder that exists, but {folder} {but}.")
     files = sorted(
         path for path in folder.rglob("*") if path.name in public or path.name.endswith(_OWN_ENDING)
     )
@@ -161,7 +162,7 @@ def _columns_of(path: Path) -> MapColumns:
     if missing:
         raise FileProblem(
             f"{path.name} must have the columns {', '.join(_OWN_COLUMNS)}, but "
-            f"{', '.join(missing)} is missing."
+            f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing."
         )
     row_m, plant_m = (_distance(layer, name, path.name) for name in _OWN_COLUMNS[3:])
     date, part = (name if name in layer.columns else "" for name in ("date", "plot"))
@@ -203,7 +204,7 @@ def read_plant_map(path: Path, columns: MapColumns, file: str = "") -> list[Plan
     if missing:
         raise FileProblem(
             f"{path.name} must have the columns {', '.join(needed)}, "
-            f"but {', '.join(missing)} is missing."
+            f"but {', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing."
         )
     parts = _texts(layer, columns.part)
     stem = (file or path.name).removesuffix(_OWN_ENDING).removesuffix(path.suffix)

@@ -16,7 +16,7 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.colonies import Colonies
-from fieldmon.infestation.pest_in_weather import PestInWeather, Spell
+from fieldmon.infestation.pest_in_weather import PestInWeather, Spell, seen_in_weather
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.pests.pest import Increase, Movement, Pest, Stage
 from fieldmon.pests.weather import DAY_S, weather_of
@@ -148,11 +148,7 @@ def worth_of_weather(
     progress: Callable[[int, int], None] | None = None,
 ) -> list[WorthOfWeather]:
     """Return what knowing the weather brings, by shape of it, on paired seeds."""
-    unknown = [name for name in shapes if name not in SHAPES]
-    if unknown:
-        raise SettingError(
-            f"A shape of weather must be one of {', '.join(SHAPES)}, but it is {unknown[0]!r}."
-        )
+    must_be_shapes(shapes, n_days)
 
     def simulate(shape: str, seeds: range) -> KnownOrNot:
         return paired_seasons(pest, SHAPES[shape], seeds.start, n_days)
@@ -162,6 +158,36 @@ def worth_of_weather(
     with executor.threads() as workers:
         run(experiment, workers, made, progress)
     return [_worth(name, [made[name, seed] for seed in seeds]) for name in shapes]
+
+
+def must_be_shapes(shapes: Sequence[str], n_days: int) -> None:
+    """Raise `SettingError` unless there are such shapes, and they show in so many days."""
+    unknown = [name for name in shapes if name not in SHAPES]
+    if unknown:
+        raise SettingError(
+            f"A shape of weather must be one of {', '.join(SHAPES)}, but it is {unknown[0]!r}."
+        )
+    weeks = [name for name in shapes if SHAPES[name].warmer_c]
+    least = _WEEK.start + 2
+    if weeks and n_days < least:
+        raise SettingError(
+            f"A season with a {weeks[0]} must have {least} days or more, for it begins on day "
+            f"{least - 1} and a night shows on the next, but it has {n_days}. Give more days, or "
+            "another shape: as usual, steady wind."
+        )
+
+
+def changes_nothing(pest: Pest) -> tuple[str, ...]:
+    """Return what of the weather changes nothing of a pest, in sentences."""
+    moves, said = pest.movement, []
+    if not pest.stages and (pest.increase is None or moves.at_c is None):
+        said.append(
+            "Warmth changes nothing of this pest: its file has no stages, and no increase or no "
+            "at_c of movement."
+        )
+    if moves.wind == "none" or moves.kernel == "adjacent":
+        said.append("Wind changes nothing of this pest: it does not go with it.")
+    return tuple(said)
 
 
 def paired_seasons(pest: Pest, shape: Shape, seed: int, n_days: int) -> KnownOrNot:
@@ -229,7 +255,7 @@ def _season(
 ) -> tuple[int, NDArray[np.bool_]]:
     """Return a season's infested plant-days, and on which mornings the interval held."""
     aisles, lost, held = _aisles(), 0, []
-    robot = Robot(hours=6.0).with_times("thesis")
+    robot = seen_in_weather(Robot(hours=6.0).with_times("thesis"), settings.pest)
     season = simulated_days(aisles, robot, sampler("adaptive"), start, settings, streams)
     for day in season:
         lost += day.left

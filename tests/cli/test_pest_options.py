@@ -52,6 +52,8 @@ def test_a_season_believes_its_pests_nights_and_says_its_next_generation(run, tm
     assert code == 0, err
     without = Season(tmp_path / "s.gpkg")
     assert without.settings.pest is None
+    assert without.settings.prior.half_life_days == 14
+    assert "Records count half after 14 days." in err
     assert "next around" not in "\n".join(lines(without, without.status(on)))
     # 22.5 °C is warmer than the settings of any pest
     assert warm.sum() > without.morning(on).sum()

@@ -18,10 +18,11 @@ from fieldmon.infestation.origins import (
     Estimate,
 )
 from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.pests.pest import Movement, Pest
+from fieldmon.pests.pest import Entry, Movement, Pest
 from fieldmon.plot.layout import rectangle
 from tests.infestation.test_traced_pairs import mid_season
 
@@ -174,3 +175,21 @@ def test_of_a_pest_whose_jumps_all_land_anywhere_there_is_no_length():
     far = Movement("exponential", 0.1, reach_m=5.0, share_of_long_jumps=1.0)
     belief = TracedPairs.of(rectangle(9, 9), np.full(81, 0.02)).of_pest(Pest("far", movement=far))
     assert "length of jumps" not in {one.name for one in learnt_from(belief, 0.84)}
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        (Entry(), "are infested from outside (0.0 to 1.2); the file of the pest says 0.0."),
+        (Entry(anywhere_per_day=0.01), "10 plants a night are infested from outside (0.0 to 40)."),
+        (Entry(edge_per_day=0.02), "the file of the pest says "),
+    ],
+)
+def test_as_many_are_said_to_come_from_outside_as_the_map_lets_come(entry, said):
+    pest, grid = Pest("stays", movement=Movement(per_day=0.0), entry=entry), rectangle(32, 32)
+    belief = TracedPairs.of(grid, np.full(1024, 1e-6), by_ancestry=False).of_pest(pest)
+    night = PestInWeather(pest).spread(0, grid.frame)
+    (arrivals,) = [one for one in learnt_from(belief, 0.84, night) if one.name.startswith("arriv")]
+    come = float((belief.overnight(night).chance - belief.chance).sum())
+    assert arrivals.value == pytest.approx(come, rel=0.02)
+    assert said in arrivals.sentence()

@@ -12,6 +12,7 @@ from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season, settings_log
 from fieldmon.monitoring.transactions import Store
+from fieldmon.pests.pest import Pest
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot
@@ -302,3 +303,13 @@ def test_a_day_recorded_without_a_plan_was_worked_by_what_counted_at_first(seaso
     season.change(replace(first, starts=time(9)), first)
     season.record(some_results(season, n=4))
     assert season.settings_on(BEGINS).starts == first.starts
+
+
+def test_a_season_of_the_library_takes_what_its_pest_says(tmp_path):
+    pest = Pest("mite", detection=0.6)
+    path = tmp_path / "s.gpkg"
+    season = Season.create(path, a_plot(), begins=BEGINS, robot=ROBOT, pest=pest)
+    assert season.settings.robot.detects == 0.6
+    settings = season.settings
+    season.change(replace(settings, pest=None), settings)
+    assert season.settings.robot.detects == ROBOT.detects

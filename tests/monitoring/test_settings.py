@@ -212,3 +212,37 @@ def test_what_a_caller_makes_of_settings_that_were_read_is_not_read_by_the_next(
     assert one == other
     one.sampler_settings["n"] = 5
     assert other.sampler_settings == from_json(written).sampler_settings == {}
+
+
+MITE = replace(shipped_pest("spider-mite"), detection=0.6)
+FIFTEEN_DAYS = weather_of(
+    np.datetime64(BEGINS, "s") - DAY_S * np.arange(40, 0, -1), DAY_S,
+    temperature_c=np.full(40, 22.5),
+)  # fmt: skip
+
+
+def test_a_season_is_as_its_pest_and_weather_have_it_and_without_them_as_it_was():
+    alone = MonitoringSettings(BEGINS, team=(TeamMember("Ann", Robot(hours=2)),))
+    named = replace(alone, pest=MITE, weather=FIFTEEN_DAYS)
+    for made in (named.of_its_pest(), named.of_its_pest(alone)):
+        assert [one.detects for one in (made.robot, made.team[0].robot)] == [0.6, 0.6]
+        assert made.prior.half_life_days == 15
+        assert made.of_its_pest() == made.of_its_pest(made) == made
+    assert replace(made, pest=None).of_its_pest(made) == replace(alone, weather=FIFTEEN_DAYS)
+    # of the same pest, who comes new sees as much, unless a detection is told
+    ben, eve = TeamMember("Ben", Robot(hours=3)), TeamMember("Eve", Robot(detection=0.4))
+    changed = replace(made, team=(ben, eve)).of_its_pest(made)
+    assert [one.robot.detects for one in changed.team] == [0.6, 0.4]
+    # another pest says nothing of its detection, as if it had been named first
+    whitefly = shipped_pest("whitefly")
+    later = replace(made, pest=whitefly).of_its_pest(made)
+    assert later == replace(alone, pest=whitefly, weather=FIFTEEN_DAYS).of_its_pest()
+
+
+def test_a_half_life_that_was_chosen_and_what_does_not_change_stay():
+    chosen = MonitoringSettings(
+        BEGINS, pest=MITE, weather=FIFTEEN_DAYS, prior=PriorSettings(half_life_days=3.5)
+    )
+    assert chosen.of_its_pest().prior.half_life_days == 3.5
+    # a file of before keeps what it was begun with
+    assert replace(chosen, starts=time(7)).of_its_pest(chosen).robot == chosen.robot

@@ -88,4 +88,7 @@ def test_a_generation_is_the_published_one_or_the_sum_of_its_stages():
     # Whalon & Smilowitz publish 135.7 themselves
     assert (aphid.threshold_c, aphid.degree_days) == (4, pytest.approx(134.3))
     mixed = Pest("a", stages=(Stage("egg", 10, 30), Stage("adult", 14, 10)))
-    assert whole_generation(mixed).threshold_c == pytest.approx(11)
+    assert whole_generation(mixed).threshold_c == 11
+    # (11.5 * 90 + 9 * 150 + 10 * 40) / 280 is 9.946...
+    egg, larva, adult = Stage("egg", 11.5, 90), Stage("larva", 9, 150), Stage("adult", 10, 40)
+    assert whole_generation(Pest("a", stages=(egg, larva, adult))).threshold_c == 9.9

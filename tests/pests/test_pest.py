@@ -70,8 +70,14 @@ def test_a_pest_is_seen_by_its_own_viewpoints_or_chance_or_the_robots():
         (lambda: Pest("a", cutoff="round"), "must be one of horizontal"),
         (lambda: Pest("a", mortality_per_day=2.0), "a chance in 0..1"),
         (lambda: Pest("a", latency_days=-1.0), "0 or more"),
+        (lambda: Pest("a", increase=Increase((12.0, 20.0, 28.0), (0.0, 0.0, 0.2)),
+                      movement=Movement(at_c=20.0)),
+         "at_c of movement must be a temperature at which the pest increases, but at 20 °C"),
+        (lambda: Pest("a", increase=Increase((12.0, 28.0), (1e-9, 0.2)),
+                      movement=Movement("cauchy", 0.1, reach_m=3.0, at_c=12.0)),
+         "per_day of movement must be 1000000 at most where the pest increases fastest"),
     ],
-)
+)  # fmt: skip
 def test_figures_that_cannot_be_are_refused(make, sentence):
     with pytest.raises(SettingError) as problem:
         make()

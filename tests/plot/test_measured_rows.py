@@ -98,6 +98,15 @@ def test_one_name_for_all_plants_is_no_name_of_a_row():
     assert "rows were found instead" in " ".join(plot.rows.doubts)
 
 
+@pytest.mark.parametrize(("rows", "said"), [(["1", "2"], 1), (["1", "1"], 0), (["", ""], 0)])
+def test_two_plants_stand_in_one_row_and_names_of_two_are_said_not_to_fit(rows, said):
+    lonlat = FRAME.lonlat(np.array([[0.0, 0.0], [2.5, 0.0]]))
+    plot = plot_around("two", lonlat, names=PlantNames(np.array(rows)))
+    assert plot.grid.n_rows == 1
+    doubt = "50 % of the plants seem to stand in another row than the file names; rows were found"
+    assert sum(doubt in one for one in plot.rows.doubts) == said
+
+
 def test_names_are_numbers_only_where_every_plant_has_one():
     assert name_numbers(None) is None
     assert name_numbers(np.array(["1", "", "2"])) is None

@@ -88,8 +88,11 @@ def test_files_that_are_no_maps_are_refused_in_a_sentence(tmp_path, lines, says)
 def test_a_folder_without_maps_is_refused(tmp_path):
     with pytest.raises(FileProblem, match="hold a map"):
         read_plant_maps(tmp_path)
-    with pytest.raises(FileProblem, match="must exist"):
+    with pytest.raises(FileProblem, match=r"a folder that exists, but .*none does not exist"):
         read_plant_maps(tmp_path / "none")
+    file = write(tmp_path / "a.map.csv", "row")
+    with pytest.raises(FileProblem, match=r"a folder that exists, but .*a\.map\.csv is a file"):
+        read_plant_maps(file)
 
 
 def test_known_maps_are_found_by_name_in_folders(tmp_path):
@@ -153,7 +156,7 @@ def test_a_map_is_read_with_decimal_commas_and_columns_in_any_case(tmp_path):
     [
         ([OWN[0], OWN[1].replace("1.2", "wide")], "one distance in metres, .* it holds wide"),
         ([OWN[0], OWN[1].replace("1.2", "")], "it holds an empty cell"),
-        (["row,plant,infested", "1,1,1"], "row_m, plant_m is missing"),
+        (["row,plant,infested", "1,1,1"], "row_m, plant_m are missing"),
         ([*OWN[:2], OWN[2].replace("3.5", "3.6")], r"one distance .* it holds 3\.5, 3\.6"),
         ([OWN[0], OWN[1].replace("1.2", "0")], "one distance in metres"),
     ],

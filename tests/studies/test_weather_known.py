@@ -1,5 +1,7 @@
 """What knowing the weather brings: both meet the same insects, in weather of a known shape."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -45,6 +47,13 @@ def test_seasons_are_paired_and_the_same_again():
     assert len(one.held) == len(one.held_by_averages) == 4
     # on the first morning nothing is known yet of the weather
     assert one.held[0] == one.held_by_averages[0]
+
+
+@pytest.mark.usefixtures("small")
+def test_a_pest_is_found_as_its_file_says():
+    shy = replace(CARRIED, detection=0.05)
+    one, other = (paired_seasons(pest, SHAPES["as usual"], 3, 3).knows for pest in (CARRIED, shy))
+    assert other > one
 
 
 @pytest.mark.usefixtures("small")

@@ -344,6 +344,9 @@ class _PestText:
             if hot:
                 sentence = joined(" ", (sentence, worded("Is it in Fahrenheit?")))
             closer = at._replace(key=at.key or key)
+            if kind is Pest and key in _TABLES:  # parts that do not go together
+                inner = [one for one in re.findall(r"\w+", sentence) if one in _TABLES[key]]
+                closer = _At(key, 0, inner[0] if inner else "")
             where = closer if closer in self.lines else at
             self._refuse(where, sentence, error)
 

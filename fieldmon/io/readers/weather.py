@@ -71,6 +71,8 @@ _MOST_NONSENSE = 0.05
 _WARMEST_MEAN_C, _WARMEST_C, _SURELY_F, _WARMEST_F = 35.0, 50.0, 60.0, 135.0
 # nowhere are days so much warmer than their nights, month by month
 _FARTHEST_APART_F = 54.0
+# no weather without a unit lies beyond in Kelvin: -40 to 60 °C
+_KELVIN = (233.15, 333.15)
 # numbers that stand for what is missing: no weather is ever so
 _MARKS = (-99999.0, -9999.9, -9999.0, -999.9, -999.0, -99.9, -99.0, 999.0, 999.9, 9999.0, 9999.9,
           99999.0)  # fmt: skip
@@ -342,13 +344,26 @@ def _temperature_unit(columns: dict[str, Floats]) -> tuple[str, list[ImportMessa
     names = ", ".join(columns)
     name = max(columns, key=lambda one: float(knowns[one].max(initial=-np.inf)))
     most = float(knowns[name].max(initial=-np.inf))
+    highest = _highest(columns[name], knowns[name])
+    if all(_looks_like_kelvin(known) for known in knowns.values() if known.size):
+        raise ChoiceNeeded(
+            worded(
+                "{names} {n:has|have} no unit and {n:goes|go} up to {most:g}, as temperatures in "
+                "Kelvin do. Are they in Kelvin, or in tenths of a degree?",
+                names=names,
+                n=len(columns),
+                most=highest,
+            ),
+            "temperature_unit",
+            ("K", "0.1 C", "0.1 F"),
+        )
     if most > _WARMEST_F:
         raise ChoiceNeeded(
             worded(
                 "{name} has no unit and goes up to {most:g}, which is neither Celsius nor "
                 "Fahrenheit. Is it in tenths?",
                 name=name,
-                most=most,
+                most=highest,
             ),
             "temperature_unit",
             ("0.1 C", "0.1 F", "K"),
@@ -360,7 +375,7 @@ def _temperature_unit(columns: dict[str, Floats]) -> tuple[str, list[ImportMessa
             names=names,
             n=len(columns),
             name=name,
-            most=most,
+            most=highest,
         )
         remedy = Remedy("temperature_unit", "C", worded("Read as Celsius"), ("0.1 C",))
         return "f", [guessed(said, None, remedy)]
@@ -384,6 +399,20 @@ def _known(values: Floats) -> Floats:
     """Return what was measured, in order, without the highest: a few broken ones tell nothing."""
     known = np.sort(values[~np.isnan(values)])
     return known[: len(known) - int(_MOST_NONSENSE * len(known))]
+
+
+def _highest(values: Floats, known: Floats) -> float:
+    """Return the highest of values that is not far beyond what is `known`, in order."""
+    if not known.size:
+        return float("nan")
+    most = float(known[-1])
+    return float(np.nanmax(values[values <= most + 2.0 * (most - float(np.median(known)))]))
+
+
+def _looks_like_kelvin(known: Floats) -> bool:
+    """Tell whether values in order, all but a few of the lowest, are temperatures in Kelvin."""
+    least = known[int(_MOST_NONSENSE * len(known))]
+    return bool(_KELVIN[0] <= least and known[-1] <= _KELVIN[1])
 
 
 def _must_be_near(knowns: dict[str, Floats]) -> None:

@@ -12,6 +12,7 @@ from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.pest_in_weather import seen_in_weather
 from fieldmon.infestation.prior import edge_chance, scaled, start_infested
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
@@ -133,9 +134,7 @@ class Scenario:
     @property
     def believed_robot(self) -> Robot:
         """Return who inspects, with the chance of detection that is believed."""
-        return (
-            Robot() if self.pest_in_weather is None else self.pest_in_weather.pest.seen_by(Robot())
-        )
+        return seen_in_weather(Robot(), self.pest_in_weather)
 
     @property
     def settings(self) -> SimulationSettings:

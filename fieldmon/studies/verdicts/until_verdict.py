@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from scipy.special import ndtri
 
+from fieldmon.compute.digest import digest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.decisions.map_plan import MapPlan
 from fieldmon.decisions.map_verdict import verdict_of
@@ -54,6 +55,7 @@ MOST = 400
 # the truth is drawn evenly, as a logarithm, from a quarter of the threshold to four times it
 _WIDEST = 4.0
 _SIDE = 64
+_DIGITS = 6
 _LOOKS_A_CHECK = 10
 W_FIXED, W_WALD, W_IWAO = "W walk, all of it", "W walk, Wald", "W walk, Iwao"
 RANDOM_WALD, ADAPTIVE = "anywhere, Wald", "adaptive, Wald on the map"
@@ -87,7 +89,11 @@ class Question:
     @property
     def name(self) -> str:
         """Return it in words, unique."""
-        words = self.start if self.real is not None else f"{self.start}, prior {self.prior}"
+        words = f"{self.start}, prior {self.prior}"
+        if self.real is not None:
+            # whose file says something else by now is another question
+            grid = self.real.aisles.grid
+            words = f"{self.start}, {digest(self.real.infested, grid.xy_m, length=_DIGITS)}"
         if self.pest_in_weather is None:
             return words
         return f"{words}, {self.pest_in_weather.pest.name}, {of_pest(self.pest_in_weather)}"
@@ -127,10 +133,17 @@ def usual_questions() -> list[Question]:
     ]  # fmt: skip
 
 
-def real_questions(folder: Path) -> list[Question]:
-    """Return the questions of the public maps in a folder that are less than half infested."""
-    maps = [each for each in plots_in(folder) if 0.005 < each.infested.mean() < 0.5]
-    return [Question(each.name, real=each) for each in maps]
+def real_questions(folder: Path) -> tuple[list[Question], list[str]]:
+    """Return the questions of the maps in a folder, and the names of those that are left out.
+
+    Whether to treat is only asked where between 0.5 % and half of the plants are infested.
+    """
+    maps = plots_in(folder)
+    asked = [0.005 < each.infested.mean() < 0.5 for each in maps]
+    return (
+        [Question(each.name, real=each) for each, of in zip(maps, asked, strict=True) if of],
+        [each.name for each, of in zip(maps, asked, strict=True) if not of],
+    )
 
 
 def study_of_verdicts(

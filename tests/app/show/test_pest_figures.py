@@ -9,7 +9,7 @@ from app.show import pest_figures
 from app.words import language, texts
 from fieldmon.io.packaged import pest_names
 from fieldmon.io.readers.pest_file import shipped_pest
-from fieldmon.pests.pest import Citation, Pest, Stage
+from fieldmon.pests.pest import Citation, Movement, Pest, Stage
 from tests.app.test_hostile_texts import LEADS, NAMES
 
 
@@ -44,10 +44,15 @@ def test_rain_wind_latency_and_entry_are_told(said):
     pest_figures.show(shipped_pest("whitefly"))
     shown = "\n".join(said)
     assert texts.PEST_WITH_WIND in shown
-    assert "only in rain of 0.2 mm" in shown
+    assert "only in hours with 0.2 mm of rain or more" in shown
     assert "after 7 days" in shown
     assert "0.002 a day at the edge" in shown
     assert "adults on a leaf" in shown
+
+
+def test_rain_is_told_of_days_where_the_pest_is_not_simulated_by_the_hour(said):
+    pest_figures.show(Pest("own", movement=Movement(least_rain_mm=2.0)))
+    assert "- It moves only on days with 2 mm of rain or more." in said
 
 
 def test_a_rate_that_the_file_does_not_say_is_called_assumed(said):

@@ -77,6 +77,9 @@ def test_a_pest_is_what_its_file_says():
     [
         ("threshold_c = 12.5", "threshold_f = 54.5", 6,
          "another unit than fieldmon reads: convert it to degrees Celsius, as threshold_c"),
+        ("per_day = [0.08, 0.321]\n\n[movement]",
+         "per_day = [0, 0.321]\n\n[movement]\nat_c = 15", 20,
+         "at_c of movement must be a temperature at which the pest increases"),
         ("threshold_c = 12.5", "threshold_c = 54.5", 6, "Is it in Fahrenheit?"),
         ("threshold_c = 12.5", 'threshold_c = "54.5 F"', 6,
          "must be a number in degrees Celsius, without quotes"),

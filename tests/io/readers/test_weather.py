@@ -365,6 +365,19 @@ def test_temperatures_in_tenths_are_asked_for_and_read(read):
     )
 
 
+def test_kelvin_is_named_first_where_all_of_a_year_would_be_warm_in_tenths(read):
+    # the highest of all is said, though it alone would not be believed
+    days = "\n".join(f"2026-10-{day:02d},{291 + day % 5}" for day in range(1, 31))
+    table = f"date,temp\n2026-09-30,297.5\n{days}"
+    with pytest.raises(
+        ChoiceNeeded, match=r"no unit and goes up to 297\.5, as temperatures in Kelvin do"
+    ) as asked:
+        read(table)
+    assert asked.value.choices == ("K", "0.1 C", "0.1 F")
+    told = read(table, WeatherOptions(temperature_unit="K")).value
+    assert told.temperature_c[0] == pytest.approx(24.35)
+
+
 def test_tens_of_degrees_are_degrees(read):
     table = "date,temp (C),Wind Dir (10s deg)\n2026-11-18,20,27\n2026-11-19,20,9\n"
     assert read(table).value.wind_from_deg.tolist() == [270, 90]

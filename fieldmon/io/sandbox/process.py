@@ -36,7 +36,10 @@ _USES = 200
 #: what a process that is to have all at hand loads before its first file
 ALL_READERS = (
     "fieldmon.io.sandbox.tasks",
-    *(f"fieldmon.io.readers.{name}" for name in ("plots", "points_and_lines", "treated", "crews")),
+    *(
+        f"fieldmon.io.readers.{name}"
+        for name in ("plots", "points_and_lines", "treated_areas", "crews")
+    ),
     *(f"fieldmon.io.formats.{name}" for name in ("gdal", "geoparquet")),
 )
 # GDAL reads these when it is loaded. Drivers that lead to other files or to the network are not

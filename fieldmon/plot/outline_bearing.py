@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 
     Float = NDArray[np.float64]
 
-# who walks an outline takes so many fixes, of which no two are further apart than this part of it
-_FIXES, _LONGEST_STEP = 20, 1 / 12
+# who walks an outline takes so many fixes, of which no two are further apart than this part of it,
+# but for the gap where the walk began and ended, which is this many times as long
+_FIXES, _LONGEST_STEP, _GAP = 20, 1 / 12, 2
 # every other fix turns back from the way of the last one, or the way turns as much as noise does
 _TURN_DEG, _TURNING_BACK, _ANYHOW_DEG = 3.0, 0.5, 40.0
 # strays are judged up to this part of the outline before and after a fix: most are on one side then
@@ -83,7 +84,11 @@ def is_ragged(ring_m: Float) -> bool:
     """Return whether an outline's edges tell nothing of its sides, as those of a walked one."""
     edges = np.diff(ring_m, axis=0)
     length = np.hypot(*edges.T)
-    if len(edges) < _FIXES or length.max() > _LONGEST_STEP * length.sum():
+    if len(edges) < _FIXES:
+        return False
+    second, longest = np.sort(length)[-2:]
+    step = second if longest > _GAP * second else longest
+    if step > _LONGEST_STEP * length.sum():
         return False
     way = _bearings(edges, 360.0)
     turn = (np.diff(way, append=way[0]) + 180.0) % 360.0 - 180.0

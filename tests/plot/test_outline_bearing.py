@@ -70,6 +70,13 @@ def test_a_walked_outline_has_the_bearing_of_its_longest_side(
         assert 0 < found.off_deg < 4 * most_deg
 
 
+def test_the_side_that_was_not_walked_is_no_longer_than_it_is():
+    ring = walked(BLOCK, 3, 1)
+    three_sides = ring[np.append(np.arange(137), 0)]
+    wanted = area_bearing(shapely.Polygon(BLOCK)).bearing_deg
+    assert off_deg(outline_bearing(three_sides).bearing_deg, wanted) < 1
+
+
 def test_who_stands_at_corners_does_not_turn_the_rows():
     ring = walked(BLOCK, 3, 1, stand=20)
     wanted = area_bearing(shapely.Polygon(BLOCK)).bearing_deg

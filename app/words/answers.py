@@ -13,6 +13,8 @@ def in_short(answer: str, option: str) -> str:
     >>> str(in_short("present=", "columns")), in_short("plot=North", "where")
     ('Every record is a find', 'plot: North')
     """
+    if option == "outline" and answer == "yes":
+        return texts.ANSWER_OUTLINE
     key, is_pair, value = answer.partition("=")
     if not is_pair or option not in {"columns", "where"}:
         return answer

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
     from fieldmon.plot.outline_bearing import OutlineBearing
 
-_MANY = "Of {n} plots the rows' bearing is in doubt"
-
 
 def guessed_bearing(field: Field, choices: PlantingChoices) -> OutlineBearing | None:
     """Return along which of its sides a plot's rows are laid; None where that is known."""
@@ -36,6 +34,7 @@ def doubts_of_bearing(field: Field, choices: PlantingChoices) -> tuple[ImportMes
     bearing = guessed_bearing(field, choices)
     if bearing is None or not bearing.off_deg:
         return ()
+    many = "Of {n} plots the rows' bearing is in doubt"
     rows = {"along": bearing.bearing_deg, "off": max(bearing.off_deg, 1.0)}
     if bearing.or_deg is not None:
         said = worded(
@@ -44,7 +43,7 @@ def doubts_of_bearing(field: Field, choices: PlantingChoices) -> tuple[ImportMes
             other=bearing.or_deg,
             **rows,
         )
-        return (doubtful(said, field.name, many=_MANY),)
+        return (doubtful(said, field.name, many=many),)
     frame = field.frame(bearing.bearing_deg)
     long_m = np.ptp(frame.xy_m(shapely.get_coordinates(field.boundary))[:, 0])
     spacing_m = planting_of(field, **choices.given()).row_spacing_m
@@ -55,4 +54,4 @@ def doubts_of_bearing(field: Field, choices: PlantingChoices) -> tuple[ImportMes
         "off by {off:.0f} {off:degree|degrees}: say the rows' bearing.",
         **rows,
     )
-    return (doubtful(said, field.name, many=_MANY),)
+    return (doubtful(said, field.name, many=many),)

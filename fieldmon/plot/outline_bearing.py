@@ -124,7 +124,7 @@ def _beside_m(fixes: Float, step: int) -> float:
     chord, to = after - before, fixes - before
     length = np.maximum(np.hypot(*chord.T), 1e-9)
     beside = np.abs(chord[:, 0] * to[:, 1] - chord[:, 1] * to[:, 0]) / length
-    return float(np.quantile(beside, _SHARE)) / _STRAY
+    return float(np.quantile(beside, _SHARE) / _STRAY)
 
 
 def _places(closed: Float, kept: Float) -> list[int]:
@@ -157,9 +157,10 @@ def _fitted(side: Float, near_m: float) -> tuple[Float, float]:
 
 def _own(beside: Float) -> float:
     """Return as how many fixes these count: neighbours stray alike."""
-    crossings = 1 + 2 * np.count_nonzero(np.diff(np.sign(beside)))
+    crossings = 1.0 + 2.0 * np.count_nonzero(np.diff(np.sign(beside)))
     alike = float(np.sum(beside[1:] * beside[:-1])) / max(float(np.sum(beside**2)), 1e-9)
-    return max(min(crossings, len(beside) * (1 - alike) / (1 + alike)), 1.0)
+    own = min(float(crossings), len(beside) * (1.0 - alike) / (1.0 + alike))
+    return max(own, 1.0)
 
 
 def _alike(sides: Float, bearing_deg: float) -> NDArray[np.bool_]:

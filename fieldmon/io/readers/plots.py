@@ -356,14 +356,15 @@ def _outline(layer: Layer, options: PlotOptions) -> tuple[Layer, list[ImportMess
         raise ChoiceNeeded(
             worded(
                 "A plot must be an area, but {name} holds {n} positions on a line that does not "
-                "close. Are they its corners, in their order around it?",
+                "close. Are they its corners, in their order around it? If not, import it as rows "
+                "or paths.",
                 name=layer.name,
                 n=len(xy),
             )
             if is_line
             else worded(
                 "A plot must be an area, but {name} holds {n} points. Are they its corners, in "
-                "their order around it?",
+                "their order around it? If not, import them as plants or records.",
                 name=layer.name,
                 n=len(xy),
             ),

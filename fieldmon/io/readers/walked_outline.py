@@ -164,7 +164,7 @@ def _loops(xy: Floats, most: float) -> list[tuple[int, int, Floats]]:
     Of each: the edge that enters it, how many fixes it has, and where it crosses itself.
     """
     n = len(xy)
-    edges = shapely.linestrings(np.stack([xy, np.roll(xy, -1, axis=0)], axis=1))
+    edges = np.array(shapely.linestrings(np.stack([xy, np.roll(xy, -1, axis=0)], axis=1)))
     one, other = shapely.STRtree(edges).query(edges, predicate="intersects")
     apart = (other - one) % n
     some = (one < other) & (apart > 1) & (apart < n - 1)

@@ -135,7 +135,9 @@ def say(
 
 
 def _ask(error: ChoiceNeeded, asking: str, tried: dict[str, TriedAnswer]) -> None:
-    if asking.startswith(f"{PLOT} ") and (error.option == "where" or "plants" in error.choices):
+    if asking.startswith(f"{PLOT} ") and (
+        error.option in {"where", "outline"} or "plants" in error.choices
+    ):
         st.button(texts.THESE_ARE_PLANTS, key=f"plants {asking}", type="primary", width="stretch",
                   on_click=brought_files.take_as_plants, args=(asking,))  # fmt: skip
     if error.option in _OWN_BOXES:

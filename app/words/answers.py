@@ -18,6 +18,8 @@ def in_short(answer: str, option: str) -> str:
     >>> str(in_short("present=", "columns")), in_short("plot=North", "where")
     ('Every record is a find', 'plot: North')
     """
+    if option == "outline" and answer == "yes":
+        return texts.ANSWER_OUTLINE
     if option in _RESULTS:
         return f"{', '.join(answer.split(','))}: {texts.HISTORY_RESULTS[_RESULTS[option]]}"
     key, is_pair, value = answer.partition("=")

@@ -186,6 +186,7 @@ ANSWERS_OF_RECORDS_ALT = Plural(
 LEFT_OUT = "**The records in {name} are not used on this plot.** What you see does without them."
 UNDO_ANSWER = "Take back: {answer}"
 # what an answer about a column says of it
+ANSWER_OUTLINE = "Take them as the outline"
 ANSWER_ALL_FINDS = "Every record is a find"
 ANSWER_COLUMNS = {"count": "{name}: how many were found", "present": "{name}: found or not",
                   "date": "{name}: the day", "plot": "{name}: which plot"}  # fmt: skip

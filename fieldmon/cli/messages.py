@@ -52,6 +52,9 @@ _OTHER_FILES = {
 #: what commands that have `FLAGS` also take by an option of its own
 # plots that are named where something is so of some only
 _NAMED = 3
+# the options that say what was taken, where they are not called as it is
+_OPTIONS = {"row_bearing_deg": "bearing"}
+_BEARING = "row bearing "
 _BY_NAME = frozenset({"crs", "layer", "feature"})
 
 
@@ -85,7 +88,7 @@ class Terminal:
     def assumed(self, assumed: Iterable[Assumed]) -> None:
         """Print what was taken for rows because nobody said it."""
         for one in assumed:
-            option = one.setting.removesuffix("_m").replace("_", "-")
+            option = _OPTIONS.get(one.setting, one.setting.removesuffix("_m").replace("_", "-"))
             typer.echo(self._with_row_option(str(one), option), err=True)
 
     def _with_row_option(self, sentence: str, option: str) -> str:
@@ -156,7 +159,9 @@ def tell_assumed_of_plots(assumed: Mapping[str, str]) -> None:
     plots: dict[str, list[str]] = {}
     for plot, line in assumed.items():
         for one in line.split("; "):
-            plots.setdefault(one, []).append(plot)
+            own = one.startswith(_BEARING) and len(assumed) > 1
+            said = f"{_BEARING}along the longest side of each" if own else one
+            plots.setdefault(said, []).append(plot)
     plots.pop("", None)
     said = "; ".join(
         one

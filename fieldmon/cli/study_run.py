@@ -209,6 +209,8 @@ def _tell_laid(fields: Sequence[Field], choices: PlantingChoices, terminal: Term
     names: dict[Assumed, list[str]] = {}
     for one in fields:
         for assumed in assumed_of(one, choices):
+            if assumed.setting == "row_bearing_deg":
+                continue  # each plot has one of its own
             names.setdefault(assumed, []).append(one.name)
     terminal.assumed(
         one if len(whose) == len(fields) else replace(one, of=first_few(whose, MOST_NAMED))

@@ -241,10 +241,13 @@ class PlotOptions(ReadOptions):
         Only this plot: its name, or its number counted from 1. None: all of them.
     name_column
         Column that names the plots.
+    outline
+        Points, or a line that does not close, are the corners of one plot in their order.
     """
 
     feature: str | int | None = None
     name_column: str | None = None
+    outline: bool = False
 
 
 @dataclass(frozen=True)

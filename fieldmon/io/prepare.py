@@ -19,6 +19,7 @@ from fieldmon.compute.wording import first_few, joined, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import with_rows
+from fieldmon.io.guessed_bearing import doubts_of_bearing, guessed_bearing
 from fieldmon.io.import_report import ImportMessage, WrongRows, gathered, guessed
 from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import source_name
@@ -90,6 +91,7 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
         hearing.say(role, file, unused_of(laid.plot.field, request.planting))
     elif (file := sources.plot) is not None:
         hearing.say("plot", file, unused_of(laid.plot.field, request.planting))
+        hearing.say("plot", file, doubts_of_bearing(laid.plot.field, request.planting))
     if listener is not None:
         listener.laid(laid)
     plot, records, risk = laid.plot, Observations.none(), None
@@ -191,6 +193,8 @@ def prepare_estate(request: PlotRequest, listener: Listener | None = None) -> Es
     fields = with_rows(fields, sources, request.planting, hearing)
     unused = (one for each in fields for one in unused_of(each, request.planting))
     hearing.say("plot" if sources.rows is None else "rows", sources.rows or file, gathered(unused))
+    doubts = (one for each in fields for one in doubts_of_bearing(each, request.planting))
+    hearing.say("plot", file, gathered(doubts))
     fields = _with_paths(fields, sources, hearing)
     if (asked := request.records) is not None:
         lay_one = partial(lay, choices=request.planting)
@@ -237,7 +241,10 @@ def assumed_of(field: Field, choices: PlantingChoices) -> tuple[Assumed, ...]:
         missing = [name for name in missing if name != "row_spacing_m"]
     if field.plants is not None:
         missing = []
-    return tuple(Assumed(name, getattr(planting, name)) for name in missing)
+    made = [Assumed(name, getattr(planting, name)) for name in missing]
+    if (bearing := guessed_bearing(field, choices)) is not None:
+        made.append(Assumed("row_bearing_deg", bearing.bearing_deg))
+    return tuple(made)
 
 
 def lay_around(

@@ -26,13 +26,14 @@ class Assumed:
     Parameters
     ----------
     setting
-        Its name where it can be said: ``"row_spacing_m"`` of `PlantingChoices`,
+        Its name where it can be said: ``"row_spacing_m"`` and ``"row_bearing_deg"`` of
+        `PlantingChoices`,
         ``"half_canopy_m"`` of `Planting`,
         ``"background_chance"`` of `PriorSettings`, ``"rate_per_day"`` of `Spread`, ``"speed_m_s"``,
         ``"row_change_s"``, ``"stop_s"``, ``"look_s"``, ``"hours"`` and ``"detects"`` of `Robot`,
         ``"treated"`` of `BeliefSettings`.
     value
-        What was taken: metres, metres a second, seconds, or a chance; 1: it is so.
+        What was taken: metres, degrees, metres a second, seconds, or a chance; 1: it is so.
     of
         Names of those of a team of whom it was taken; empty: of all.
     """
@@ -53,6 +54,8 @@ class Assumed:
             return f"guessed: {words} {100 * self.value:g} %"
         if self.setting == "speed_m_s":
             return f"guessed: {words} {3.6 * self.value:.3g} km/h"
+        if self.setting == "row_bearing_deg":
+            return f"guessed: row bearing {self.value:.1f} degrees, along the longest side"
         if self.setting == "hours":
             return f"guessed: {words} {self.value:g} h"
         unit = "s" if self.setting.endswith("_s") else "m"

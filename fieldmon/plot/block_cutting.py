@@ -13,7 +13,7 @@ from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
 from fieldmon.plot.block import Block
-from fieldmon.plot.row_detection import main_bearing
+from fieldmon.plot.outline_bearing import area_bearing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -158,8 +158,8 @@ def blocks_from_outline(field: Field) -> tuple[Block, ...]:
     area = frame.geometry_m(field.boundary)
     parts = sorted(shapely.get_parts(area), key=lambda p: -p.area)
     pieces = [piece for part in parts for piece in _guessed(part)]
-    width = sum(_width_m(piece, main_bearing(_edges(piece))) for piece in pieces)
-    main = main_bearing(_edges(parts[0]))
+    width = sum(_width_m(piece, area_bearing(piece).bearing_deg) for piece in pieces)
+    main = area_bearing(parts[0]).bearing_deg
     if len(pieces) < 2 or width > _FEWER * sum(_width_m(part, main) for part in parts):
         return ()
     return tuple(
@@ -170,13 +170,13 @@ def blocks_from_outline(field: Field) -> tuple[Block, ...]:
 
 def _guessed(area: Polygon, most: int = _MOST_GUESSED) -> list[Polygon]:
     """Return the pieces of an area whose rows are fewest, along each one's own sides."""
-    known = _width_m(area, main_bearing(_edges(area)))
+    known = _width_m(area, area_bearing(area).bearing_deg)
     best, pieces = _FEWER * known, [area]
     for knife in _knives(area) if most > 1 else ():
         halves = _pieces(area, knife)
         if len(halves) != _TWO:
             continue
-        width = sum(_width_m(half, main_bearing(_edges(half))) for half in halves)
+        width = sum(_width_m(half, area_bearing(half).bearing_deg) for half in halves)
         if width < best:
             best, pieces = width, halves
     if len(pieces) == 1:

@@ -14,8 +14,9 @@ from fieldmon.errors import PlotError
 from fieldmon.plot.aisle_lines import RowAisles
 from fieldmon.plot.bent_layout import bent_grid
 from fieldmon.plot.line_layout import LaidRows, copies, is_straight, rows_along
+from fieldmon.plot.outline_bearing import area_bearing
 from fieldmon.plot.polylines import Polylines
-from fieldmon.plot.row_detection import main_bearing, rows_from_lines
+from fieldmon.plot.row_detection import rows_from_lines
 from fieldmon.plot.row_lines import Blocked, Ground, RowLines, row_aisles
 from fieldmon.plot.strips import best_strips, check_size, fill, no_room
 
@@ -123,9 +124,7 @@ def _bearing(field: Field, ground: _BlockGround) -> float:
         return rows_from_lines(replace(field, row_lines=ground.drawn)).bearing_deg
     if ground.planting.row_bearing_deg is not None:
         return ground.planting.row_bearing_deg
-    main = max(shapely.get_parts(ground.area), key=shapely.area)
-    edges = np.diff(field.frame().xy_m(shapely.get_coordinates(main.exterior)), axis=0)
-    return main_bearing(edges)
+    return area_bearing(field.frame().geometry_m(ground.area)).bearing_deg
 
 
 def _laid(field: Field, ground: _BlockGround, frame: Frame) -> LaidRows:

@@ -27,13 +27,13 @@ from fieldmon.plot.measured_rows import (
     rows_in_blocks,
     said_rows,
 )
+from fieldmon.plot.outline_bearing import bearing_of
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import (
     distinct,
     frame_around,
-    rows_from_boundary,
     rows_from_lines,
     rows_from_plants,
     split_lines,
@@ -81,7 +81,7 @@ def lay(field: Field, planting: Planting) -> PlantGrid:
     if not field.row_lines.is_empty:
         bearing_deg = rows_from_lines(field).bearing_deg
     elif bearing_deg is None:
-        bearing_deg = rows_from_boundary(field).bearing_deg
+        bearing_deg = bearing_of(field).bearing_deg
     frame = field.frame(bearing_deg)
     area = frame.geometry_m(field.drivable())
     check_size(field.name, area, planting)

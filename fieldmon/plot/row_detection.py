@@ -82,14 +82,6 @@ class Rows:
     directions: tuple[RowDirection, ...] = ()
 
 
-def rows_from_boundary(field: Field) -> Rows:
-    """Return rows along the direction in which most of the largest part's edge runs."""
-    parts = shapely.get_parts(field.boundary)
-    main = parts[np.argmax(shapely.area(parts))]
-    edge_m = np.diff(field.frame().xy_m(shapely.get_coordinates(main.exterior)), axis=0)
-    return Rows(main_bearing(edge_m), None, None, "along the long side of the plot")
-
-
 def rows_from_lines(field: Field) -> Rows:
     """Return the direction and spacing of the rows that were drawn; raise `PlotError` if none."""
     if field.row_lines.is_empty:

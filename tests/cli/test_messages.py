@@ -10,6 +10,7 @@ import shapely
 from fieldmon.cli.messages import (
     Terminal,
     describe,
+    tell_assumed_of_plots,
     tell_clock_change,
     tell_past_midnight,
     tell_unusable,
@@ -56,6 +57,16 @@ def test_a_plot_is_described_with_what_was_assumed_for_it(capsys):
     out, err = capsys.readouterr()
     assert out.startswith("Gate: 12 plants in 3 rows, bearing 90.0 degrees, rows 4.00 m and")
     assert err == "guessed: row spacing 4 m [--row-spacing]\n"
+
+
+def test_a_guessed_bearing_is_said_with_its_option_and_of_many_plots_once(capsys):
+    Terminal().assumed([Assumed("row_bearing_deg", 86.42)])
+    said = "row bearing 86.4 degrees, along the longest side"
+    assert capsys.readouterr().err == f"guessed: {said} [--bearing]\n"
+    tell_assumed_of_plots({"Gate": said})
+    assert capsys.readouterr().err == f"assumed: {said}\n"
+    tell_assumed_of_plots({"Gate": said, "Pond": said.replace("86", "12")})
+    assert capsys.readouterr().err == "assumed: row bearing along the longest side of each\n"
 
 
 def test_a_plot_of_one_plant_is_described_as_one_and_thousands_are_parted(capsys):

@@ -70,7 +70,7 @@ def test_a_plant_that_was_pulled_out_is_recorded_by_file_and_no_treatment_stands
     code, _, err, _ = run("record", season, tmp_path / "gone.csv")
     assert code == 0, err
     out = run("status", season, "--date", after)[1]
-    assert "gone                        1 pulled out: plans leave them out" in out
+    assert "gone                        1 does not stand there any more: plans leave it out" in out
     assert "not found yet, and 2 were found and only flagged." in out
     assert "could not be inspected" not in out
     assert 1 not in Season(season).plan(after + timedelta(days=1)).route.plant

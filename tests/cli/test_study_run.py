@@ -59,7 +59,7 @@ def test_a_study_says_how_plots_are_planted_and_which_times_are_charged(tmp_path
     assert "rows 4.00 m and plants 3.00 m apart" in out
     assert "guessed: row spacing 4 m [--row-spacing]" in err
     assert "time added for a row change, as in simulated drives: 9 s" in err
-    told = StudyOptions(file, row_spacing=2.5, plant_spacing=1.5, robot_times="thesis")
+    told = StudyOptions(file, row_spacing=2.5, plant_spacing=1.5, bearing=0.0, robot_times="thesis")
     _tell_charged(told.design().robot_times)
     (many,) = told.plots()
     out, err = capsys.readouterr()

@@ -36,6 +36,7 @@ TEXT_OF = {
     "columns": ("lon=East", (("lon", "East"),)),
     "near": ("35.1, 30.2", (35.1, 30.2)),
     "swap_axes": ("yes", True),
+    "outline": ("yes", True),
     "where": ("crop=vine", "crop=vine"),
     "decimal": (",", ","),
     "delimiter": (";", ";"),

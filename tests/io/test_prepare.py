@@ -43,16 +43,18 @@ from tests.parcels import write_geojson
 
 def test_what_nobody_said_is_assumed_and_said(parcels):
     made = prepare(one(parcels, "Plot 1"))
-    assert {a.setting: a.value for a in made.assumed} == {
+    assert {a.setting: round(a.value, 3) for a in made.assumed} == {
         "row_spacing_m": 4.0,
         "plant_spacing_m": 3.0,
+        "row_bearing_deg": 90.0,
     }
     assert [str(a) for a in made.assumed] == [
         "guessed: row spacing 4 m",
         "guessed: plant spacing 3 m",
+        "guessed: row bearing 90.0 degrees, along the longest side",
     ]
     told = prepare(one(parcels, "Plot 1", planting=PlantingChoices(row_spacing_m=5.0)))
-    assert [a.setting for a in told.assumed] == ["plant_spacing_m"]
+    assert [a.setting for a in told.assumed] == ["plant_spacing_m", "row_bearing_deg"]
     assert told.plot.grid.row_spacing_m == pytest.approx(5.0)
     assert prepare(one(ZIP, "Nursery")).assumed == ()
 

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.prepare import lay
@@ -47,11 +48,14 @@ def test_where_no_rows_are_only_stops_add_time():
 
 def test_a_plot_carries_what_was_assumed_of_its_rows():
     field = a_plot().field
-    assert lay(field).plot.assumed == (
-        Assumed("row_spacing_m", 4.0), Assumed("plant_spacing_m", 3.0)
+    spacings, bearing = lay(field).plot.assumed[:2], lay(field).plot.assumed[2]
+    assert spacings == (Assumed("row_spacing_m", 4.0), Assumed("plant_spacing_m", 3.0))
+    assert (bearing.setting, bearing.value) == (
+        "row_bearing_deg", pytest.approx(lay(field).plot.grid.frame.bearing_deg)
     )  # fmt: skip
-    assert names(lay(field, PlantingChoices(row_spacing_m=5.0)).plot.assumed) == ["plant_spacing_m"]
-    stated = replace(field, row_spacing_m=4.0, plant_spacing_m=3.0)
+    said = PlantingChoices(row_spacing_m=5.0, row_bearing_deg=0.0)
+    assert names(lay(field, said).plot.assumed) == ["plant_spacing_m"]
+    stated = replace(field, row_spacing_m=4.0, plant_spacing_m=3.0, row_bearing_deg=0.0)
     assert lay(stated).plot.assumed == ()
     plot = lay(field).plot
     missing = np.arange(len(plot.grid)) < 3

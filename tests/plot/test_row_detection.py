@@ -11,7 +11,6 @@ from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import (
     distinct,
     frame_around,
-    rows_from_boundary,
     rows_from_lines,
     rows_from_plants,
     split_lines,
@@ -154,41 +153,6 @@ def test_lines_are_told_apart_even_if_they_are_unevenly_spaced(steps_m, n_plants
 def test_the_frame_around_plants_is_centred_on_them_and_points_east():
     frame = frame_around(np.array([[35.0, 30.0], [35.2, 30.4], [35.0, 30.0]]))
     assert (frame.lon, frame.lat, frame.bearing_deg) == pytest.approx((35.1, 30.2, 90.0))
-
-
-# --- from the boundary -----------------------------------------------------------------------
-
-
-@given(st.floats(0, 180), st.floats(1.3, 20.0))
-def test_rows_run_along_the_long_side_of_a_plot(bearing_deg, times_longer):
-    plot = field_of(shapely.box(0, 0, 30 * times_longer, 30), bearing_deg)
-    assert off_deg(rows_from_boundary(plot).bearing_deg, bearing_deg) < 0.01
-
-
-def test_a_ragged_short_end_does_not_turn_the_rows():
-    saw = [(200 + 8 * (k % 2), 5 * k) for k in range(13)]
-    plot = field_of(shapely.Polygon([(0, 0), *saw, (0, 60)]), 33.0)
-    assert off_deg(rows_from_boundary(plot).bearing_deg, 33.0) < 0.1
-
-
-def test_a_long_side_drawn_by_a_shaky_hand_keeps_its_direction():
-    rng = np.random.default_rng(3)
-    x = np.linspace(0, 200, 41)
-    lower, upper = (np.stack([x, y + rng.normal(scale=0.1, size=41)], axis=1) for y in (0, 90))
-    plot = field_of(shapely.Polygon(np.concatenate([lower, upper[::-1]])), 140.0)
-    assert off_deg(rows_from_boundary(plot).bearing_deg, 140.0) < 0.3
-
-
-def test_the_largest_part_decides():
-    big, small = shapely.box(0, 0, 100, 60), shapely.box(120, 0, 130, 90)
-    frame = Frame(35.15, 30.36, 50.0)
-    plot = Field("two", MultiPolygon([frame.geometry_lonlat(part) for part in (small, big)]))
-    assert off_deg(rows_from_boundary(plot).bearing_deg, 50.0) < 0.1
-
-
-def test_a_direction_close_to_north_is_found_from_both_sides_of_it():
-    ring = [(0, 0), (0.5, 100), (-0.5, 200), (20, 200), (20.5, 100), (19.5, 0)]
-    assert off_deg(rows_from_boundary(field_of(shapely.Polygon(ring))).bearing_deg, 0.0) < 0.3
 
 
 # --- from drawn rows -------------------------------------------------------------------------

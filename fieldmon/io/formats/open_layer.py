@@ -17,7 +17,7 @@ from fieldmon.io.formats.signatures import TABULAR, VECTOR, WORKBOOKS, FileKind
 from fieldmon.io.formats.tables import read_sheet, read_text_table
 from fieldmon.io.formats.workbooks import sheet_names
 from fieldmon.io.import_report import seen
-from fieldmon.io.options import ReadOptions, Source, source_name
+from fieldmon.io.options import PlotOptions, ReadOptions, Source, source_name
 from fieldmon.io.sandbox.unpack import choose_member, members
 
 if TYPE_CHECKING:
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from fieldmon.io.sandbox.workroom import Workroom
 
 _MAPINFO = frozenset({FileKind.MAPINFO_TAB, FileKind.MAPINFO_MIF})
+#: layers of a GPX file that hold the positions of another one
+_FIXES_OF = {"track_points": "tracks", "route_points": "routes"}
 _NOTES = (".txt", ".md", ".html", ".xml", ".json.txt")
 
 
@@ -151,6 +153,10 @@ def _only_layer(
             return _layer(staged, options.layer, options)
         raise _which_layer(staged, names, f", but none is called {options.layer!r}")
     full = _full_layers(staged, options, names)
+    if isinstance(options, PlotOptions):
+        # fixes of a track or route say of a plot what it says itself
+        names = tuple(name for name in names if _FIXES_OF.get(name) not in full)
+        full = {name: layer for name, layer in full.items() if name in names}
     if len(full) > 1:
         raise _which_layer(staged, tuple(full), f" with something in them{more}")
     if not full:

@@ -30,6 +30,15 @@ from fieldmon.io.parse.georeference import few_unplaceable, place_geometry, writ
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.utm_zones import of_another_zone, stated_zone
 from fieldmon.io.readers.known_rows import KnownRows, known_rows
+from fieldmon.io.readers.walked_outline import (
+    MOST_CORNERS,
+    around,
+    ends_meet,
+    goes_round,
+    in_order,
+    not_in_order,
+    outline_of,
+)
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 
@@ -43,7 +52,7 @@ def plots_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     """Return the plots of a layer, each valid and in degrees WGS84."""
     if layer.geometry is None:
         return _plot_of_corners(layer, options)
-    areas, messages = _areas(layer)
+    areas, messages = _areas(layer, options)
     named, said = stated_zone(areas, _middles(_shapes(areas)), options, areas.crs)
     messages += said
     if named is not None:
@@ -254,7 +263,7 @@ def named_areas(layer: Layer, options: PlotOptions) -> tuple[Layer, list[str]]:
     """Return the features of a layer that are plots, and the name of each."""
     if layer.geometry is None:
         return layer.take(np.arange(0)), []
-    areas, _ = _areas(layer)
+    areas, _ = _areas(layer, options)
     if options.column("block") is not None:
         return areas, _block_names(areas, options)[0]
     return areas, plot_names(areas, options.name_column)[0]
@@ -305,12 +314,16 @@ def _told_apart(names: list[str]) -> list[str]:
     return apart
 
 
-def _areas(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
+def _areas(layer: Layer, options: PlotOptions) -> tuple[Layer, list[ImportMessage]]:
     """Return the features that have an area; offer lines and points for what they can be."""
     messages: list[ImportMessage] = []
     areas, lines, points = geometry_kinds(_shapes(layer))
     if not areas.any() and lines.any():
         layer, messages = _outlines(layer)
+        areas, lines, points = geometry_kinds(_shapes(layer))
+    if not areas.any() and (outline := _outline(layer, options)) is not None:
+        layer, more = outline
+        messages = [*messages, *more]
         areas, lines, points = geometry_kinds(_shapes(layer))
     if not areas.any():
         _refuse_without_areas(layer, int(lines.sum()), int(points.sum()))
@@ -343,13 +356,85 @@ def _outlines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     shapes = _shapes(layer)
     closed = closed_lines(shapes)
     if not closed.any():
-        return layer, []
+        return _nearly_closed(layer)
     as_areas = shapes.copy()
     as_areas[closed] = [filled(line) for line in shapes[closed]]
     said = worded(
         "{n} closed {n:line was|lines were} taken as the outlines of plots.", n=int(closed.sum())
     )
     return replace(layer, geometry=as_areas), [guessed(said)]
+
+
+def _nearly_closed(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
+    """Return the layer with lines that end near where they begin as the areas inside them."""
+    shapes = _shapes(layer)
+    lines = geometry_kinds(shapes).lines
+    met = [k for k in np.flatnonzero(lines).tolist() if ends_meet(shapes[k])]
+    outlines = {k: found for k in met if (found := around(shapes[k])) is not None}
+    if not outlines:
+        return layer, []
+    as_areas = shapes.copy()
+    for k, outline in outlines.items():
+        as_areas[k] = outline.area
+    said = worded(
+        "{n} {n:line that ends|lines that end} near where {n:it begins was|they begin were} taken "
+        "as the outlines of plots, and closed.",
+        n=len(outlines),
+    )
+    more = [one for outline in outlines.values() for one in outline.messages]
+    return replace(layer, geometry=as_areas), [guessed(said), *more]
+
+
+def _outline(layer: Layer, options: PlotOptions) -> tuple[Layer, list[ImportMessage]] | None:
+    """Return points, or the only line, as the one area that they go around; ask if they are."""
+    kinds = geometry_kinds(_shapes(layer))
+    n_lines, n_points = int(kinds.lines.sum()), int(kinds.points.sum())
+    is_line = n_lines == 1 and not n_points
+    if not is_line and (n_lines or _are_plants(layer, n_points)):
+        return None
+    layer = in_order(layer.take(np.flatnonzero(kinds.lines | kinds.points)))
+    xy = shapely.get_coordinates(_shapes(layer))
+    outline = outline_of(xy)
+    if outline is None or not goes_round(outline.area):
+        return None
+    if not options.outline:
+        raise ChoiceNeeded(
+            worded(
+                "A plot must be an area, but {name} holds {n} positions on a line that does not "
+                "close. Are they its corners, in their order around it? If not, import it as rows "
+                "or paths.",
+                name=layer.name,
+                n=len(xy),
+            )
+            if is_line
+            else worded(
+                "A plot must be an area, but {name} holds {n} points. Are they its corners, in "
+                "their order around it? If not, import them as plants or records.",
+                name=layer.name,
+                n=len(xy),
+            ),
+            "outline",
+            ("yes",),
+        )
+    alike = {name: values[:1] for name, values in layer.columns.items()
+             if len({text(value) for value in values}) == 1}  # fmt: skip
+    area = np.array([outline.area], dtype=object)
+    return replace(layer, columns=alike, geometry=area), [_taken(len(xy)), *outline.messages]
+
+
+def _are_plants(layer: Layer, n_points: int) -> bool:
+    """Return whether positions are plants by their numbers: a few corners may be numbered, too.
+
+    The line through many, row up and row down, may cross itself nowhere.
+    """
+    numbered = any(find(role, layer.columns) for role in ("row", "plant"))
+    return numbered and n_points > _MOST_CORNERS_NUMBERED
+
+
+def _taken(n_points: int) -> ImportMessage:
+    return guessed(
+        worded("{n} positions were taken as the corners of one plot, in their order.", n=n_points)
+    )
 
 
 def _refuse_without_areas(layer: Layer, n_lines: int, n_points: int) -> None:
@@ -451,6 +536,8 @@ _MOST_NAMED = 5
 _TWO = 2
 # a table of more positions with a number of their row or plant lists plants
 _MOST_CORNERS_NUMBERED = 20
+# so few positions are corners rather than plants
+_FEW_CORNERS = 6
 _NO_AREA, _NO_LINES, _UNKNOWN_ROWS = MultiPolygon(), MultiLineString(), KnownRows()
 
 
@@ -523,36 +610,34 @@ def _duplicates(fields: list[Field]) -> list[ImportMessage]:
 
 def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field, ...]]:
     """Return the one plot whose corners a table lists in order."""
+    layer = in_order(layer)
     found = located(layer, options)
     points, messages = found.lonlat, found.messages
-    # a few corners may be numbered; many numbered positions are plants, even if the line through
-    # them, row up and row down, crosses itself nowhere
-    numbered = any(find(role, layer.columns) for role in ("row", "plant"))
-    if options.where is None and numbered and len(points) > _MOST_CORNERS_NUMBERED:
+    if options.where is None and _are_plants(layer, len(points)):
         raise _no_outline(layer, len(points))
-    if not 3 <= len(points) <= 1000:
+    if not 3 <= len(points) <= MOST_CORNERS:
         raise _which_are_corners(layer, len(points))
     if found.unread is not None and found.unread.written:
         record, at = next(iter(found.unread.written.items()))
         raise _wrong_corner(layer.name, record + 1, at)
-    ring = MultiPolygon([shapely.Polygon(points)])
-    if not ring.is_valid and options.where is None:
+    outline = outline_of(points)
+    if outline is None and options.where is None and not shapely.Polygon(points).is_valid:
         raise _which_are_corners(layer, len(points))
-    kept, more = boundary(ring, layer.name)
+    ring = shapely.Polygon(points) if outline is None else outline.area
+    kept, more = boundary(MultiPolygon([ring]), layer.name)
+    more += [] if outline is None else outline.messages
     if kept.is_empty:
         raise FileProblem(
             worded("The corners in {file} must enclose an area, but they do not.", file=layer.name)
         )
-    said = guessed(
-        worded(
-            "{n} positions were taken as the corners of one plot, in their order.", n=len(points)
-        )
-    )
-    return Imported((Field(layer.name, kept),), (*layer.messages, *messages, said, *more))
+    told = (*layer.messages, *messages, _taken(len(points)), *more)
+    return Imported((Field(layer.name, kept),), told)
 
 
-def _no_outline(layer: Layer, n_points: int) -> ChoiceNeeded:
-    """Return what is said of positions that no plot can lie inside: they may be plants."""
+def _no_outline(layer: Layer, n_points: int) -> ChoiceNeeded | FileProblem:
+    """Return what is said of positions that no plot can lie inside: many may be plants."""
+    if n_points <= _FEW_CORNERS:
+        return not_in_order(layer.name, n_points)
     return ChoiceNeeded(
         worded(
             "A plot must be an area, but {name} lists {n} positions that are not its corners in "
@@ -565,7 +650,7 @@ def _no_outline(layer: Layer, n_points: int) -> ChoiceNeeded:
     )
 
 
-def _which_are_corners(layer: Layer, n_points: int) -> ChoiceNeeded:
+def _which_are_corners(layer: Layer, n_points: int) -> ChoiceNeeded | FileProblem:
     """Return the question which records of a table are corners, with the groups it holds."""
     groups = []
     places = {find(role, layer.columns) for role in ("lon", "lat", "x", "y", "position")}

@@ -15,7 +15,8 @@ def test_a_plot_laid_at_the_usual_spacings_says_so_beside_its_figures(app, tmp_p
     upload(app, plot=("plot.zip", zipped(tmp_path, square())))
     assert {"Plants", "Rows / plants apart"} <= starred(app)
     go(app, "today")
-    assert "assumed: rows 4 m apart, plants 3 m apart, 1 % of plants infested" in texts_of(app)
+    assert "assumed: rows 4 m apart, plants 3 m apart, the rows " in texts_of(app)
+    assert "° from north, 1 % of plants infested" in texts_of(app)
     assert {texts.PLANTS_TO_INSPECT, texts.FINDS} <= starred(app)
     before = metric(app, texts.PLANTS_TO_INSPECT)
     for box, value in ((texts.ROW_SPACING, 6.0), (texts.PLANT_SPACING, 5.0)):

@@ -1,5 +1,6 @@
 """Files that leave a choice are asked about; bad ones are a sentence."""
 
+import json
 from types import SimpleNamespace
 
 import geopandas as gpd
@@ -100,6 +101,19 @@ def test_plants_dropped_in_the_box_of_the_plot_are_taken_as_plants_by_one_button
     assert not any(box.value for box in app.file_uploader)
     assert "In use: " in texts_of(app)
     assert "vines.csv" in texts_of(app)
+
+
+def test_corners_brought_as_points_are_taken_as_the_outline_by_one_button(app):
+    at = [(35.151, 30.36), (35.1526, 30.3601), (35.1525, 30.361), (35.151, 30.3609)]
+    points = [{"type": "Point", "coordinates": one} for one in at]
+    features = [{"type": "Feature", "properties": {}, "geometry": one} for one in points]
+    data = json.dumps({"type": "FeatureCollection", "features": features})
+    upload(app, plot=("corners.geojson", data.encode()))
+    assert "Are they its corners" in app.warning[0].value
+    press(app, texts.ANSWER_OUTLINE)
+    assert not app.exception
+    assert not app.warning
+    assert int(metric(app, "Plants").replace(",", "")) > 500
 
 
 def two_layers(folder):

@@ -8,6 +8,7 @@ def test_no_answer_about_a_column_is_said_as_it_is_handed_back():
     assert in_short("count=Mites", "columns") == "\u2068Mites\u2069: how many were found"
     assert in_short("lon=East", "columns") == "East"
     assert in_short("marker=polygon", "where") == "marker: polygon"
+    assert in_short("yes", "outline") == "Take them as the outline"
 
 
 def test_other_answers_stay_as_they_are():

@@ -33,6 +33,7 @@ PLANNED_UNRECORDED = "Planned, and nothing recorded: {days}."
 ROW, ROWS, ROWS_NAMED = "row {low}", "rows {low}–{high}", "rows {low}"
 NO_ROWS = "no rows"
 LEGEND_CHANCE = "Chance that a plant is infested"
+LEGEND_RECORDED, LEGEND_ROUTE_ONLY = "from records", "route"
 LEGEND_FOUND, LEGEND_ROUTE = "found infested", "route, arrows show the way"
 LEGEND_STATES = ("never inspected", "looked clean")
 LEGEND_GATE, LEGEND_HOT, LEGEND_ZONES = "gate", "hot spot", "zones to treat"

@@ -519,12 +519,12 @@ export class Field {
 
   /** What is known of plants, for the map. */
   known() {
-    const shown = { found: new Set(this.day.found), clean: new Set(this.day.clean), skipped: new Set() };
+    const shown = { found: new Set(this.day.found), clean: new Set(this.day.clean), skipped: new Set(), recorded: new Set(this.day.recorded) };
     for (const plant of this.back) {
       if (this.said(plant).length === 0) for (const kind of ["found", "clean"]) shown[kind].delete(plant);
     }
     for (const [plant, one] of this.own) {
-      for (const kind of ["found", "clean", "skipped"]) shown[kind].delete(plant);
+      for (const kind of ["found", "clean", "skipped", ...(one.result === "found" ? ["recorded"] : [])]) shown[kind].delete(plant);
       shown[one.result].add(plant);
     }
     return shown;

@@ -737,3 +737,14 @@ test("a photo asked for while one is out comes on the way with the network", asy
   await field.refresh();
   assert.deepEqual(field.ahead, ahead, "once");
 });
+
+test("finds of records alone are apart on the map until one is found here; a server of before says none", async () => {
+  const { season, field } = await aField(new ASeason(aDay(undefined, { found: [4], recorded: [0, 1, 7] })));
+  assert.deepEqual([[...field.known().found], [...field.known().recorded]], [[4], [0, 1, 7]]);
+  await field.tell("found");
+  await field.tell("clean");
+  assert.deepEqual([[...field.known().found], [...field.known().recorded]], [[4, 0], [1, 7]]);
+  season.day = aDay();
+  await field.refresh();
+  assert.deepEqual([...field.known().recorded], []);
+});

@@ -165,6 +165,15 @@ def test_a_plant_that_was_treated_and_is_clean_since_is_told_as_clean(served, sc
     assert {*day["found"]}.issuperset({101})
 
 
+def test_finds_of_records_alone_are_told_apart_from_those_of_the_season(served, scout):
+    season = served.season
+    before = np.flatnonzero(season.history.recorded == 1).tolist()
+    day = json.loads(day_document(season, scout, BEGINS))
+    own = np.flatnonzero(season.history.states(0) == 1).tolist()
+    assert day["found"] == own
+    assert day["recorded"] == sorted({*before} - {*own}) != []
+
+
 def test_the_rest_is_planned_anew_within_what_is_left(served, scout):
     rest = json.loads(rest_document(served.season, scout, BEGINS, 1200))["route"]
     assert 0 < rest["end_s"] <= 1200

@@ -50,7 +50,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
         texts.COLUMN_ARRIVE: [f"{shown.at(s):%H:%M:%S}" for s in route.arrive_s.tolist()],
         **row_column(choices.plot.grid, label.line),
         texts.COLUMN_PLANT: label.number,
-        texts.COLUMN_CHANCE: (100 * route.chance).round(1),
+        texts.COLUMN_CHANCE: (100 * route.believed).round(1),
     }
     if shown.worked:
         done = choices.open_season.history.inspections.on(choices.on)

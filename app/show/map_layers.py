@@ -113,8 +113,8 @@ def switches(
 def legend(choices: Choices, *, treated: bool = False) -> list[legends.LegendPart]:
     """Return the legend of a day's map."""
     dark, recorded = choices.dark, bool(chosen_day.states_apart(choices)[1].any())
-    return [legends.by_chance(dark=dark), legends.by_state(recorded=recorded), legends.by_age(dark=dark),
-            *legends.signs(dark=dark, treated=treated), legends.gate(),
+    return [legends.by_chance(dark=dark), legends.by_state(recorded=recorded),
+            legends.by_age(dark=dark), *legends.signs(dark=dark, treated=treated), legends.gate(),
             *legends.plan(choices.plot.field, dark=dark)]  # fmt: skip
 
 

@@ -604,6 +604,7 @@ class History:
             seconds_left=max(0.0, robot.day_s - self._gone_s((shift, day), today, resting, now_s)),
             trail=trail,
             key=shift.streams.key("sampler", day),
+            infested=None if believed is now else now.chance.copy(),
         )
         known = without_flagged(scene, self.found_and_left(now, day))
         return without_skipped(known, self.skips(day - 1))

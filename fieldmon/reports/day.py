@@ -408,7 +408,7 @@ def _every_stop(facts: DayFacts) -> TickList:
     ]
     rows = zip(
         range(1, len(route) + 1), route.arrive_s.tolist(), label.line.tolist(),
-        label.number.tolist(), (100 * route.chance).tolist(), said, strict=True,
+        label.number.tolist(), (100 * route.believed).tolist(), said, strict=True,
     )  # fmt: skip
     return TickList(
         words.EVERY_STOP, (*words.EVERY_COLUMNS, words.WAS if facts.worked else words.TICK),

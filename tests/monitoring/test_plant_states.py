@@ -13,9 +13,9 @@ from fieldmon.monitoring.history import History, Treatment
 from fieldmon.monitoring.plant_states import (
     TREATED_SINCE,
     finds_apart,
-    shown_apart,
     hot_spots_on,
     latest_states,
+    shown_apart,
     shown_states,
 )
 from tests.monitoring.seasons import a_plot, a_season, on

@@ -338,6 +338,12 @@ class Advice:
                 "under plants.",
                 **area,
             )
+        if len(self.zones):
+            return worded(
+                "Do not treat by the threshold; by these costs alone {area} in {zones} would pay, "
+                "{share} of the {of} under plants.",
+                **area,
+            )
         return worded("Do not treat today.")
 
     def _pays_nowhere(self) -> str:
@@ -354,13 +360,13 @@ class Advice:
         more = self.more or MoreInspections(None, None)
         if more.if_clean is not None:
             return worded(
-                "Keep inspecting: look at {plants} more; if nothing is found there, the plot need "
+                "Keep inspecting: look at about {plants} more; if nothing is found there, the plot need "
                 "not be treated.",
                 plants=counted(more.if_clean, "plant"),
             )
         if more.if_found is not None:
             return worded(
-                "Keep inspecting: look at {plants} more, then you can decide at the earliest.",
+                "Keep inspecting: look at about {plants} more, then you can decide at the earliest.",
                 plants=counted(more.if_found, "plant"),
             )
         return worded(

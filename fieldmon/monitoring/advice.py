@@ -332,6 +332,10 @@ class Advice:
             return worded("Treat {area} in {zones}, {share} of the {of} under plants.", **area)
         if self.verdict == TREAT:
             return self._pays_nowhere()
+        return self._left(area)
+
+    def _left(self, area: dict[str, str]) -> str:
+        """Return that the plot is left, and of which zones that is not so."""
         if self.above:
             return worded(
                 "Do not treat the whole plot, but {area} of it in {zones}, {share} of the {of} "
@@ -360,13 +364,14 @@ class Advice:
         more = self.more or MoreInspections(None, None)
         if more.if_clean is not None:
             return worded(
-                "Keep inspecting: look at about {plants} more; if nothing is found there, the plot need "
-                "not be treated.",
+                "Keep inspecting: look at about {plants} more; if nothing is found there, the plot "
+                "need not be treated.",
                 plants=counted(more.if_clean, "plant"),
             )
         if more.if_found is not None:
             return worded(
-                "Keep inspecting: look at about {plants} more, then you can decide at the earliest.",
+                "Keep inspecting: look at about {plants} more, then you can decide at the "
+                "earliest.",
                 plants=counted(more.if_found, "plant"),
             )
         return worded(

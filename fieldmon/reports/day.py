@@ -58,6 +58,9 @@ NO_ROW = "–"
 _MOST_WIDE = 24
 # as many letters as a column has room for, in two tables and in three
 _WHICH = {2: 40, 3: 22}
+# so many rows with finds all have room; of a day that was worked the map is worth more
+_MOST_FOUND = 36
+_MAP_MM = {False: 80.0, True: 120.0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +221,9 @@ def day_report(facts: DayFacts, units: Units) -> Report:
         blocks.append(_stops(facts))
     if len(facts.found):
         blocks.append(_found(facts))
-    blocks += [*settings_blocks(facts.settings, units), NoteLines(words.NOTES)]
+    blocks += settings_blocks(facts.settings, units)
+    if not facts.worked:  # what was noted then is in the season
+        blocks.append(NoteLines(words.NOTES))
     if has_route:
         blocks.append(_every_stop(facts))
     on = facts.begins.date()
@@ -299,7 +304,7 @@ def _map(facts: DayFacts, units: Units) -> list[Block]:
                    way, recorded=facts.recorded)  # fmt: skip
     alt = map_alt(facts.name, facts.state, 0 if facts.missed else len(facts.route))
     return [
-        Illustration("", alt, what.draw, what.heights(80.0, 190.0)),
+        Illustration("", alt, what.draw, what.heights(_MAP_MM[facts.worked], 190.0)),
         legend_block(route=way is not None, recorded=is_any(facts.recorded)),
     ]
 
@@ -393,8 +398,8 @@ def _found(facts: DayFacts) -> Table:
         for line in np.unique(label.line).tolist()
     )
     return Table(
-        words.FOUND_BY_ROW, words.FOUND_COLUMNS, rows, (0.2, 0.8), flow=2, rest=words.REST,
-        left=(1,),
+        words.FOUND_BY_ROW, words.FOUND_COLUMNS, rows, (0.2, 0.8), flow=3, rest=words.FOUND_REST,
+        left=(1,), whole=facts.worked and len(rows) <= _MOST_FOUND,
     )  # fmt: skip
 
 

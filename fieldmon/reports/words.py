@@ -62,6 +62,7 @@ EVERY_STOP = "Every stop"
 EVERY_COLUMNS = ("stop", "arrive", "row", "plant", "chance %")
 TICK, WAS, RESULTS = "found?", "result", {0: "clean", 1: "found", 2: "could not inspect", -1: ""}
 FOUND_BY_ROW, FOUND_COLUMNS = "Found that day, by row", ("row", "plants found")
+FOUND_REST = "... and {n} more; the report as .html holds all."
 REST, EARLIER_REST = "... and {n} more.", "... and {n} earlier."
 NOTES = "Notes"
 

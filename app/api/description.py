@@ -203,6 +203,7 @@ DAY: dict[str, Any] = {
         "chance": _LIST | {"description": "Of each plant, in thousandths."},
         "found": _LIST,
         "clean": _LIST,
+        "recorded": _LIST | {"description": "Found by records of before the season alone."},
         "gone": _LIST | {"description": "Plants that do not stand there any more."},
         "today": _SAID,
         "contradicting": _SAID,

@@ -30,7 +30,7 @@ from fieldmon.monitoring.derived_layers import spot_area
 from fieldmon.monitoring.findings import taken_back, taken_back_before
 from fieldmon.monitoring.history import say_gone
 from fieldmon.monitoring.photos import photos_of
-from fieldmon.monitoring.plant_states import hot_spots_on, shown_states
+from fieldmon.monitoring.plant_states import hot_spots_on, shown_apart
 from fieldmon.planning.skips import left_out
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
@@ -97,7 +97,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
     last_heard.note(season.path, scout.name, on, plan if has is None else has)
     robot = settings.robot if member is None else member.robot
     hours = work_hours(season, on, part)
-    known = shown_states(history, settings.day(on))
+    known, recorded = shown_apart(history, settings.day(on))
     return {
         "season": season.path.stem,
         "scout": scout.name,
@@ -117,6 +117,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "chance": np.round(season.evening(on) * 1000).astype(int).tolist(),
         "found": np.flatnonzero(known == PRESENT).tolist(),
         "clean": np.flatnonzero(known == ABSENT).tolist(),
+        "recorded": np.flatnonzero(recorded).tolist(),
         "gone": np.flatnonzero(history.gone(settings.day(on))).tolist(),
         "today": _said(history.inspections.on(on)),
         "contradicting": _said(season.contradicting(on)),

@@ -50,7 +50,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
         texts.COLUMN_ARRIVE: [f"{shown.at(s):%H:%M:%S}" for s in route.arrive_s.tolist()],
         **row_column(choices.plot.grid, label.line),
         texts.COLUMN_PLANT: label.number,
-        texts.COLUMN_CHANCE: [in_words(chance_figure(p, 1)) for p in route.chance.tolist()],
+        texts.COLUMN_CHANCE: [in_words(chance_figure(p, 1)) for p in route.believed.tolist()],
     }
     if shown.worked:
         done = choices.open_season.history.inspections.on(choices.on)

@@ -69,7 +69,7 @@ def draw() -> None:
 def of_plot(choices: Choices, stops: int = 0) -> OfPlot:
     """Return what all maps of a plot have in common: the place, what is in view, and the words."""
     grid = choices.plot.grid
-    finds = int((chosen_day.states(choices) == 1).sum())
+    finds = int((chosen_day.states_apart(choices)[0] == 1).sum())
     alt = texts.MAP_ALT.format(
         name=choices.plot.field.name, plants=len(grid), finds=finds, stops=stops
     )

@@ -40,7 +40,7 @@ PARTS = {
 _FRAMES = 60
 # what was treated is shown for so many days, that of the treatment being the first
 _TREATED_DAYS = 14
-_FINDS = ("finds0", "finds1", "found")
+_FINDS = ("finds-recorded", "finds0", "finds1", "found")
 
 
 def day_map(
@@ -112,9 +112,9 @@ def switches(
 
 def legend(choices: Choices, *, treated: bool = False) -> list[legends.LegendPart]:
     """Return the legend of a day's map."""
-    dark = choices.dark
-    return [legends.by_chance(dark=dark), legends.by_state(), legends.by_age(dark=dark),
-            *legends.signs(dark=dark, treated=treated), legends.gate(),
+    dark, recorded = choices.dark, bool(chosen_day.states_apart(choices)[1].any())
+    return [legends.by_chance(dark=dark), legends.by_state(recorded=recorded),
+            legends.by_age(dark=dark), *legends.signs(dark=dark, treated=treated), legends.gate(),
             *legends.plan(choices.plot.field, dark=dark)]  # fmt: skip
 
 
@@ -170,8 +170,9 @@ def plants(choices: Choices) -> list[Layer]:
 
 def _plants(choices: Choices) -> list[Layer]:
     grid = choices.plot.grid
-    chance, state = chosen_day.chance(choices), chosen_day.states(choices)
-    known, level = _known(choices, state), chosen_day.level_range(choices)
+    chance, (state, recorded) = chosen_day.chance(choices), chosen_day.states_apart(choices)
+    known = _known(choices, chosen_day.states(choices))
+    level = chosen_day.level_range(choices)
     by_chance = colours.by_chance(chance, dark=choices.dark)
     ages = []
     if choices.season is not None:
@@ -182,6 +183,7 @@ def _plants(choices: Choices) -> list[Layer]:
         plant_layers.plants(grid, by_chance, notes, "plants-chance"),
         *ages,
         *in_states(choices, state, known),
+        *plant_layers.recorded(grid, recorded),
     ]
 
 

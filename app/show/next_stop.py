@@ -56,7 +56,7 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
         ),
         texts.ARROWS[sector],
         texts.NEXT_CHANCE.format(
-            chance=in_words(chance_figure(float(route.chance[0]), 1)), done=done,
+            chance=in_words(chance_figure(float(route.believed[0]), 1)), done=done,
             left=len(route), hours=str(left)[:-3],
         ),
     )  # fmt: skip

@@ -52,9 +52,10 @@ def of_day(choices: Choices) -> Report:
 def to_come(choices: Choices) -> Callable[[], Report]:
     """Return what makes the report of the chosen day, once it is asked for: it asks no page."""
     season, shown = choices.season, chosen_day.route(choices)
+    state, recorded = chosen_day.states_apart(choices)
     facts = DayFacts(
         choices.plot.field.name, shown.begins, shown.route, chosen_day.chance(choices),
-        chosen_day.states(choices), chosen_day.hot_spots(choices),
+        state, chosen_day.hot_spots(choices),
         _settings(choices, worked=shown.worked),
         0 if season is None else chosen_day.progress(choices).inspected_today,
         chosen_day.found(choices), shown.worked,
@@ -65,6 +66,7 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         missed=season is not None and was_missed(season, choices.on, choices.today),
         treatments=() if season is None else treated_on(season, choices.on),
         labels=() if season is None else season.labels(),
+        recorded=recorded,
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
     on = choices.on

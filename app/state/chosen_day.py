@@ -154,6 +154,18 @@ def states(choices: Choices) -> NDArray[np.int8]:
     return plant_states.shown_states(history, settings.day(choices.on))
 
 
+def states_apart(choices: Choices) -> tuple[NDArray[np.int8], NDArray[np.bool_]]:
+    """Return `states`, found only by a season's inspections, and ``(n,)`` finds of records alone.
+
+    Without a season all is by records, and none is apart.
+    """
+    if choices.season is None:
+        known = states(choices)
+        return known, np.zeros(len(known), np.bool_)
+    history, settings = choices.season.history, choices.season.settings
+    return plant_states.shown_apart(history, settings.day(choices.on))
+
+
 def hot_spots(choices: Choices) -> HotSpots:
     """Return the hot spots of the day: of findings in a season, else of records."""
     if choices.season is None:

@@ -205,6 +205,7 @@ LEGEND_HOT = "hot spot: finds cluster more than chance allows"
 LEGEND_TREATED = "treated in the last two weeks"
 LEGEND_SEEN, LEGEND_NOT_SEEN = "record: pests seen", "record: none seen"
 LEGEND_STATES = {"found": "found", "clean": "looked clean", "never": "never inspected"}
+LEGEND_RECORDED = "known from records"
 LEGEND_TRUTH = "infested, not yet found (only a simulation knows)"
 # on the map itself, where the browser shows it
 MAP_WORDS = {

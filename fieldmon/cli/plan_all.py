@@ -252,7 +252,7 @@ def _work(name: str, task: Task) -> Row:
         "stops": len(route),
         "hours": round(route.end_s / 3600, 3),
         "drive_km": round(route.drive_m / 1000, 3),
-        "infested_expected": round(route.expected_finds, 3),
+        "infested_expected": round(float(route.believed.sum()), 3),
         "assumed": assumed_in_words(assumed),
     }
 

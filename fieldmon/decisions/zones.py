@@ -97,9 +97,9 @@ class Zones:
                 outside=estimate(self.outside),
             )
         return worded(
-            "Treat {area} in {zones}, {share} of the {of} under plants: {inside} infested plants "
-            "are expected there and {outside} elsewhere. It costs {cost:,.2f} and saves "
-            "{saved:,.2f}, in your currency.",
+            "To treat {area} in {zones}, {share} of the {of} under plants, costs {cost:,.2f} and "
+            "saves {saved:,.2f}, in your currency: {inside} infested plants are expected there and "
+            "{outside} elsewhere.",
             area=Units().square(self.m2), zones=counted(len(self), "zone"),
             share=share_figure(self.m2 / self.plot_m2), of=Units().square(self.plot_m2),
             inside=estimate(self.inside), outside=estimate(self.outside), cost=self.cost,

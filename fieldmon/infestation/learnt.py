@@ -173,11 +173,12 @@ def learnt_from(
 
 
 def with_start(
-    learnt: Iterable[Learnt], ever: Estimate, *, nights_passed: bool
+    learnt: Iterable[Learnt], ever: Estimate, first: Estimate | None = None, since: float = 1.0
 ) -> tuple[Learnt, ...]:
     """Return the same with as many infested at the start as can be where so many `ever` were.
 
-    Until a night has passed, these are the same plants; later there were no more at the start.
+    On the first evening these are the same plants; later what is learnt counts as far as it rests
+    on inspections made since, so that a day without results, or with few, changes it no more.
 
     Parameters
     ----------
@@ -186,12 +187,15 @@ def with_start(
         chance map, which is pooled of two.
     ever
         How many plants have been infested by now: all that were found, and those not found yet.
-    nights_passed
-        Whether a night of the season has passed.
+    first
+        How many had been on the season's first evening; None: nothing was inspected on that day.
+    since
+        The share of the inspections that were made after it.
     """
 
     def agreeing(one: Learnt) -> Learnt:
-        at_start = Estimate(one.value, one.low, one.high).at_most(ever) if nights_passed else ever
+        at_start = Estimate(one.value, one.low, one.high).at_most(ever)
+        at_start = at_start if first is None else first.mixed(at_start, since)
         return Learnt(one.name, *astuple(at_start))
 
     return tuple(agreeing(one) if one.name == _INFESTED_AT_START else one for one in learnt)

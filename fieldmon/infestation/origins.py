@@ -8,7 +8,7 @@ brought already counts for more. So chances mean what they say where the model d
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,6 +56,11 @@ class Estimate:
     def __add__(self, other: Estimate) -> Estimate:
         """Return the estimate of both numbers together, as wide as if both were off alike."""
         return Estimate(self.value + other.value, self.low + other.low, self.high + other.high)
+
+    def mixed(self, other: Estimate, share: float) -> Estimate:
+        """Return the estimate that has so large a share of another, end by end."""
+        both = zip(astuple(self), astuple(other), strict=True)
+        return Estimate(*((1.0 - share) * one + share * two for one, two in both))
 
     def at_most(self, other: Estimate) -> Estimate:
         """Return the estimate of a number of which it is known that it is no more than another."""

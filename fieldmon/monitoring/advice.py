@@ -76,8 +76,8 @@ class AdviceSettings:
     >>> asked = fm.AdviceSettings(level=0.08, sure=0.95)
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
     >>> season = fm.Season.create("of_advice.gpkg", plot, begins="2026-11-18")
-    >>> season.advice("2026-11-18", asked).headline()
-    'Do not treat today.'
+    >>> season.advice("2026-11-18", asked).verdict
+    'do not treat'
     """
 
     level: float = 0.05
@@ -332,10 +332,20 @@ class Advice:
             return worded("Treat {area} in {zones}, {share} of the {of} under plants.", **area)
         if self.verdict == TREAT:
             return self._pays_nowhere()
+        return self._left(area)
+
+    def _left(self, area: dict[str, str]) -> str:
+        """Return that the plot is left, and of which zones that is not so."""
         if self.above:
             return worded(
                 "Do not treat the whole plot, but {area} of it in {zones}, {share} of the {of} "
                 "under plants.",
+                **area,
+            )
+        if len(self.zones):
+            return worded(
+                "Do not treat by the threshold; by these costs alone {area} in {zones} would pay, "
+                "{share} of the {of} under plants.",
                 **area,
             )
         return worded("Do not treat today.")
@@ -354,13 +364,14 @@ class Advice:
         more = self.more or MoreInspections(None, None)
         if more.if_clean is not None:
             return worded(
-                "Keep inspecting: look at {plants} more; if nothing is found there, the plot need "
-                "not be treated.",
+                "Keep inspecting: look at about {plants} more; if nothing is found there, the plot "
+                "need not be treated.",
                 plants=counted(more.if_clean, "plant"),
             )
         if more.if_found is not None:
             return worded(
-                "Keep inspecting: look at {plants} more, then you can decide at the earliest.",
+                "Keep inspecting: look at about {plants} more, then you can decide at the "
+                "earliest.",
                 plants=counted(more.if_found, "plant"),
             )
         return worded(

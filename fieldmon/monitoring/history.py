@@ -474,12 +474,22 @@ class History:
         learnt = learnt_from(self.in_hindsight(morning, day), told, self.night(day))
         if not learnt or self._ended_unfound(day):
             return learnt
-        ever = self._ever_infested(morning, day)
-        return with_start(learnt, ever, nights_passed=day > 0)
+        on = self.days[: len(self.until(day))][self.until(day).result != SKIPPED]
+        ever = self._ever_infested(day, self.estimate(morning, day))
+        if on[0] > 0:
+            return with_start(learnt, ever)
+        since = np.count_nonzero(on > 0) / len(on)
+        return with_start(learnt, ever, self._infested_first if day else ever, since)
 
-    def _ever_infested(self, morning: Belief, day: int) -> Estimate:
+    @cached_property
+    def _infested_first(self) -> Estimate:
+        """How many plants had been infested by the first evening."""
+        evening = in_hindsight(self._evening(self.first_morning, 0), self.night(0))
+        return self._ever_infested(0, not_found_yet(self.grid, evening, self._flagged(0)))
+
+    def _ever_infested(self, day: int, left: PlotEstimate) -> Estimate:
         """Return how many plants were infested by the evening of a day, if found or still so."""
-        done, left = self.until(day), self.estimate(morning, day)
+        done = self.until(day)
         found = len(np.unique(done.plant[done.result == FOUND]))
         return Estimate(found + left.expected, found + left.low, found + left.high)
 
@@ -604,6 +614,7 @@ class History:
             seconds_left=max(0.0, robot.day_s - self._gone_s((shift, day), today, resting, now_s)),
             trail=trail,
             key=shift.streams.key("sampler", day),
+            infested=None if believed is now else now.chance.copy(),
         )
         known = without_flagged(scene, self.found_and_left(now, day))
         return without_skipped(known, self.skips(day - 1))

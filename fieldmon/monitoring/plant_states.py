@@ -71,6 +71,16 @@ def gone_by_note_alone(history: History, day: int) -> tuple[int, str]:
     return len(np.unique(plants[others])), first
 
 
+def shown_apart(history: History, day: int) -> tuple[NDArray[np.int8], NDArray[np.bool_]]:
+    """Return `shown_states`, found only by the season's inspections, and ``(n,)`` other finds.
+
+    Those are of the records of before alone: of them the states say what inspections saw.
+    """
+    known, own = (shown_states(history, day, own=own) for own in (False, True))
+    recorded = (known == PRESENT) & (own != PRESENT)
+    return np.where(recorded, own, known), recorded
+
+
 def finds_apart(history: History, day: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Return ``(n,)`` which finds no inspection of the season made, and which count no more.
 

@@ -98,7 +98,7 @@ def _stops(number: int | None, label: RowLabel, route: Route) -> list[tuple[obje
         label.number[route.plant].tolist(),
         route.arrive_s.tolist(),
         [clock.after(begin, round(s)).isoformat() for s in route.arrive_s.tolist()],
-        route.chance.tolist(),
+        route.believed.tolist(),
         strict=True,
     )
     return list(stops)

@@ -59,7 +59,7 @@ def worked_route(season: Season, on: date, who: str | None = None) -> Route:
     begun_s = float(np.fmin(begun_s, done.second.min(initial=np.inf)))
     scene = Scene(
         aisles=aisles, robot=robot, chance=season.morning_in_sight(on),
-        seconds_left=robot.day_s,
+        infested=season.morning(on), seconds_left=robot.day_s,
         last_inspected=np.full(len(aisles.grid), NEVER, np.int32),
     )  # fmt: skip
     n, drive_s = len(done), _drive_s(scene, done.plant)

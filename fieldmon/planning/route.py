@@ -45,7 +45,8 @@ class Route:
     arrive_s, leave_s
         ``(k,)`` seconds since the start of the route.
     chance, detects
-        ``(k,)`` believed chance of infestation at each stop, and chance to find what is there.
+        ``(k,)`` believed chance of infestation that can be seen at each stop, and chance to find
+        what is there.
     line_m
         ``(m, 2)`` the driven line, metres of the plot's frame. It crosses no row of plants.
     line_stop
@@ -61,6 +62,8 @@ class Route:
         it is not known.
     stop_s
         Seconds at each stop that are charged for stopping; the others are for looking.
+    infested
+        ``(k,)`` believed chance of infestation, where some of it cannot be seen; None: all can.
 
     Examples
     --------
@@ -84,12 +87,15 @@ class Route:
     notes: RouteNotes | None = None
     found_bound: float | None = None
     stop_s: float = 0.0
+    infested: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A route's")
         k, m = self.plant.size, len(self.line_m)
         stops = ("plant", "arrive_s", "leave_s", "chance", "detects", "line_stop")
         shapes = dict.fromkeys(stops, (k,)) | {"line_m": (m, 2), "line_s": (m,)}
+        if self.infested is not None:
+            shapes["infested"] = (k,)
         must_hold_shapes(self, "A route's", shapes)
         for name in shapes:
             if (values := getattr(self, name)).flags.writeable:
@@ -109,8 +115,13 @@ class Route:
         return float(np.hypot(*np.diff(self.line_m, axis=0).T).sum())
 
     @property
+    def believed(self) -> NDArray[np.float64]:
+        """Believed chance of infestation at each stop, ``(k,)``, as the map has it."""
+        return self.chance if self.infested is None else self.infested
+
+    @property
     def expected_finds(self) -> float:
-        """Infested plants on the route, as believed; not all of them would be seen."""
+        """Infested plants on the route that can be seen, as believed; not all would be."""
         return float(self.chance.sum())
 
     @property
@@ -195,7 +206,7 @@ class Route:
 
         stops = plant_frame(self.aisles.grid, self.plant)
         after = stops.columns.get_loc("number") + 1
-        columns = {"arrive_s": self.arrive_s, "leave_s": self.leave_s, "chance": self.chance}
+        columns = {"arrive_s": self.arrive_s, "leave_s": self.leave_s, "chance": self.believed}
         for place, (name, values) in enumerate(columns.items(), after):
             stops.insert(place, name, values)
         stops.index = stops.index.__class__(range(1, len(self) + 1), name="order")
@@ -224,6 +235,7 @@ def route_of(scene: Scene, work: Workday) -> Route:
         line_s=line_s,
         end_s=work.end_s,
         stop_s=scene.robot.stop_s,
+        infested=None if scene.infested is None else scene.infested[work.plant],
     )
 
 

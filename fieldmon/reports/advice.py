@@ -10,7 +10,7 @@ from fieldmon.compute.wording import chance_figure, estimate, figure, share_figu
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.io.spray_rate import litres_figure
-from fieldmon.monitoring.plant_states import shown_states
+from fieldmon.monitoring.plant_states import shown_apart
 from fieldmon.plot.grid import row_ends, row_label
 from fieldmon.reports import words
 from fieldmon.reports.content import (
@@ -73,16 +73,18 @@ def _figures(advice: Advice, product: str, units: Units) -> KeyFigures:
 def _map(season: Season, on: date, advice: Advice, units: Units) -> list[Block]:
     with season.one_moment():
         day, evening = season.settings.day(on), season.evening(on)
-        state = shown_states(season.history, day)
+        state, recorded = shown_apart(season.history, day)
     grid = season.plot.grid
     what = PlotMap(
         grid, evening, state, hot_spots(grid, np.full(len(grid), -1, np.int8)),
         season.plot.aisles.gate_m, units,
         zones_m=tuple(grid.frame.geometry_m(area) for area in advice.outlines),
+        recorded=recorded,
     )  # fmt: skip
     found = int(np.count_nonzero(state == PRESENT))
     alt = map_alt(season.plot.field.name, state, 0) if found else words.ADVICE_ALT
-    return [Illustration("", alt, what.draw, what.heights(80.0, 150.0)), legend_block(zones=True)]
+    signs = legend_block(zones=True, recorded=bool(recorded.any()))
+    return [Illustration("", alt, what.draw, what.heights(80.0, 150.0)), signs]
 
 
 def _zones(advice: Advice) -> Table:

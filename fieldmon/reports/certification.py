@@ -69,7 +69,9 @@ class _PlotRecord:
     def of(cls, season: Season, until: date | None, units: Units) -> _PlotRecord:
         on = season.day_meant() if until is None else until
         done = tuple(one for one in season.treatments() if one.on <= on)
-        beware, told = season.cautions(on, units), season.effects(on, units)
+        # until when nobody may enter stands with each treatment: a record is read after it
+        beware = tuple(one for one in season.cautions(on, units) if one.kind != "entry")
+        told = season.effects(on, units)
         try:
             log, wrong = season.log(), " ".join(season.held_to_log())
         except FieldmonError as changed:
@@ -147,9 +149,8 @@ def certification_report(
         title = worded(words.CERT_TITLE, begins=units.day(begins), day=units.day(on))
         sheets = [Sheet(words.CERT_SHEETS[0], page) for page in _pages(_summary(records))]
         sheets += [Sheet(words.CERT_SHEETS[1], page) for page in _pages(_applications(records))]
-        sheets += [
-            Sheet(words.CERT_SHEETS[2], (table,)) for one in records for table in _inspections(one)
-        ]
+        tables = ((table,) for one in records for table in _inspections(one))
+        sheets += [Sheet(words.CERT_SHEETS[2], page) for page in _pages(tables)]
     plots = ", ".join(dict.fromkeys(one.season.plot.field.name for one in records))
     return Report(plots, title, on, tuple(sheets))
 

@@ -15,7 +15,7 @@ from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.closures import closed_in_words
 from fieldmon.monitoring.day_ahead import Part, plan_ahead
-from fieldmon.monitoring.plant_states import hot_spots_on, shown_states
+from fieldmon.monitoring.plant_states import hot_spots_on, shown_apart
 from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import left_out_in_words
 from fieldmon.plot.grid import row_label
@@ -58,6 +58,9 @@ NO_ROW = "–"
 _MOST_WIDE = 24
 # as many letters as a column has room for, in two tables and in three
 _WHICH = {2: 40, 3: 22}
+# so many rows with finds all have room; of a day that was worked the map is worth more
+_MOST_FOUND = 36
+_MAP_MM = {False: 80.0, True: 120.0}
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +76,7 @@ class DayFacts:
     route
         The route as planned or, if `worked`, as it was worked.
     chance, state
-        ``(n,)`` what is believed, and found (1), clean (0) or never inspected (-1), by records too.
+        ``(n,)`` what is believed, and found (1), clean (0) or never inspected (-1).
     spots
         Where finds cluster.
     settings
@@ -104,6 +107,8 @@ class DayFacts:
         Plants that are left off the route as people may not be there yet.
     skipped
         How many are left out because nobody could inspect them.
+    recorded
+        ``(n,)`` other finds, which only the records of before a season tell of; None: none.
     """
 
     name: str
@@ -126,6 +131,7 @@ class DayFacts:
     infested: float | None = None
     closed: tuple[Closure, ...] = ()
     skipped: tuple[Worded, ...] = ()
+    recorded: NDArray[np.bool_] | None = None
 
     @classmethod
     def of_season(cls, season: Season, on: date, today: date | None = None) -> DayFacts:
@@ -145,7 +151,8 @@ class DayFacts:
             if shown.notes is not None and shown.notes.start is not None:
                 begins = shown.notes.start
             names = tuple(one.name for one in settings.team)
-            state, done = shown_states(season.history, day), season.history.on(day).inspected
+            state, recorded = shown_apart(season.history, day)
+            done = season.history.on(day).inspected
             return cls(
                 season.plot.field.name, begins,
                 shown, season.evening(on), state,
@@ -162,6 +169,7 @@ class DayFacts:
                     on, "".join(names[:1]), plan.scene.seconds_left
                 ),
                 skipped=() if worked else left_out_in_words(plan.scene, route),
+                recorded=recorded,
             )  # fmt: skip
 
 
@@ -213,7 +221,9 @@ def day_report(facts: DayFacts, units: Units) -> Report:
         blocks.append(_stops(facts))
     if len(facts.found):
         blocks.append(_found(facts))
-    blocks += [*settings_blocks(facts.settings, units), NoteLines(words.NOTES)]
+    blocks += settings_blocks(facts.settings, units)
+    if not facts.worked:  # what was noted then is in the season
+        blocks.append(NoteLines(words.NOTES))
     if has_route:
         blocks.append(_every_stop(facts))
     on = facts.begins.date()
@@ -291,11 +301,11 @@ def _map(facts: DayFacts, units: Units) -> list[Block]:
     grid = facts.route.aisles.grid
     way = None if facts.team or facts.missed else facts.route
     what = PlotMap(grid, facts.chance, facts.state, facts.spots, facts.route.aisles.gate_m, units,
-                   way)  # fmt: skip
+                   way, recorded=facts.recorded)  # fmt: skip
     alt = map_alt(facts.name, facts.state, 0 if facts.missed else len(facts.route))
     return [
-        Illustration("", alt, what.draw, what.heights(80.0, 190.0)),
-        legend_block(route=way is not None),
+        Illustration("", alt, what.draw, what.heights(_MAP_MM[facts.worked], 190.0)),
+        legend_block(route=way is not None, recorded=is_any(facts.recorded)),
     ]
 
 
@@ -307,13 +317,19 @@ def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:
     )
 
 
+def is_any(recorded: NDArray[np.bool_] | None) -> bool:
+    """Return whether a map has finds of which only records tell."""
+    return recorded is not None and bool(recorded.any())
+
+
 def legend_block(
-    *, route: bool = False, by_state: bool = False, zones: bool = False
+    *, route: bool = False, by_state: bool = False, zones: bool = False, recorded: bool = False
 ) -> Illustration:
     """Return the legend below a map."""
+    signs = {"route": route, "by_state": by_state, "zones": zones, "recorded": recorded}
     return Illustration(
         "", "",
-        lambda size: maps.legend(size[0], route=route, by_state=by_state, zones=zones),
+        lambda size: maps.legend(size[0], **signs),
         (8.0, 8.0), is_read=True,
     )  # fmt: skip
 
@@ -382,8 +398,8 @@ def _found(facts: DayFacts) -> Table:
         for line in np.unique(label.line).tolist()
     )
     return Table(
-        words.FOUND_BY_ROW, words.FOUND_COLUMNS, rows, (0.2, 0.8), flow=2, rest=words.REST,
-        left=(1,),
+        words.FOUND_BY_ROW, words.FOUND_COLUMNS, rows, (0.2, 0.8), flow=3, rest=words.FOUND_REST,
+        left=(1,), whole=facts.worked and len(rows) <= _MOST_FOUND,
     )  # fmt: skip
 
 
@@ -397,7 +413,7 @@ def _every_stop(facts: DayFacts) -> TickList:
     ]
     rows = zip(
         range(1, len(route) + 1), route.arrive_s.tolist(), label.line.tolist(),
-        label.number.tolist(), route.chance.tolist(), said, strict=True,
+        label.number.tolist(), route.believed.tolist(), said, strict=True,
     )  # fmt: skip
     return TickList(
         words.EVERY_STOP, (*words.EVERY_COLUMNS, words.WAS if facts.worked else words.TICK),

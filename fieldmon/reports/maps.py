@@ -75,6 +75,8 @@ class PlotMap:
         Whether plants are coloured by what was found there instead of by chance.
     zones_m
         Areas to be sprayed, metres of the plot.
+    recorded
+        ``(n,)`` other finds, known from records of before the season; None: none.
     """
 
     grid: PlantGrid
@@ -86,6 +88,7 @@ class PlotMap:
     route: Route | None = None
     by_state: bool = False
     zones_m: tuple[MultiPolygon, ...] = ()
+    recorded: NDArray[np.bool_] | None = None
 
     @property
     def rank(self) -> NDArray[np.intp]:
@@ -324,14 +327,22 @@ def _arrows(line: Floats) -> list[Part]:
 
 
 def _finds(what: PlotMap, placed: _ToPaper) -> list[Part]:
-    places = placed(what.grid.xy_m[what.state == PRESENT])
     radius = float(np.clip(0.35 * what.grid.row_spacing_m * placed.scale, 0.55, 1.3))
-    if not len(places):
-        return []
-    return [
-        Discs(places, radius + 0.25, fill=colours.PAPER),
-        Discs(places, radius, fill=colours.FOUND, edge=colours.INK, width=0.2),
-    ]
+    parts: list[Part] = []
+    if what.recorded is not None and what.recorded.any():
+        parts.append(_recorded(placed(what.grid.xy_m[what.recorded]), radius))
+    if (found := what.state == PRESENT).any():
+        places = placed(what.grid.xy_m[found])
+        parts += [
+            Discs(places, radius + 0.25, fill=colours.PAPER),
+            Discs(places, radius, fill=colours.FOUND, edge=colours.INK, width=0.2),
+        ]
+    return parts
+
+
+def _recorded(places: Floats, radius: float) -> Part:
+    """Return the sign of finds that only records tell of: hollow."""
+    return Discs(places, radius, fill=colours.PAPER, edge=colours.FOUND, width=0.35)
 
 
 def _gate(gate_m: Floats, placed: _ToPaper) -> list[Part]:
@@ -382,7 +393,12 @@ def _north(grid: PlantGrid, placed: _ToPaper, size: Size) -> list[Part]:
 
 
 def legend(
-    width: float, *, route: bool = False, by_state: bool = False, zones: bool = False
+    width: float,
+    *,
+    route: bool = False,
+    by_state: bool = False,
+    zones: bool = False,
+    recorded: bool = False,
 ) -> Drawing:
     """Return what the signs of a map mean, on a strip of that width."""
     y = 2.5
@@ -391,6 +407,10 @@ def legend(
     parts += [Discs(find, 1.2, fill=colours.FOUND, edge=colours.INK),
               Lettering(x + 3.5, y, words.LEGEND_FOUND, 7.0)]  # fmt: skip
     x += 22.5
+    if recorded:
+        parts += [_recorded(np.array([[x + 1.2, y]]), 1.2),
+                  Lettering(x + 3.5, y, words.LEGEND_RECORDED, 7.0)]  # fmt: skip
+        x += 22.5
     ring = np.concatenate([_box(x, y, 3.5), _box(x, y, 3.5)[:1]])
     outlined = words.LEGEND_ZONES if zones else words.LEGEND_HOT
     parts += [Strokes((ring,), colours.INK, 0.5, dashed=zones),
@@ -402,7 +422,8 @@ def legend(
     if route:
         parts += [Strokes((np.array([[x, y], [x + 6.0, y]]),), colours.ROUTE, 0.5),
                   *_arrows(np.array([[x - 9.2, y], [x + 16.0, y]])),
-                  Lettering(x + 7.5, y, words.LEGEND_ROUTE, 7.0)]  # fmt: skip
+                  Lettering(x + 7.5, y, words.LEGEND_ROUTE_ONLY if recorded else words.LEGEND_ROUTE,
+                            7.0)]  # fmt: skip
     return Drawing(width, 8.0, tuple(parts))
 
 

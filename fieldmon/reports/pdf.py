@@ -351,10 +351,32 @@ class _Page:
             self._put(Lettering(_MARGIN, y + (fit + 0.5) * _ROW_MM, said, 7.0, colours.SOFT))
         deep = -(-len(rows) // block.flow)
         each = (self.wide - _FLOW_GAP * (block.flow - 1)) / block.flow
+        block = replace(block, shares=self._shares(block, rows, each))
         for part in range(block.flow):
             own = rows[part * deep : (part + 1) * deep]
             if own:
                 self._columns(block, own, (_MARGIN + part * (each + _FLOW_GAP), y), each)
+
+    def _shares(
+        self, block: Table, rows: tuple[tuple[str, ...], ...], wide: float
+    ) -> tuple[float, ...]:
+        """Return the columns' shares; one that needs more has it from those that need less."""
+        self._font(7.5)
+        need = [
+            max(wide_mm(self.pdf, self.fonts.printable(text)) for text in column) + 2.6
+            for column in zip(block.columns, *rows, strict=True)
+        ]
+        have = [share * wide for share in block.shares]
+        more = sum(max(n - h, 0.0) for n, h in zip(need, have, strict=True))
+        spare = sum(max(h - n, 0.0) for n, h in zip(need, have, strict=True))
+        if not more:
+            return block.shares
+        given = min(more / spare, 1.0) if spare else 0.0
+        taken = min(spare / more, 1.0)
+        return tuple(
+            (h + (n - h) * (taken if n > h else given)) / wide
+            for n, h in zip(need, have, strict=True)
+        )
 
     def _columns(
         self, block: Table, rows: tuple[tuple[str, ...], ...], corner: tuple[float, float],

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     Row = tuple[str, str, str]
 
 _MOST_GUESSED = 3
+# as many letters as a value may have in the table
+_SHORT = 30
 
 
 @dataclass(frozen=True)
@@ -121,10 +123,19 @@ def settings_blocks(settings: WorkSettings, units: Units) -> Iterator[Block]:
         *_of_work(settings),
         *_of_belief(settings, units),
     )
+    short = tuple(row for row in rows if len(row[1]) <= _SHORT)
     yield Table(
-        words.SETTINGS, words.SETTING_COLUMNS, rows, (0.46, 0.2, 0.34), flow=2,
+        words.SETTINGS, words.SETTING_COLUMNS, short, (0.46, 0.2, 0.34), flow=2,
         rest=words.REST, left=(0, 1, 2), whole=True,
     )  # fmt: skip
+    # a column has no room for them
+    below = [
+        worded("{said} ({day})", said=worded("{what}: {said}", what=name, said=value), day=origin)
+        for name, value, origin in rows
+        if len(value) > _SHORT
+    ]
+    if below:
+        yield Listing("", tuple(below))
     if settings.guessed:
         yield Listing(words.GUESSED, settings.guessed[:_MOST_GUESSED])
 

@@ -33,6 +33,7 @@ PLANNED_UNRECORDED = "Planned, and nothing recorded: {days}."
 ROW, ROWS, ROWS_NAMED = "row {low}", "rows {low}–{high}", "rows {low}"
 NO_ROWS = "no rows"
 LEGEND_CHANCE = "Chance that a plant is infested"
+LEGEND_RECORDED, LEGEND_ROUTE_ONLY = "from records", "route"
 LEGEND_FOUND, LEGEND_ROUTE = "found infested", "route, arrows show the way"
 LEGEND_STATES = ("never inspected", "looked clean")
 LEGEND_GATE, LEGEND_HOT, LEGEND_ZONES = "gate", "hot spot", "zones to treat"
@@ -61,6 +62,7 @@ EVERY_STOP = "Every stop"
 EVERY_COLUMNS = ("stop", "arrive", "row", "plant", "chance")
 TICK, WAS, RESULTS = "found?", "result", {0: "clean", 1: "found", 2: "could not inspect", -1: ""}
 FOUND_BY_ROW, FOUND_COLUMNS = "Found that day, by row", ("row", "plants found")
+FOUND_REST = "... and {n} more; the report as .html holds all."
 REST, EARLIER_REST = "... and {n} more.", "... and {n} earlier."
 NOTES = "Notes"
 

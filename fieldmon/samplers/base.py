@@ -125,6 +125,9 @@ class Scene:
     flagged
         ``(n,)`` plants that are left out because they were found infested and only flagged, which
         they are still; None: there are none.
+    infested
+        ``(n,)`` the chances where `chance` is of what inspections can see alone, for files and
+        people; None: they are the same.
 
     Examples
     --------
@@ -149,6 +152,7 @@ class Scene:
     supposed: bool = False
     skipped: NDArray[np.bool_] | None = None
     flagged: NDArray[np.bool_] | None = None
+    infested: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         robot = self.aisles.worked_by(self.robot)

@@ -126,7 +126,7 @@ def test_where_nothing_is_worth_it_nothing_is_treated():
     assert len(zones) == 0
     assert zones.sentence().startswith("Treat nowhere")
     assert (
-        "Treat 0.0072 ha in 1 zone, 100 % of the 0.0072 ha under plants"
+        "To treat 0.0072 ha in 1 zone, 100 % of the 0.0072 ha under plants"
         in best_zones(ROW, np.full(9, 0.9), Sprayer(1), CHEAP).sentence()
     )
 

@@ -48,18 +48,19 @@ def test_infested_at_the_start_are_those_suspected_and_the_others():
     assert told["infested at the start"].value == pytest.approx(chance.sum())
 
 
-def test_no_more_were_at_the_start_than_ever_and_before_a_night_just_as_many():
+def test_no_more_were_at_the_start_than_ever_and_what_is_inspected_later_counts_as_far_as_it_goes():
     learnt = Learnt("detection", 0.8, 0.7, 0.9), Learnt("infested at the start", 73, 18, 129)
     fewer, more = Estimate(53, 20, 110), Estimate(80, 30, 200)
 
-    def start(ever, *, nights_passed):
-        kept, one = with_start(learnt, ever, nights_passed=nights_passed)
+    def start(ever, *first):
+        kept, one = with_start(learnt, ever, *first)
         assert kept == learnt[0]
         return one.value, one.low, one.high
 
     for ever, later in ((fewer, (53, 18, 110)), (more, (73, 18, 129))):
-        assert start(ever, nights_passed=False) == (ever.value, ever.low, ever.high)
-        assert start(ever, nights_passed=True) == later
+        assert start(ever, ever, 0.0) == (ever.value, ever.low, ever.high)
+        assert start(ever) == start(ever, fewer, 1.0) == later
+    assert start(more, fewer, 0.5) == (63.0, 19.0, 119.5)
 
 
 def test_a_belief_that_traces_nothing_has_learnt_nothing():

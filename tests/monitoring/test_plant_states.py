@@ -15,6 +15,7 @@ from fieldmon.monitoring.plant_states import (
     finds_apart,
     hot_spots_on,
     latest_states,
+    shown_apart,
     shown_states,
 )
 from tests.monitoring.seasons import a_plot, a_season, on
@@ -112,6 +113,19 @@ def test_a_find_known_from_records_alone_and_one_that_was_treated_are_told_apart
     brought, treated_since = finds_apart(season.history, 2)
     assert np.flatnonzero(brought).tolist() == [here]
     assert set(np.flatnonzero(treated_since)) == {there, 100, 102}
+
+
+def test_what_is_shown_as_found_is_what_the_season_found_and_records_are_apart(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    here, there = np.flatnonzero(season.history.recorded == 1)
+    seen(season, 0, found=[100], clean=[there])
+    state, recorded = shown_apart(season.history, 0)
+    assert np.flatnonzero(state == FOUND).tolist() == [100]
+    assert np.flatnonzero(recorded).tolist() == [here, there]
+    assert state[[here, there]].tolist() == [-1, CLEAN]
+    seen(season, 1, found=[here])
+    state, recorded = shown_apart(season.history, 1)
+    assert (state[here], recorded[here]) == (FOUND, False)
 
 
 def test_the_file_says_what_is_known_since_the_treatment(season):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings
@@ -119,6 +119,20 @@ def test_until_something_is_inspected_no_day_tells_more_of_the_start(season):
     assert [start(day) for day in (3, 12)] == [first, first]
     season.record(some_results(season, n=20, day=12, found=[3]), "x")
     assert start(12) != first
+
+
+def test_of_the_first_morning_a_day_without_results_says_what_the_evening_before_it_said(season):
+    season.record(some_results(season, n=100, found=range(0, 90, 10)), "x")
+    first = _infested_at_start(season, 0)
+    assert _infested_at_start(season, 4) == first
+    skipped = Inspections.of([200], [SKIPPED], np.datetime64(on(4)))
+    season.record(skipped, "y")
+    assert _infested_at_start(season, 4) == first
+    season.record(Inspections.of([201], [CLEAN], np.datetime64(on(4))), "z")
+    now = _infested_at_start(season, 4)
+    assert now != first
+    ends = [(one.value, one.low, one.high) for one in (now, first)]
+    assert ends[0] == pytest.approx(ends[1], rel=0.02), "one plant of 101"
 
 
 def test_a_forecast_of_a_past_day_says_which_weather_was_measured(tmp_path):

@@ -124,6 +124,19 @@ def test_several_seasons_are_one_record(season, tmp_path):
     assert len(cards(before)) == 2
 
 
+def test_what_was_inspected_on_several_plots_shares_a_page_and_no_entry_is_forbidden_any_more(
+    season, tmp_path
+):
+    other = a_season(tmp_path / "other.gpkg")
+    other.record(some_results(other, n=4), "monday.csv", "Ann")
+    other.treat(BEGINS, 0.8, application=replace(FULL, reentry_hours=12.0))
+    assert any(one.kind == "entry" for one in other.cautions(BEGINS))
+    report = certification_report([season, other], Units(), BEGINS)
+    assert [sheet.heading for sheet in report.sheets].count(words.CERT_SHEETS[2]) == 1
+    assert len(days_of(report)) == 2
+    assert "Do not enter before" not in " ".join(report.words())
+
+
 def test_a_file_that_does_not_hold_to_its_log_says_so_in_the_record(season, tmp_path):
     path = shutil.copy(season.path, tmp_path / "changed.gpkg")
     by_hand(path, "UPDATE treatments SET product = 'water' WHERE fid = 1")

@@ -81,6 +81,36 @@ def test_a_day_that_is_over_says_what_was_done(worked, last, done, of_worked_day
     assert lines == [f"{line}" for line in np.unique(label.line)]
 
 
+def test_the_map_of_a_day_draws_as_found_what_the_season_counts_as_found(worked):
+    facts = DayFacts.of_season(worked, BEGINS)
+    found = worked.history.states(0) == FOUND
+    assert np.array_equal(facts.state == FOUND, found)
+    recorded = (worked.history.recorded == FOUND) & ~found
+    assert np.array_equal(facts.recorded, recorded)
+    assert recorded.any()
+
+    def legend(facts):
+        *_, below = [
+            block for block in day_report(facts, Units()).sheets[0].blocks
+            if isinstance(block, Illustration)
+        ]  # fmt: skip
+        return below.draw((186.0, 8.0)).words()
+
+    assert words.LEGEND_RECORDED in legend(facts)
+    assert words.LEGEND_RECORDED not in legend(replace(facts, recorded=np.zeros_like(recorded)))
+
+
+def test_a_day_that_is_over_has_all_its_finds_on_paper_and_no_room_for_notes(done, ahead):
+    found = np.arange(0, len(done.chance), 8)
+    full = day_report(replace(done, found=found), Units())
+    by_row = table(full, "Found that day, by row")
+    (page,) = texts(pdf_bytes(full))
+    assert all(row[1] in page for row in by_row.rows)
+    kinds = [[type(block) for block in day_report(of, Units()).sheets[0].blocks]
+             for of in (done, ahead)]  # fmt: skip
+    assert [NoteLines in each for each in kinds] == [False, True]
+
+
 def test_a_past_day_with_nothing_recorded_gives_no_orders(worked, last):
     day = BEGINS + timedelta(days=3)
     past = DayFacts.of_season(worked, day, last)

@@ -218,9 +218,11 @@ def test_the_legend_fits_the_page_and_names_its_signs(route, by_state):
     )
 
 
+@pytest.mark.parametrize("recorded", [False, True])
 @pytest.mark.parametrize("zones", [False, True])
-def test_the_legend_has_room_for_the_wider_letters_of_a_browser(zones):
-    pdf, drawing = FPDF(), maps.legend(186.0, route=not zones, zones=zones)
+def test_the_legend_has_room_for_the_wider_letters_of_a_browser(zones, recorded):
+    pdf = FPDF()
+    drawing = maps.legend(186.0, route=not zones, zones=zones, recorded=recorded)
     starts = sorted(places(part)[:, 0].min() for part in drawing.parts)
     for part in parts(drawing, Lettering):
         pdf.set_font("helvetica", size=part.size_pt)

@@ -107,6 +107,16 @@ def test_words_that_are_too_wide_are_set_smaller_before_they_are_cut():
     assert "Infested plants inside the zones" in page
 
 
+def test_a_column_that_needs_more_room_has_it_from_one_that_needs_less():
+    long = "Two-spotted spider mite, by degree-days"
+    table = Table("Days", ("a", "b"), (("1", long),), (0.9, 0.1), flow=2, left=(0, 1))
+    sizes = []
+    opened(pdf_bytes(made(table))).pages[0].extract_text(
+        visitor_text=lambda said, *of: sizes.append(of[-1]) if long in said else None
+    )
+    assert sizes == [7.5]
+
+
 def test_a_table_that_fits_is_whole():
     (page,) = texts(pdf_bytes(made(rows(37))))
     assert all(f"p{k}" in page for k in range(37))

@@ -18,6 +18,7 @@ from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.robot import Robot
 from fieldmon.reports.content import Listing, Table
 from fieldmon.reports.settings_rows import WorkSettings, assumed_sentence, settings_blocks
+from tests.reports.reading import plain
 
 TOLD = WorkSettings(Robot(), "adaptive", PriorSettings(), (4.0, 2.5), (), BeliefSettings())
 ALL = tuple(
@@ -123,12 +124,12 @@ def test_a_named_pest_and_its_weather_stand_in_the_place_of_the_usual_nights():
     at = np.datetime64("2026-11-01", "s") + 86_400 * np.arange(9)
     weather = weather_of(at, DAY_S, temperature_c=np.full(9, 20.0))
     mite = shipped_pest("spider-mite")
-    with_weather = rows(
-        replace(TOLD, pest_in_weather=PestInWeather(mite, weather, date(2026, 6, 1)))
-    )
-    assert "Two-spotted spider mite, by degree-days" in str(
-        with_weather["Pest, by which nights go"]
-    )
+    told = replace(TOLD, pest_in_weather=PestInWeather(mite, weather, date(2026, 6, 1)))
+    with_weather = rows(told)
+    (below,) = [one for one in settings_blocks(told, Units()) if isinstance(one, Listing)]
+    (said,) = [plain(one) for one in below.sentences]
+    assert said == "Pest, by which nights go: Two-spotted spider mite, by degree-days (chosen)"
+    assert "Pest, by which nights go" not in with_weather, "a column has no room for it"
     assert with_weather["Its weather"] == ("2026-11-01 to 2026-11-09", "of the weather file")
     assert "Spread to a neighbour, a night" not in with_weather
     without = rows(replace(TOLD, pest_in_weather=PestInWeather(mite)))

@@ -2,7 +2,7 @@
 
 import { Clock } from "./clock.js";
 import { laidOut, metres, neighbours, offered, rings, rowOf } from "./geo.js";
-import { afterFind, results, secondsAhead, secondsLeft, secondsThrough, withAsked } from "./plan.js";
+import { afterFind, fitting, results, secondsAhead, secondsLeft, secondsThrough, withAsked } from "./plan.js";
 import { fetchDay, fetchRest, isOf } from "./sync.js";
 import { wayAhead } from "./way.js";
 
@@ -40,6 +40,7 @@ export class Field {
   #written = Promise.resolve();
   #failures = 0;
   #way = null;
+  #fit = null;
   #pending = 0;
   #steps = 0;
 
@@ -506,25 +507,34 @@ export class Field {
     return Math.max(0, this.day.seconds_left - secondsThrough(this.plot, this.day, known, [...since, ...more]));
   }
 
-  /** The line ahead as it is gone, metres. */
+  /** The plants ahead that still fit the hours where these run by the clock, as the app cuts its route; none is forgotten: a clock may be put right. */
+  inHours() {
+    if (!this.begun || this.meant() !== null) return this.ahead;
+    const { ahead } = this, fit = fitting(this.plot, this.day, this.lastRecord()?.plant ?? -1, ahead, this.secondsLeft());
+    if (fit.length === ahead.length) return ahead;
+    if (this.#fit?.of !== ahead || this.#fit.plants.length !== fit.length) this.#fit = { of: ahead, plants: fit };
+    return this.#fit.plants;
+  }
+
+  /** The line ahead as it is gone within the hours, metres. */
   way() {
-    const from = this.lastRecord()?.plant ?? -1, known = this.#way;
-    if (known?.ahead !== this.ahead || known.from !== from || known.route !== this.day.route) {
-      this.#way = { ahead: this.ahead, from, route: this.day.route, line: wayAhead(this.plot, this.day, from, this.ahead) };
+    const from = this.lastRecord()?.plant ?? -1, known = this.#way, ahead = this.inHours();
+    if (known?.ahead !== ahead || known.from !== from || known.route !== this.day.route) {
+      this.#way = { ahead, from, route: this.day.route, line: wayAhead(this.plot, this.day, from, ahead) };
     }
     return this.#way.line;
   }
 
-  secondsAhead() { return secondsAhead(this.plot, this.day, this.lastRecord()?.plant ?? -1, this.ahead); }
+  secondsAhead() { return secondsAhead(this.plot, this.day, this.lastRecord()?.plant ?? -1, this.inHours()); }
 
   /** What is known of plants, for the map. */
   known() {
-    const shown = { found: new Set(this.day.found), clean: new Set(this.day.clean), skipped: new Set() };
+    const shown = { found: new Set(this.day.found), clean: new Set(this.day.clean), skipped: new Set(), recorded: new Set(this.day.recorded) };
     for (const plant of this.back) {
       if (this.said(plant).length === 0) for (const kind of ["found", "clean"]) shown[kind].delete(plant);
     }
     for (const [plant, one] of this.own) {
-      for (const kind of ["found", "clean", "skipped"]) shown[kind].delete(plant);
+      for (const kind of ["found", "clean", "skipped", ...(one.result === "found" ? ["recorded"] : [])]) shown[kind].delete(plant);
       shown[one.result].add(plant);
     }
     return shown;

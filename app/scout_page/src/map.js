@@ -19,7 +19,7 @@ export class PlotMap {
     this.theme = "sun";
     this.scale = 1; // pixels of the screen per metre
     this.middle = [0, 0];
-    this.shown = { ahead: [], way: [], asked: [], found: new Set(), clean: new Set(), skipped: new Set(), next: -1, position: null };
+    this.shown = { ahead: [], way: [], asked: [], found: new Set(), clean: new Set(), skipped: new Set(), recorded: new Set(), next: -1, position: null };
     this.touches = new Map();
     this.#listen();
     new ResizeObserver(() => this.#resize()).observe(canvas);
@@ -194,6 +194,11 @@ export class PlotMap {
     ink.lineWidth = 3;
     ink.strokeStyle = paint.edge;
     for (const plant of this.shown.skipped) this.#cross(ink, plant, r);
+    // hollow: no inspection of the season found it
+    ink.fillStyle = paint.ground;
+    ink.strokeStyle = paint.found;
+    ink.lineWidth = 2;
+    for (const plant of this.shown.recorded) this.#diamond(ink, plant, r);
     ink.fillStyle = paint.found;
     ink.strokeStyle = paint.ring;
     ink.lineWidth = 1.5;

@@ -141,7 +141,7 @@ export class Page {
     if (!field.plot || !field.day) { this.#laidOut = null; return this.map.clear(); }
     if (this.#laidOut !== field.day) { this.#laidOut = field.day; this.map.lay(field.plot, field.day.chance, field.day.spots); }
     const asked = field.asked().map((one) => one.plant);
-    this.map.show({ ...field.known(), ahead: field.ahead, way: field.way(), asked, next: field.plant, position: field.position }, late);
+    this.map.show({ ...field.known(), ahead: field.inHours(), way: field.way(), asked, next: field.plant, position: field.position }, late);
   }
 
   moved() {
@@ -154,7 +154,7 @@ export class Page {
   #drawBar() {
     const { field } = this;
     const said = field.day ? [
-      h("b", {}, say("progress", { done: field.kept(), left: field.ahead.length })),
+      h("b", {}, say("progress", { done: field.kept(), left: field.inHours().length })),
       h("span", { id: "hours" }, this.#hours()),
     ] : [h("b", {}, "fieldmon")];
     const n = this.left.records + this.left.photos + field.unwritten();

@@ -87,7 +87,7 @@ export function afterFind(plot, day, ahead, plant, done, left) {
 }
 
 /** As many of the plants ahead as fit with the way back, at least `least`. */
-function fitting(plot, day, at, ahead, left, least) {
+export function fitting(plot, day, at, ahead, left, least = 0) {
   const leg = legs(plot, day);
   let total = 0, here = at, fit = least;
   for (let k = 0; k < ahead.length; k++) {

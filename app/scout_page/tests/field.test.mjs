@@ -737,3 +737,25 @@ test("a photo asked for while one is out comes on the way with the network", asy
   await field.refresh();
   assert.deepEqual(field.ahead, ahead, "once");
 });
+
+test("finds of records alone are apart on the map until one is found here; a server of before says none", async () => {
+  const { season, field } = await aField(new ASeason(aDay(undefined, { found: [4], recorded: [0, 1, 7] })));
+  assert.deepEqual([[...field.known().found], [...field.known().recorded]], [[4], [0, 1, 7]]);
+  await field.tell("found");
+  await field.tell("clean");
+  assert.deepEqual([[...field.known().found], [...field.known().recorded]], [[4, 0], [1, 7]]);
+  season.day = aDay();
+  await field.refresh();
+  assert.deepEqual([...field.known().recorded], []);
+});
+
+test("what no longer fits the hours that run is not ahead on a phone that idles, and is again where its clock is put right", async () => {
+  const day = aDay(undefined, { begins: "2026-11-22T04:00:00Z", begun: true, seconds_left: 600 }), { field } = await aField(new ASeason(day));
+  const at = (clock) => { field.clock = () => new Date(`2026-11-22T${clock}Z`); return field.inHours(); };
+  assert.equal(field.inHours(), field.ahead);
+  const left = at("08:08:00"); // two minutes
+  assert.deepEqual([left, field.inHours()], [[0, 1, 2], left]);
+  assert.equal(at("08:08:01"), left, "the same way is not laid anew each second");
+  assert.deepEqual([at("08:11:00"), field.plant], [[], 0]);
+  assert.equal(at("08:00:00"), field.ahead);
+});

@@ -40,11 +40,12 @@ def by_chance(*, dark: bool = False) -> LegendPart:
     return {"title": texts.LEGEND_CHANCE, "of": "shade:chance", "scale": True, "items": items}
 
 
-def by_state() -> LegendPart:
-    """Return the three states."""
+def by_state(*, recorded: bool = False) -> LegendPart:
+    """Return the three states, and finds of records alone where there are any."""
     names = texts.LEGEND_STATES
     items = [
         ("find", colours.FOUND, names["found"]),
+        *([("ring", colours.FOUND, texts.LEGEND_RECORDED)] if recorded else []),
         ("dot", colours.CLEAN, names["clean"]),
         ("ring", colours.NEVER, names["never"]),
     ]

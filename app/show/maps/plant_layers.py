@@ -117,6 +117,13 @@ def finds(grid: PlantGrid, state: NDArray[np.int8]) -> list[Layer]:
     return [*rings, dots]
 
 
+def recorded(grid: PlantGrid, which: NDArray[np.bool_]) -> list[Layer]:
+    """Return a red ring round each find of which records of before the season alone tell."""
+    here = np.round(grid.lonlat(np.flatnonzero(which)), 7).tolist()
+    size_m = 0.55 * min(grid.plant_spacing_m, grid.row_spacing_m)
+    return [_ring("finds-recorded", here, size_m, (FOUND, 2.0))] if here else []
+
+
 def chosen(grid: PlantGrid, plant: int) -> list[Layer]:
     """Return a broad yellow ring with a dark rim round the plant whose history is shown."""
     here = np.round(grid.lonlat(np.array([plant])), 7).tolist()

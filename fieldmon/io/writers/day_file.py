@@ -98,7 +98,7 @@ class DrivenRoute(Protocol):
         ...
 
     @property
-    def chance(self) -> Floats:
+    def believed(self) -> Floats:
         """Return believed chance of infestation at each stop, ``(k,)``."""
         ...
 
@@ -267,7 +267,7 @@ class HandoffPlan:
             [self.clock(s) for s in route.arrive_s.tolist()],
             np.round(route.arrive_s, 3).tolist(),
             np.round(there_s, 3).tolist(),
-            np.round(route.chance, 6).tolist(),
+            np.round(route.believed, 6).tolist(),
             route.line_stop.tolist(),
             block_label(self.grid, route.plant).tolist(),
             [plain_text(self.grid.row_names.get(line, "")) for line in label.line.tolist()],

@@ -1,5 +1,6 @@
 """A phone is told of the plot and the day what the season says."""
 
+import csv
 import json
 from dataclasses import replace
 from datetime import datetime, time, timedelta
@@ -12,9 +13,15 @@ import pytest
 from app.api import description
 from app.api.documents import day_document, plot_document, rest_document
 from app.show import who_is_out
+from app.show.next_stop import next_stop
 from app.words import texts
+from app.words.language import in_words
 from app.words.units import UnitsInLanguage
+from fieldmon.compute.wording import chance_figure
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.io.readers.pest_file import shipped_pest
+from fieldmon.io.writers.csv import route_csv
+from fieldmon.io.writers.day_file import HandoffPlan
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.day_ahead import Part, route_ahead
@@ -163,6 +170,35 @@ def test_a_plant_that_was_treated_and_is_clean_since_is_told_as_clean(served, sc
     assert {*day["found"]}.isdisjoint({100})
     assert {*day["clean"]}.issuperset({100})
     assert {*day["found"]}.issuperset({101})
+
+
+def test_finds_of_records_alone_are_told_apart_from_those_of_the_season(served, scout):
+    season = served.season
+    before = np.flatnonzero(season.history.recorded == 1).tolist()
+    day = json.loads(day_document(season, scout, BEGINS))
+    own = np.flatnonzero(season.history.states(0) == 1).tolist()
+    assert day["found"] == own
+    assert day["recorded"] == sorted({*before} - {*own}) != []
+
+
+def test_a_chance_is_one_figure_on_a_phone_in_the_app_and_in_files(tmp_path, scout):
+    """That of the map: of a pest that hides at first less can be seen, and days go by that."""
+    season = a_season(tmp_path / "mites.gpkg", pest=shipped_pest("spider-mite"))
+    on = BEGINS + timedelta(days=3)
+    plan = season.plan(on)
+    route, (first, *_) = plan.route, plan.route.plant.tolist()
+    believed = season.evening(on)[route.plant]
+    assert (route.chance < believed).any()
+    told = json.loads(day_document(season, scout, on))
+    assert np.array(told["chance"])[route.plant] == pytest.approx(1000 * believed, abs=0.5)
+    made = route_csv(HandoffPlan(route, route.notes)).decode("utf-8-sig")
+    rows = csv.DictReader(made.splitlines())
+    assert [float(row["chance"]) for row in rows] == pytest.approx(believed, abs=1e-6)
+    said = in_words(chance_figure(float(season.evening(on)[first]), 1))
+    assert said in next_stop(plan, 0, UnitsInLanguage()).chance
+    with season.store.reading() as db:
+        kept = db.execute("SELECT chance FROM stops WHERE route = 1 ORDER BY stop").fetchall()
+    assert [one for (one,) in kept] == pytest.approx(believed)
 
 
 def test_the_rest_is_planned_anew_within_what_is_left(served, scout):

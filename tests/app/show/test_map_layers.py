@@ -9,6 +9,7 @@ from shapely import MultiPolygon, box
 from app.show import map_layers
 from app.show.maps import colours
 from app.state import chosen_day
+from app.words import texts
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Application
@@ -62,6 +63,18 @@ def test_plants_by_state_say_it_and_finds_have_rings(choices):
     assert shown.of_colour(colours.FOUND).tolist() == [7]
     assert shown.of_colour(colours.CLEAN).tolist() == [9]
     assert [len(layer.data) for layer in layers if layer.id.startswith("finds")] == [1, 1]
+
+
+def test_finds_of_records_alone_have_a_sign_of_their_own_in_a_season(season):
+    choices = in_season(season, BEGINS)
+    layers = map_layers.plants(choices)
+    own = np.flatnonzero(season.history.states(0) == 1).tolist()
+    before = np.flatnonzero(season.history.recorded == 1).tolist()
+    shown = plants_in(of_name(layers, "plants-state"))
+    assert shown.of_colour(colours.FOUND).tolist() == own
+    assert len(of_name(layers, "finds-recorded").data) == len({*before} - {*own}) > 0
+    named = [name for part in map_layers.legend(choices) for _, _, name in part["items"]]
+    assert texts.LEGEND_RECORDED in named
 
 
 def test_plants_by_age_have_the_colours_of_the_days_since(season):

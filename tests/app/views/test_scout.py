@@ -15,10 +15,12 @@ def test_found_plants_and_clean_ones_show_on_the_map(season_app, season):
     tap(season_app, "scout_clean")
     found, clean = season().history.inspections.plant.tolist()
     shown = plants(season_app, "plants-state")
-    known = season().history.known(0)
-    assert known[found] == 1
-    for colour, state in ((colours.FOUND, 1), (colours.CLEAN, 0)):
-        assert shown.of_colour(colour).tolist() == np.flatnonzero(known == state).tolist()
+    known, own = season().history.known(0), season().history.states(0)
+    assert np.flatnonzero(own == 1).tolist() == [found]
+    for colour, state in ((colours.FOUND, own == 1), (colours.CLEAN, known == 0)):
+        assert shown.of_colour(colour).tolist() == np.flatnonzero(state).tolist()
+    recorded = np.count_nonzero((known == 1) & (own != 1))
+    assert len(layer(season_app, "finds-recorded")["data"]) == recorded > 0
     assert set(before.of_colour(colours.NEVER)) - {found, clean} == set(
         shown.of_colour(colours.NEVER)
     )

@@ -631,7 +631,13 @@ def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field
             worded("The corners in {file} must enclose an area, but they do not.", file=layer.name)
         )
     told = (*layer.messages, *messages, _taken(len(points)), *more)
-    return Imported((Field(layer.name, kept),), told)
+    return Imported((Field(_name_of_corners(layer, options), kept),), told)
+
+
+def _name_of_corners(layer: Layer, options: PlotOptions) -> str:
+    """Return what the plot is called whose corners were chosen: by what, or else by its file."""
+    column, _, value = (options.where or "").partition("=")
+    return value if column == _name_column(layer) or find("plot", [column]) else layer.name
 
 
 def _no_outline(layer: Layer, n_points: int) -> ChoiceNeeded | FileProblem:

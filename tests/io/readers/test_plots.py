@@ -193,6 +193,13 @@ def test_a_few_numbered_corners_are_corners_and_so_are_those_that_are_said_to_be
     assert field.boundary.area > 0
 
 
+def test_a_plot_whose_corners_were_chosen_by_its_name_is_called_so():
+    four = table(lon=[5, 5.001, 5.001, 5], lat=[45, 45, 45.001, 45.001], Plot=["East"] * 4)
+    (chosen,) = names_of(plots_of(four, PlotOptions(where="Plot=East")))
+    (other,) = names_of(plots_of(four, PlotOptions(where="row=East")))
+    assert (chosen, other) == ("East", four.name)
+
+
 MISTYPED = [(5, 45), (5.001, 45), (5.001, 450.01), (5, 45.001)]
 
 

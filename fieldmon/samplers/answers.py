@@ -138,7 +138,8 @@ def _must_name_plants(who: str, scene: Scene, stop_s: float) -> None:
     """
     robot, ways = scene.robot, scene.aisles.for_robot(scene.robot)
     plants = np.flatnonzero(~ways.too_narrow)
-    if scene.at != GATE or (scene.last_inspected[plants] != NEVER).any():
+    was_seen = (scene.last_inspected[plants] != NEVER).any()
+    if scene.at != GATE or was_seen or not plants.size:
         return
     way_s = ways.distance_m(GATE, plants) / robot.speed_m_s
     if way_s.min() * (2 if robot.returns else 1) + stop_s <= scene.seconds_left:

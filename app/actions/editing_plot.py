@@ -9,6 +9,7 @@ import shapely
 import streamlit as st
 
 from fieldmon.errors import FieldmonError, PlotError
+from fieldmon.infestation.observations import UNKNOWN
 from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
 from fieldmon.plot.planting import Planting
 
@@ -149,6 +150,11 @@ def set_gate() -> None:
     rooms.turn_to_part("plot")
 
 
+def _of_records(records: Observations, choices: Choices) -> list[legends.LegendPart]:
+    unknown = bool((records.present == UNKNOWN).any())
+    return legends.records(dark=choices.dark, unknown=unknown)
+
+
 def undo_last(plot_key: str) -> None:
     """Offer to take back what was drawn last, if anything was."""
     if drawn(plot_key):
@@ -183,7 +189,7 @@ def content(
     made = MapContent(
         **field_map.of_plot(choices), layers=layers, switches=map_layers.switches(layers),
         legend=[*turning_rows.legend(choices), legends.plants(),
-                *(legends.records(dark=choices.dark) if len(records) else ()), legends.gate(),
+                *(_of_records(records, choices) if len(records) else ()), legends.gate(),
                 *legends.plan(field, dark=choices.dark)],
         draw=draw,
         labels=[*turning_rows.labels(choices), *map_layers.words(choices)],

@@ -204,6 +204,7 @@ LEGEND_DAYS, LEGEND_NEVER = "{n} days ago", "never inspected"
 LEGEND_HOT = "hot spot: finds cluster more than chance allows"
 LEGEND_TREATED = "treated in the last two weeks"
 LEGEND_SEEN, LEGEND_NOT_SEEN = "record: pests seen", "record: none seen"
+LEGEND_NOT_KNOWN, TIP_NOT_KNOWN = "record: not known", "not known"
 LEGEND_STATES = {"found": "found", "clean": "looked clean", "never": "never inspected"}
 LEGEND_RECORDED = "known from records"
 LEGEND_TRUTH = "infested, not yet found (only a simulation knows)"

@@ -47,6 +47,8 @@ OUTLINE_IN_DARK: Colour = (190, 200, 190)
 # the outline of a plot among answers of all other colours
 AMONG_ANSWERS: Colour = (60, 130, 90)
 PLAIN: Colour = (90, 150, 90)
+#: a record of which nobody knows what was seen, on light and dark ground
+UNKNOWN: Colour = (130, 130, 130)
 BEFORE: Colour = (230, 120, 0)
 # days since a plant was inspected: fresh is pale green, long ago is dark
 AGE_FROM = (0, 1, 3, 7, 14)

@@ -90,10 +90,11 @@ def plants() -> LegendPart:
     return part("", [("dot", colours.PLAIN, texts.LEGEND_PLANT)])
 
 
-def records(*, dark: bool = False) -> list[LegendPart]:
-    """Return the signs of records."""
+def records(*, dark: bool = False, unknown: bool = False) -> list[LegendPart]:
+    """Return the signs of records, also of those of which nobody knows what was seen."""
     hot = colours.HOT_IN_DARK if dark else colours.HOT
     seen = [("dot", hot, texts.LEGEND_SEEN), ("ring", hot, texts.LEGEND_NOT_SEEN)]
+    seen += [("ring", colours.UNKNOWN, texts.LEGEND_NOT_KNOWN)] if unknown else []
     return [part("", seen, "records")]
 
 

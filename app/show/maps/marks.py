@@ -12,7 +12,16 @@ from fieldmon.infestation.hotspots import outlines_m
 from fieldmon.plot.row_course import row_corners
 
 from ...words import texts
-from .colours import GATE, HOT, HOT_IN_DARK, TREATED, TREATED_IN_DARK, TRUTH, TRUTH_IN_DARK
+from .colours import (
+    GATE,
+    HOT,
+    HOT_IN_DARK,
+    TREATED,
+    TREATED_IN_DARK,
+    TRUTH,
+    TRUTH_IN_DARK,
+    UNKNOWN,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -132,13 +141,16 @@ def rows(grid: PlantGrid, name: str, colour: Colour | Translucent, note: str = "
 
 
 def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
-    """Return the records: filled where pests were seen, empty where not."""
+    """Return the records: filled where pests were seen, empty where not, grey if nobody knows."""
     colour = HOT_IN_DARK if dark else HOT
     rows = [
         {
             "p": place,
             "c": [*colour, 220 if seen == 1 else 0],
-            "t": texts.TIP_RECORD.format(day=day, result=texts.TIP_SEEN.get(seen, "?")),
+            "l": [*(colour if seen in texts.TIP_SEEN else UNKNOWN), 170],
+            "t": texts.TIP_RECORD.format(
+                day=day, result=texts.TIP_SEEN.get(seen, texts.TIP_NOT_KNOWN)
+            ),
         }
         for place, seen, day in zip(
             np.round(observations.lonlat, 7).tolist(),
@@ -150,7 +162,7 @@ def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
     return [
         Layer(
             "ScatterplotLayer", rows, id="records", get_position="p", get_fill_color="c",
-            get_radius=1.2, radius_min_pixels=3, stroked=True, get_line_color=[*colour, 170],
+            get_radius=1.2, radius_min_pixels=3, stroked=True, get_line_color="l",
             line_width_min_pixels=1,
         )
     ]  # fmt: skip

@@ -65,8 +65,10 @@ def test_a_hot_spot_s_tint_lies_under_plants_that_can_be_tapped_its_edge_over_al
 
 
 def test_records_are_filled_where_pests_were_seen(plot):
-    (layer,) = marks.records(records_at(plot, [3, 8], [1, 0]))
-    seen, unseen = layer.data
+    (layer,) = marks.records(records_at(plot, [3, 8, 9], [1, 0, -1]))
+    seen, unseen, unknown = layer.data
+    assert seen["l"] == unseen["l"] != unknown["l"], "unknown is not clean"
+    assert unknown["t"] == "record of 2026-11-10: not known"
     assert seen["p"] == pytest.approx(plot.grid.lonlat()[3], abs=1e-6)
     assert (seen["c"][3] > 0, unseen["c"][3]) == (True, 0)
     assert seen["t"] == "record of 2026-11-10: found"

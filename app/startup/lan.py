@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import errno
 import logging
 import os
 import socket
@@ -237,6 +238,11 @@ def _listening(address: str, port: int) -> socket.socket:
     try:
         return socket.create_server((address, port), family=family, backlog=2048)
     except OSError as error:
+        if error.errno == errno.EADDRNOTAVAIL:
+            raise SettingError(
+                f"The address for --lan must be this machine's, but {address} is not. Leave out "
+                "--address, or say another."
+            ) from error
         raise SettingError(
             f"Port {port} at {address} must be free for other devices, but it is not "
             f"({error.strerror}). Close what uses it, or choose others with --port and --address."

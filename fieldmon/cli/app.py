@@ -75,10 +75,10 @@ class AppOptions:
         told = {"FIELDMON_ADDRESS": at.rstrip("/")} if at else {}
         if self.lan:
             told["FIELDMON_LAN"] = (self.address or "").strip("[]")
-            if told["FIELDMON_LAN"] == _HERE:
+            if told["FIELDMON_LAN"] in {_HERE, "::1"}:
                 raise SettingError(
                     "The address for --lan must be one at which phones reach this machine, but "
-                    f"{_HERE} is its own. Leave out --address, or say another."
+                    f"{told['FIELDMON_LAN']} is its own. Leave out --address, or say another."
                 )
         return told
 

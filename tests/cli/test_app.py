@@ -65,15 +65,21 @@ def test_others_come_to_an_encrypted_address_of_its_own_only(address, said, run,
     assert started == []
 
 
-def test_phones_do_not_come_to_this_machine_s_own_address(run, started):
-    words = "app", "--port", free_port(), "--lan", "--address", "127.0.0.1"
+@pytest.mark.parametrize("address", ["127.0.0.1", "[::1]"])
+def test_phones_do_not_come_to_this_machine_s_own_address(address, run, started):
+    words = "app", "--port", free_port(), "--lan", "--address", address
     code, _, err, _ = run(*words)
     assert (code, started) == (2, [])
     assert "at which phones reach this machine" in " ".join(err.split())
 
 
 @pytest.mark.parametrize(
-    ("address", "said"), [("8.8.8.8", "must be private"), ("office.local", "must be a number")]
+    ("address", "said"),
+    [
+        ("8.8.8.8", "must be private"),
+        ("office.local", "must be a number"),
+        ("10.255.254.253", "must be this machine's"),
+    ],
 )
 def test_an_address_that_is_not_private_is_a_sentence(address, said, tmp_path):
     command = [sys.executable, "-m", "fieldmon", "app", "--no-browser", "--lan", "--port",

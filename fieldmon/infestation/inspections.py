@@ -124,6 +124,12 @@ class Inspections:
                 f"A result must be 0 (clean), 1 (found) or 2 (skipped), but that of inspection "
                 f"{unknown[0] + 1} of {k} is {self.result[unknown[0]]}."
             )
+        beyond = np.flatnonzero((self.detects < 0.0) | (self.detects > 1.0))
+        if beyond.size:
+            raise ObservationError(
+                "detects, the share of what is there that an inspection finds, must be from 0 to "
+                f"1, but that of inspection {beyond[0] + 1} of {k} is {self.detects[beyond[0]]:g}."
+            )
 
     def __repr__(self) -> str:
         finds = int(np.count_nonzero(self.result == FOUND))

@@ -61,6 +61,9 @@ _T = TypeVar("_T")
 BEGINS_OTHERWISE_S = 300.0
 # who begins no sooner than this before a day's start works on that day
 _BEGINS_EARLY_S = 3600.0
+# once this share of the inspections was made later, the first evening says hardly anything of the
+# start, and working it out again takes time
+_HARDLY_FIRST = 0.99
 
 
 class Besides(NamedTuple):
@@ -476,9 +479,9 @@ class History:
             return learnt
         on = self.days[: len(self.until(day))][self.until(day).result != SKIPPED]
         ever = self._ever_infested(day, self.estimate(morning, day))
-        if on[0] > 0:
-            return with_start(learnt, ever)
         since = np.count_nonzero(on > 0) / len(on)
+        if on[0] > 0 or since > _HARDLY_FIRST:
+            return with_start(learnt, ever)
         return with_start(learnt, ever, self._infested_first if day else ever, since)
 
     @cached_property

@@ -472,7 +472,7 @@ def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
     of_it = today.chance[[plant]]
     low, high = first_level_range(plot.grid, today.chance).of(of_it)
     between = f"{100 * of_it[0]:.1f} % chance ({100 * low[0]:.1f} to {100 * high[0]:.1f} %)"
-    assert between in tip.inner_text()
+    assert between in tip.inner_text().replace("\N{NO-BREAK SPACE}", " ")
 
 
 @pytest.fixture(scope="module")

@@ -202,11 +202,16 @@ def test_a_kept_estimate_is_believed_only_as_it_was_kept(path, damage):
 def test_the_last_estimate_is_not_drawn_again(path, monkeypatch):
     from fieldmon.monitoring import history
 
-    before = Season(path).status(BEGINS + timedelta(days=LAST)).estimate
-    monkeypatch.setattr(history, "estimate_of", None)
+    before, draw, drawn = (
+        Season(path).status(BEGINS + timedelta(days=LAST)).estimate,
+        history.estimate_of,
+        [],
+    )
+    monkeypatch.setattr(history, "estimate_of", lambda *args: drawn.append(args) or draw(*args))
     assert Season(path).status(BEGINS + timedelta(days=LAST)).estimate == before
-    with pytest.raises(TypeError):
-        Season(path).status(BEGINS + timedelta(days=LAST - 1))
+    assert len(drawn) == 1, "that of the first evening"
+    Season(path).status(BEGINS + timedelta(days=LAST - 1))
+    assert len(drawn) == 3
 
 
 def test_few_mornings_of_a_long_season_are_at_hand(path, from_the_first):

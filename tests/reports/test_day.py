@@ -217,7 +217,7 @@ def test_every_stop_is_on_the_list_to_tick(ahead, of_day):
 
 def test_no_stop_has_a_chance_of_nothing_or_all(ahead):
     chance = np.resize([1e-6, 0.5, 1 - 1e-6], len(ahead.route))
-    report = day_report(replace(ahead, route=replace(ahead.route, chance=chance)), Units())
+    report = day_report(replace(ahead, route=replace(ahead.route, infested=chance)), Units())
     ticks = one(report, TickList)
     assert ticks.columns[4] == "chance"
     assert [row[4] for row in ticks.rows[:3]] == ["under 0.1 %", "50.0 %", "over 99.9 %"]

@@ -10,6 +10,7 @@ import streamlit as st
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.import_report import Severity
+from fieldmon.io.parse.result_words import words_in, words_told
 
 from ..show import answers_map
 from ..state import brought_files, chosen_day, plot_source, rasters
@@ -257,7 +258,7 @@ def _show_message(number: int, one: FileMessage) -> None:
 def _ask_of_words(number: int, asked: str, remedy: Remedy) -> None:
     """Ask of each word that says neither what it means, all at once."""
     known = {word for said in _words_said(asked).values() for word in said}
-    words = [word for word in remedy.value.split(",") if word not in known][:_MOST_BUTTONS]
+    words = [word for word in words_in(remedy.value) if word not in known][:_MOST_BUTTONS]
     keys = {word: f"word {number} {asked} {word}" for word in words}
     for word, key in keys.items():
         st.segmented_control(unformatted(word), _MEANINGS, key=key,
@@ -269,7 +270,7 @@ def _ask_of_words(number: int, asked: str, remedy: Remedy) -> None:
 def _words_said(asked: str) -> dict[str, list[str]]:
     """Return the words that were said to mean found, and clean, in answers about a file."""
     said = dict(answers(asked))  # the last of each counts
-    return {name: said[name].split(",") if name in said else [] for name in _MEANINGS.values()}
+    return {name: words_in(said.get(name)) for name in _MEANINGS.values()}
 
 
 def _take_words(asked: str, keys: dict[str, str]) -> None:
@@ -278,7 +279,7 @@ def _take_words(asked: str, keys: dict[str, str]) -> None:
     for result, name in _MEANINGS.items():
         new = [word for word, key in keys.items() if st.session_state.get(key) == result]
         if new:
-            brought_files.answer(asked, name, ",".join([*said[name], *new]))
+            brought_files.answer(asked, name, words_told([*said[name], *new]))
 
 
 def show_messages(said: tuple[FileMessage, ...]) -> None:

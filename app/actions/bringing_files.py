@@ -14,7 +14,16 @@ from fieldmon.io.parse.result_words import words_in, words_told
 
 from ..show import answers_map
 from ..state import brought_files, chosen_day, plot_source, rasters
-from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS, answers, brought
+from ..state.brought_files import (
+    BLOCKS,
+    PLANTS,
+    PLOT,
+    RECORDS,
+    ROWS,
+    FileMessage,
+    answers,
+    brought,
+)
 from ..state.tried_answers import tried_of_records
 from ..words import texts
 from ..words.answers import in_short
@@ -23,9 +32,9 @@ from . import bringing_seasons
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
-    from fieldmon.io.import_report import Remedy
+    from fieldmon.io.import_report import ImportMessage, Remedy
 
-    from ..state.brought_files import FileMessage
+    from ..state.brought_files import File
     from ..state.choices import Choices
     from ..state.tried_answers import TriedAnswer
 
@@ -39,6 +48,8 @@ _ICONS = {
 # questions that a box of their own answers: for another file, or beside the file
 _OWN_BOXES = frozenset({"kind", "plots", "plants", "meaning"})
 _MOST_BUTTONS = 12
+# what may be answered of findings with a button: all others are boxes, or need a value
+_OF_FINDINGS = frozenset({"found", "clean", "gone", "columns"})
 # what a word for a result may mean, and the option that takes it so
 _MEANINGS = {FOUND: "found", CLEAN: "clean"}
 
@@ -253,6 +264,22 @@ def _show_message(number: int, one: FileMessage) -> None:
         key = f"remedy {number} {one.asked} {remedy.option} {remedy.value}"
         st.button(in_words(remedy.label), key=key, on_click=brought_files.answer,
                   args=(one.asked, remedy.option, remedy.value))  # fmt: skip
+
+
+def ask_of_findings(file: File, said: tuple[ImportMessage, ...]) -> None:
+    """Ask what a file of findings leaves open by what was said of it, and is not answered yet."""
+    given = answers(file.asked)
+    words = {word for told in _words_said(file.asked).values() for word in told}
+    for number, message in enumerate(said):
+        remedy = message.remedy
+        if remedy is None or remedy.option not in _OF_FINDINGS:
+            continue
+        of_words = remedy.option == "found"
+        is_answered = words.issuperset(words_in(remedy.value)) if of_words else (
+            (remedy.option, remedy.value) in given)  # fmt: skip
+        if not is_answered:
+            _show_message(number, FileMessage(file.asked, message))
+    _offer_undo(file.asked)
 
 
 def _ask_of_words(number: int, asked: str, remedy: Remedy) -> None:

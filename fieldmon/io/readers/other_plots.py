@@ -55,13 +55,13 @@ def of_this_plot(
     }
     if options.take_doubtful:
         taken = worded(
-            "Column {column!r} names no plot {plot}, but {names}: {n} {n:record was|records were} "
+            "Column {column!r} names {names}, not plot {plot}: {n} {n:record was|records were} "
             "taken as asked.",
             **said,
         )
         return rows, [doubtful(taken)]
     left_out = worded(
-        "Column {column!r} names no plot {plot}, but {names}: {n} {n:record is|records are} "
+        "Column {column!r} names {names}, not plot {plot}: {n} {n:record is|records are} "
         "doubtful and left out.",
         **said,
     )

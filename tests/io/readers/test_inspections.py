@@ -119,7 +119,8 @@ def of_gate(rows, options=None, head="plot,row,plant,result", called=("Gate", "g
 @pytest.mark.parametrize(
     ("rows", "n", "severity", "said"),
     [
-        (["Pond/x", "Pond/clean", "Wadi/x"], 0, Severity.DOUBTFUL, "no plot Gate, but Pond, Wadi"),
+        (["Pond/x", "Pond/clean", "Wadi/x"], 0, Severity.DOUBTFUL,
+         "names Pond, Wadi, not plot Gate"),
         (["Gate/x", "Pond/x", "GATE /x", "Wadi/x", "/x"], 3, Severity.DROPPED,
          "2 records are of 2 other plots: Pond, Wadi."),
         (["Gate-2026/x", "Pond/x"], 1, Severity.DROPPED, "1 record is of 1 other plot: Pond."),

@@ -10,10 +10,20 @@ import streamlit as st
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.io.import_report import Severity
+from fieldmon.io.parse.result_words import words_in, words_told
 
 from ..show import answers_map
 from ..state import brought_files, chosen_day, plot_source, rasters
-from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS, answers, brought
+from ..state.brought_files import (
+    BLOCKS,
+    PLANTS,
+    PLOT,
+    RECORDS,
+    ROWS,
+    FileMessage,
+    answers,
+    brought,
+)
 from ..state.tried_answers import tried_of_records
 from ..words import texts
 from ..words.answers import in_short
@@ -22,9 +32,9 @@ from . import bringing_seasons
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
-    from fieldmon.io.import_report import Remedy
+    from fieldmon.io.import_report import ImportMessage, Remedy
 
-    from ..state.brought_files import FileMessage
+    from ..state.brought_files import File
     from ..state.choices import Choices
     from ..state.tried_answers import TriedAnswer
 
@@ -38,6 +48,8 @@ _ICONS = {
 # questions that a box of their own answers: for another file, or beside the file
 _OWN_BOXES = frozenset({"kind", "plots", "plants", "meaning"})
 _MOST_BUTTONS = 12
+# what may be answered of findings with a button: all others are boxes, or need a value
+_OF_FINDINGS = frozenset({"found", "clean", "gone", "columns"})
 # what a word for a result may mean, and the option that takes it so
 _MEANINGS = {FOUND: "found", CLEAN: "clean"}
 
@@ -254,10 +266,26 @@ def _show_message(number: int, one: FileMessage) -> None:
                   args=(one.asked, remedy.option, remedy.value))  # fmt: skip
 
 
+def ask_of_findings(file: File, said: tuple[ImportMessage, ...]) -> None:
+    """Ask what a file of findings leaves open by what was said of it, and is not answered yet."""
+    given = answers(file.asked)
+    words = {word for told in _words_said(file.asked).values() for word in told}
+    for number, message in enumerate(said):
+        remedy = message.remedy
+        if remedy is None or remedy.option not in _OF_FINDINGS:
+            continue
+        of_words = remedy.option == "found"
+        is_answered = words.issuperset(words_in(remedy.value)) if of_words else (
+            (remedy.option, remedy.value) in given)  # fmt: skip
+        if not is_answered:
+            _show_message(number, FileMessage(file.asked, message))
+    _offer_undo(file.asked)
+
+
 def _ask_of_words(number: int, asked: str, remedy: Remedy) -> None:
     """Ask of each word that says neither what it means, all at once."""
     known = {word for said in _words_said(asked).values() for word in said}
-    words = [word for word in remedy.value.split(",") if word not in known][:_MOST_BUTTONS]
+    words = [word for word in words_in(remedy.value) if word not in known][:_MOST_BUTTONS]
     keys = {word: f"word {number} {asked} {word}" for word in words}
     for word, key in keys.items():
         st.segmented_control(unformatted(word), _MEANINGS, key=key,
@@ -269,7 +297,7 @@ def _ask_of_words(number: int, asked: str, remedy: Remedy) -> None:
 def _words_said(asked: str) -> dict[str, list[str]]:
     """Return the words that were said to mean found, and clean, in answers about a file."""
     said = dict(answers(asked))  # the last of each counts
-    return {name: said[name].split(",") if name in said else [] for name in _MEANINGS.values()}
+    return {name: words_in(said.get(name)) for name in _MEANINGS.values()}
 
 
 def _take_words(asked: str, keys: dict[str, str]) -> None:
@@ -278,7 +306,7 @@ def _take_words(asked: str, keys: dict[str, str]) -> None:
     for result, name in _MEANINGS.items():
         new = [word for word, key in keys.items() if st.session_state.get(key) == result]
         if new:
-            brought_files.answer(asked, name, ",".join([*said[name], *new]))
+            brought_files.answer(asked, name, words_told([*said[name], *new]))
 
 
 def show_messages(said: tuple[FileMessage, ...]) -> None:

@@ -25,12 +25,12 @@ from fieldmon.plot.named_rows import plant_meant
 
 from ..show import cautions, day, plant_history, recorded_batches
 from ..show.recorded_batches import GONE
-from ..state import chosen_day, fresh_boxes, kept_files, notices, unconfirmed
+from ..state import brought_files, chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
 from ..words.language import in_words
-from . import acting, correcting, treating
+from . import acting, bringing_files, correcting, treating
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 
 # batches shown, the last ones, and so many more at each press
 _MOST = 20
+_SAID_OF_FILE = "said of a file of findings"
 _UNDO_ASKED, _SHOWN = "undo asked", "batches shown"
 _LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
 #: what a season's file calls what was typed in here, whatever the page's language
@@ -242,6 +243,13 @@ def _show_file(choices: Choices) -> None:
                           help=texts.CORRECTED_BY_HELP)  # fmt: skip
         acting.at_press(texts.RECORD_BUTTON, _record_file, choices, key="record_file",
                         boxes=boxes, type="primary")  # fmt: skip
+        asked, said = st.session_state.get(_SAID_OF_FILE, ("", ()))
+        if asked and (file := _file(brought.name, brought.getvalue())).asked == asked:
+            bringing_files.ask_of_findings(file, said)
+
+
+def _file(name: str, data: bytes) -> brought_files.File:
+    return brought_files.file_of(brought_files.FINDINGS, (Upload(name, data),))
 
 
 @notices.reporting
@@ -257,9 +265,12 @@ def _record_file(choices: Choices) -> str:
     options = InspectionOptions(
         work_day=np.datetime64(choices.day), take_doubtful=bool(boxes.said("take_doubtful"))
     ).on(choices.plot.field)
+    file = _file(name, data)
     with working_folder() as folder:
+        options = brought_files.answered(file, options)
         read = read_brought(season, Upload(name, data), options, Path(folder))
         corrected = _corrected(choices, read, boxes)
+    st.session_state[_SAID_OF_FILE] = file.asked, read.messages
     messages = [message.sentence for message in read.messages]
     _warn_of_lost(read.messages)
     if read.saved is None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
     from fieldmon.io.import_report import Imported, ImportMessage
 
-PLOT, RECORDS, PLANTS = "plot", "record", "plant"
+PLOT, RECORDS, PLANTS, FINDINGS = "plot", "record", "plant", "findings"
 ROWS, BLOCKS = "rows", "blocks"
 #: what a plot that was drawn here is called as a file
 DRAWN = "drawn.geojson"
@@ -98,8 +98,13 @@ def keep_uploads(kind: str, uploads: tuple[Upload, ...]) -> None:
     if not uploads:
         take_out(kind)
         return
+    brought()[kind] = file_of(kind, uploads)
+
+
+def file_of(kind: str, uploads: tuple[Upload, ...]) -> File:
+    """Return the file of these parts, at least one."""
     key = digest(b"".join(u.name.encode() + b"\0" + u.data for u in uploads))
-    brought()[kind] = File(key, uploads[0] if len(uploads) == 1 else uploads, kind)
+    return File(key, uploads[0] if len(uploads) == 1 else uploads, kind)
 
 
 def take_out(kind: str) -> None:
@@ -129,9 +134,14 @@ def box(kind: str) -> str:
 
 def settled(file: File, options: Any) -> Any:  # noqa: ANN401 - any of four kinds of options
     """Return the options with what was answered for this file before; it is the one asked about."""
+    ask_about(file.asked)
+    return answered(file, options)
+
+
+def answered(file: File, options: Any) -> Any:  # noqa: ANN401 - any of five kinds of options
+    """Return the options with what was answered for this file before."""
     for option, value in answers(file.asked):
         options = options.choose(option, value)
-    ask_about(file.asked)
     return options
 
 

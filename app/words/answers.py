@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.io.parse.result_words import words_in
 
 from . import texts
 
@@ -21,13 +22,13 @@ def in_short(answer: str, option: str) -> str:
     if option == "outline" and answer == "yes":
         return texts.ANSWER_OUTLINE
     if option in _RESULTS:
-        return f"{', '.join(answer.split(','))}: {texts.HISTORY_RESULTS[_RESULTS[option]]}"
+        return f"{', '.join(words_in(answer))}: {texts.HISTORY_RESULTS[_RESULTS[option]]}"
     key, is_pair, value = answer.partition("=")
     if not is_pair or option not in {"columns", "where"}:
         return answer
     if option == "where":
         return f"{key}: {value}"
-    if key == "present" and not value:
-        return texts.ANSWER_ALL_FINDS
+    if not value and key in texts.ANSWER_NO_COLUMN:
+        return texts.ANSWER_NO_COLUMN[key]
     said = texts.ANSWER_COLUMNS.get(key)
     return said.format(name=texts.isolated(value)) if said and value else value or answer

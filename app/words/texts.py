@@ -187,7 +187,7 @@ LEFT_OUT = "**The records in {name} are not used on this plot.** What you see do
 UNDO_ANSWER = "Take back: {answer}"
 # what an answer about a column says of it
 ANSWER_OUTLINE = "Take them as the outline"
-ANSWER_ALL_FINDS = "Every record is a find"
+ANSWER_NO_COLUMN = {"present": "Every record is a find", "plot": "No column names the plot"}
 ANSWER_COLUMNS = {"count": "{name}: how many were found", "present": "{name}: found or not",
                   "date": "{name}: the day", "plot": "{name}: which plot"}  # fmt: skip
 SEVERITIES = {

@@ -285,7 +285,7 @@ def read_inspections(source: Source, plot: Plot, **options: object) -> Inspectio
     must_be_plot(plot)
     wanted = _chosen(InspectionOptions(), options).on(plot.field)
     with _answered():
-        read = read_on_grid(source, plot.grid, wanted)
+        read = read_on_grid(source, plot.grid, wanted, (plot.field.name,))
     _warn(read.messages)
     return read.value
 

@@ -116,7 +116,8 @@ def read_brought(
     if copy is not None:
         (folder / "new").mkdir()
         source = counting_copy(copy, folder / "new", corrected)
-    read = dated(read_inspections(source, season.plot.grid, options))
+    called = (season.plot.field.name, season.path.stem)
+    read = dated(read_inspections(source, season.plot.grid, options, called))
     return BroughtFile(name, read.value, (*read.messages, *treated), None, copy, len(corrected))
 
 

@@ -164,6 +164,15 @@ def test_inspections_take_their_day_and_who_from_arguments(gate):
     assert set(done.who.tolist()) == {"Ann"}
 
 
+def test_inspections_that_name_another_plot_are_left_out(gate):
+    file = Upload("d.csv", b"plot,plant,found\nGate,17,yes\nPond,18,no\n")
+    done, doubts = heard(library.read_inspections, file, gate)
+    assert done.plant.tolist() == [17]
+    assert any("1 record is of 1 other plot: Pond." in sentence for sentence in doubts)
+    told, _ = heard(library.read_inspections, file, gate, columns={"plot": ""})
+    assert told.plant.tolist() == [17, 18]
+
+
 @pytest.mark.parametrize(("name", "told"), [("paths", 3), ("rows", True), ("contours", 3)])
 def test_what_is_no_file_is_refused_by_its_name(name, told):
     with pytest.raises(SettingError, match=f"A file of {name} must be given by its path"):

@@ -43,6 +43,14 @@ def test_what_has_no_date_beside_what_says_one_gets_none_unasked(season, tmp_pat
             season.record(read.findings)
 
 
+def test_records_are_of_the_season_whose_plot_or_file_they_name(season, tmp_path):
+    names = season.plot.field.name, season.path.stem, "Pond"
+    lines = [f"{name},1,{k},clean" for k, name in enumerate(names, 1)]
+    read = brought(season, "\n".join(["plot,row,plant,result", *lines]), tmp_path)
+    assert len(read.findings) == 2
+    assert any("1 other plot: Pond" in one.sentence for one in read.messages)
+
+
 def test_where_no_record_says_a_day_all_are_of_the_day_of_the_work(season, tmp_path):
     read = brought(season, "row,plant,time,result\n1,1,07:30,clean\n1,2,,found\n", tmp_path)
     assert read.findings.date.tolist() == [BEGINS] * 2

@@ -216,18 +216,35 @@ def about_minus(cells: Iterable[str], words: ResultWords) -> list[ImportMessage]
     return [doubtful(said, remedy=Remedy("clean", "-", worded("Take a minus as clean")))]
 
 
-def remedy_of_words(odd: Iterable[str], options: RecordOptions) -> Remedy | None:
-    """Return how words that say neither are taken as found, all at once, with those said before.
+def words_told(words: Iterable[str]) -> str:
+    r"""Return words as one option, set apart by commas; a comma in a word is written ``\,``.
 
-    None where none of them can be named, as a comma parts them.
+    Examples
+    --------
+    >>> print(words_told(["zilch", "yes, lots"]))
+    zilch,yes\, lots
     """
-    words = [word for word in dict.fromkeys(odd) if "," not in word]
-    if not words:
-        return None
-    before = [word.strip() for word in (options.found or "").split(",") if word.strip()]
+    return ",".join(word.replace(",", r"\,") for word in words)
+
+
+def words_in(told: str | None) -> list[str]:
+    r"""Return the words of an option that `words_told` wrote.
+
+    Examples
+    --------
+    >>> words_in(r"zilch, yes\, lots")
+    ['zilch', 'yes, lots']
+    """
+    parts = re.split(r"(?<!\\),", told or "")
+    return [word.replace(r"\,", ",").strip() for word in parts if word.strip()]
+
+
+def remedy_of_words(odd: Iterable[str], options: RecordOptions) -> Remedy:
+    """Return how words that say neither are taken as found, all at once, with those said before."""
+    words, before = list(dict.fromkeys(odd)), words_in(options.found)
     shown = first_few([repr(word) for word in words], _FEW)
     label = worded("Take {shown} as found; clean= takes them as clean", shown=shown)
-    return Remedy("found", ",".join([*before, *words]), label)
+    return Remedy("found", words_told([*before, *words]), label)
 
 
 def about_mark(unsure: str | None, column: str, mark: str) -> list[ImportMessage]:
@@ -270,4 +287,4 @@ def about_confidences(names: Iterable[str], used: Iterable[str | None]) -> list[
 
 
 def _own(words: str | None) -> list[str]:
-    return [plain_word(word) for word in (words or "").split(",") if word.strip()]
+    return [plain_word(word) for word in words_in(words)]

@@ -4,8 +4,8 @@ Decisions
 ---------
 - What was not filled in stays unknown: blank records are no inspections. "Could not inspect" is
   one, and is kept with its note.
-- Which plant is meant `inspection_places` says. Doubtful records are listed and left out unless
-  one asks for them.
+- Which plot is meant `other_plots` says, which plant `inspection_places`. Doubtful records are
+  listed and left out unless one asks for them.
 - Where both faces of a plant are inspected and a file does not say which, it is the first face,
   and the import says so.
 - Records of several leaves of a plant in one visit are one inspection, found if any leaf is.
@@ -51,6 +51,7 @@ from fieldmon.io.readers.inspection_places import (
     misplaced,
 )
 from fieldmon.io.readers.nearby import doubt_of_order
+from fieldmon.io.readers.other_plots import of_this_plot
 from fieldmon.io.readers.visits import visits_of
 from fieldmon.plot.grid import row_label
 
@@ -70,9 +71,14 @@ _TAKE = Remedy("take_doubtful", "yes", worded("Take it all the same"))
 
 
 def read_inspections(
-    source: Source, grid: PlantGrid, options: InspectionOptions | None = None
+    source: Source,
+    grid: PlantGrid,
+    options: InspectionOptions | None = None,
+    called: tuple[str, ...] = (),
 ) -> Imported[Inspections]:
     """Return the inspections that a file brings for a plot, and all there is to say about them.
+
+    What the file says is of another plot than one `called` so is left out.
 
     CSV, TSV, Excel, GeoJSON, GeoPackage, shapefile, GPX and KML: with plants by number, by row and
     number in it, or by position; also the route files given out, filled in. In a file that has
@@ -87,8 +93,9 @@ def read_inspections(
     """
     chosen = options or InspectionOptions()
     rows = read_inspection_rows(source, chosen)
-    inspections, more = look_up(rows.value, grid, chosen)
-    return rows.having(inspections, more)
+    here, of_others = of_this_plot(rows.value, called, chosen)
+    inspections, more = look_up(here, grid, chosen)
+    return rows.having(inspections, (*of_others, *more))
 
 
 def dated(read: Imported[Inspections]) -> Imported[Inspections]:

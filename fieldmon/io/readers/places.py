@@ -321,19 +321,18 @@ def by_plot_and_plant(
 def _elsewhere(plot: NDArray[np.str_], places: NamedPlaces) -> list[ImportMessage]:
     """Return what to say of records on plots that are known, but not their plants."""
     others = [name for name in plot.tolist() if name and name not in places.plants_of]
-    if not others:
-        return []
+    return [dropped(of_other_plots(others))] if others else []
+
+
+def of_other_plots(others: list[str]) -> str:
+    """Return what to say of records that name other plots."""
     named = sorted(set(others))
-    return [
-        dropped(
-            worded(
-                "{n} {n:record is|records are} of {plots} other {plots:plot|plots}: {names}.",
-                n=len(others),
-                plots=len(named),
-                names=first_few(named, _MOST_NAMED),
-            )
-        )
-    ]
+    return worded(
+        "{n} {n:record is|records are} of {plots} other {plots:plot|plots}: {names}.",
+        n=len(others),
+        plots=len(named),
+        names=first_few(named, _MOST_NAMED),
+    )
 
 
 def by_plot(names: NDArray[np.object_], places: NamedPlaces) -> PlacedByName:

@@ -18,7 +18,7 @@ from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
-from fieldmon.plot.grid import plant_at
+from fieldmon.plot.grid import plant_at, row_label
 from tests.app.chosen import in_season
 from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
 from tests.monitoring.seasons import a_season
@@ -193,6 +193,32 @@ def test_a_file_of_which_some_was_left_out_is_a_warning_that_can_be_closed(seaso
     press(season_app, texts.NOTICE_CLOSE)
     assert not season_app.warning
     assert len(season().history.inspections) == 1
+
+
+def test_words_that_say_neither_and_other_plots_are_asked_about_in_a_file_too(season_app, season):
+    go(season_app, "record")
+    lines = "Gate,1,1,si algo", "Gate,1,2,yes", "Pond,1,3,yes", 'Pond,1,4,"no, none"'
+    table = "\n".join(["plot,row,number,found", *lines]).encode()
+    boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
+    season_app.button(key="record_file").click().run()
+    assert "1 recorded, 0 known" in season_app.warning[0].value
+
+    def asked():
+        words = [one.key for one in season_app.get("button_group")]
+        return {key.rpartition(" ")[2]: key for key in words if (key or "").startswith("word ")}
+
+    season_app.session_state[asked()["algo"]] = FOUND
+    season_app.session_state[asked()["none"]] = CLEAN
+    press(season_app, texts.WORDS_TAKE)
+    assert not asked()
+    press(season_app, "They are of this plot")
+    press(season_app, "Take back: No column names the plot")
+    press(season_app, "They are of this plot")
+    season_app.button(key="record_file").click().run()
+    assert "3 recorded, 1 known" in season_app.success[0].value
+    plants = row_label(season().plot.grid, season().history.inspections.plant).number.tolist()
+    result = season().history.inspections.result.tolist()
+    assert sorted(zip(plants, result, strict=True)) == [(1, 1), (2, 1), (3, 1), (4, 0)]
 
 
 def test_a_day_before_the_season_is_refused_with_the_row_and_the_plant(season_app):

@@ -54,13 +54,13 @@ def test_a_word_says_whether_where_no_count_does():
 def test_all_words_that_say_neither_are_asked_about_at_once_and_those_said_before_stay():
     cells = ["yes", "perhaps", "krobbig", "a, b", "no"]
     (odd,) = [one for one in read(present=cells).messages if one.remedy is not None]
-    assert odd.remedy.setting == "found=krobbig,perhaps"
+    assert odd.remedy.setting == r'"found=a\, b,krobbig,perhaps"'
     told = read(RecordOptions(found="krobbig"), present=cells)
     assert told.value.present.tolist() == [PRESENT, UNKNOWN, PRESENT, UNKNOWN, ABSENT]
     (odd,) = [one for one in told.messages if one.remedy is not None]
-    assert odd.remedy.setting == "found=krobbig,perhaps"
+    assert odd.remedy.setting == r'"found=krobbig,a\, b,perhaps"'
     told = read(RecordOptions(found=odd.remedy.value), present=cells)
-    assert told.value.present.tolist() == [PRESENT, PRESENT, PRESENT, UNKNOWN, ABSENT]
+    assert told.value.present.tolist() == [PRESENT, PRESENT, PRESENT, PRESENT, ABSENT]
 
 
 def test_nothing_of_a_leaf_is_clean_and_any_part_of_it_a_find():

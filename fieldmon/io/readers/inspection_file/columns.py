@@ -115,6 +115,16 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     )
 
 
+def plot_column(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> str | None:
+    """Return the column that names plots; None: none does, as one may say of any."""
+    told = options.column("plot")
+    if told is not None:
+        return told or None
+    others = {*columns, *dict(options.columns).values()} - {None, columns.block}
+    named = find("plot", layer.columns, frozenset(name for name in others if name))
+    return None if options.column("block") and named == columns.block else named
+
+
 def names_in(layer: Layer) -> str | None:
     """Return the column of the names of waypoints, which may say what was found; None: no such."""
     return next((n for n in layer.columns if plain(n) in {"name", "title", "label"}), None)

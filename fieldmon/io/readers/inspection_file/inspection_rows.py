@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
     import numpy as np
@@ -58,6 +58,9 @@ class InspectionRows:
         What all other columns say that tells it from another. None: nothing.
     detects
         Chance to see an infested plant that is inspected; NaN where none is said. None: all NaN.
+    plot_called, plot_column
+        What is named as the plot, empty where nothing is, and the column that does so. None: none
+        does.
     """
 
     plant: NDArray[np.int64]
@@ -82,7 +85,14 @@ class InspectionRows:
     plant_called: NDArray[np.str_] | None = None
     rest: NDArray[np.str_] | None = None
     detects: NDArray[np.float64] | None = None
+    plot_called: NDArray[np.str_] | None = None
+    plot_column: NDArray[np.str_] | None = None
 
     def __len__(self) -> int:
         """Return the number of records."""
         return len(self.result)
+
+    def take(self, which: NDArray[np.bool_]) -> Self:
+        """Return those records."""
+        columns = vars(self).items()
+        return replace(self, **{name: c[which] for name, c in columns if c is not None})

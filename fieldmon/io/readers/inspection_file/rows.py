@@ -25,6 +25,7 @@ from fieldmon.io.readers.inspection_file.columns import (
     detects_in,
     is_own,
     notes_in,
+    plot_column,
     texts_in,
     who_in,
 )
@@ -119,8 +120,10 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
         plant_called=texts_in(layer, columns.number or columns.plant),
         rest=_rest(layer, columns, options),
         detects=detects_in(layer, columns, file or layer.name),
+        plot_called=texts_in(layer, plot := plot_column(layer, columns, options)),
+        plot_column=np.full(len(layer), plot or ""),
     )
-    kept = InspectionRows(**{name: values[said] for name, values in vars(whole).items()})
+    kept = whole.take(said)
     mixed = _mixed(kept, columns.species, texts_in(layer, columns.species)[said])
     every = (*layer.messages, *messages, *results.messages, *more, *times.messages, *mixed)
     return Imported(kept, every)

@@ -1,0 +1,92 @@
+"""Which inspections of a file are of another plot, by the plot that they name.
+
+Decisions
+---------
+- A position says more than a name: only records without one are told apart by name.
+- Where some record names this plot, those that name others are left out. Where none does, the
+  names may be another way to call it: that is a doubt, and one can say that they are its own.
+- Of blocks and of places wider than a plot (`_NOT_ONLY_PLOTS`) a name is one of a plot only beside
+  this plot's.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fieldmon.compute.wording import first_few, worded
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, dropped
+from fieldmon.io.parse.columns import find, plain
+from fieldmon.io.readers.places import of_other_plots
+
+if TYPE_CHECKING:
+    from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+
+_NOT_ONLY_PLOTS = frozenset({"locality", "site"})
+_NAMED = 5
+_OURS = Remedy("columns", "plot=", worded("They are of this plot"))
+
+
+def of_this_plot(
+    rows: InspectionRows, called: tuple[str, ...], options: InspectionOptions
+) -> tuple[InspectionRows, list[ImportMessage]]:
+    """Return the records that are of a plot `called` so, and what to say of the others."""
+    if rows.plot_called is None or rows.plot_column is None or not called:
+        return rows, []
+    names = rows.plot_called
+    ours = _ours(set(names.tolist()) - {""}, called)
+    others = ~np.isin(names, ["", *ours]) & ~np.isfinite(rows.lonlat).all(axis=1)
+    if not others.any():
+        return rows, []
+    named = names[others].tolist()
+    if ours:
+        return rows.take(~others), [dropped(of_other_plots(named), remedy=_OURS)]
+    column = str(rows.plot_column[0])
+    if options.column("plot") is None and _may_be_else(column):
+        return rows, []
+    said = {
+        "n": len(named),
+        "column": column,
+        "names": first_few(sorted(set(named)), _NAMED),
+        "plot": called[0],
+    }
+    if options.take_doubtful:
+        taken = worded(
+            "Column {column!r} names {names}, not plot {plot}: {n} {n:record was|records were} "
+            "taken as asked.",
+            **said,
+        )
+        return rows, [doubtful(taken)]
+    left_out = worded(
+        "Column {column!r} names {names}, not plot {plot}: {n} {n:record is|records are} "
+        "doubtful and left out.",
+        **said,
+    )
+    return rows.take(~others), [doubtful(left_out, remedy=_OURS)]
+
+
+def _may_be_else(column: str) -> bool:
+    return plain(column) in _NOT_ONLY_PLOTS or find("block", [column]) is not None
+
+
+def _ours(names: set[str], called: tuple[str, ...]) -> list[str]:
+    """Return which names are this plot's, however they are written.
+
+    A number alone is, where it is the only name and the one number in this plot's.
+    """
+    keys = {_key(name) for name in called}
+    ours = [name for name in names if _key(name) in keys]
+    if not ours and len(names) == 1 and (only := next(iter(names))).isdecimal():
+        digits = "".join(c for c in called[0] if c.isdecimal())
+        return [only] if digits and int(digits) == int(only) else []
+    return ours
+
+
+def _key(name: str) -> str:
+    """Return a name without capitals, accents, spaces and marks; with what stands in brackets."""
+    letters = unicodedata.normalize("NFKD", name.casefold())
+    bare = "".join(c for c in letters if c.isalnum())
+    return bare.lstrip("0") or bare or name.strip()

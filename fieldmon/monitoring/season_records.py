@@ -368,22 +368,31 @@ class SeasonRecords(OpenSeason):
         season_log.append(db, "undone", written_in(db, who), states=states, said=said, **what)
         self._refresh(db, min(batches.first_day(db, one) for one in changed))
 
-    def correct(self, who: str) -> int:
+    def correct(self, who: str, *, confirmed: bool = False) -> int:
         """Take what another program changed of inspections as corrections; return how many.
 
         They are a batch of their own, of `who` corrects; undoing it brings back what was before.
-        Raise `FileProblem` if more than inspections was changed, or what makes no sense.
+        Raise `FileProblem` if more than inspections was changed, or what makes no sense;
+        `ContradictionError` if they contradict what else is recorded and are not `confirmed`.
         """
         with self._lock, self.store.writing() as db:
             outside_changes.refuse_more(db)
             settings, plot = settings_of(db), (self.plot.grid, self.label)
             who = written_in(db, who)
             taken = outside_changes.correct(db, plot, settings, who)
+            if taken and not confirmed:
+                corrections.contradicting(db).refuse(self.plot.grid, corrected=True)
             self._corrected(db, taken, who)
         return len(taken)
 
     def correct_time(
-        self, inspection: int, at: time | None, who: str, on: date | None = None
+        self,
+        inspection: int,
+        at: time | None,
+        who: str,
+        on: date | None = None,
+        *,
+        confirmed: bool = False,
     ) -> str:
         """Give one inspection another day, or another time of its day; return what was done.
 
@@ -399,9 +408,13 @@ class SeasonRecords(OpenSeason):
             Who corrects.
         on
             The day that is right, of the season and not to come; None: as it is.
+        confirmed
+            Whether it counts though it contradicts what else is recorded of the plant and day.
 
         Raises
         ------
+        ContradictionError
+            If it does and nobody confirmed it.
         SettingError
             If there is no such inspection that counts, or no such day or time yet.
         """
@@ -413,6 +426,8 @@ class SeasonRecords(OpenSeason):
             self._must_have_come(on or day, at or held_at)
             who, when = written_in(db, who), (on, None if at is None else seconds(at))
             said = corrections.retime(db, inspection, when, plot, settings, who)
+            if not confirmed:
+                corrections.contradicting(db).refuse(self.plot.grid, corrected=True)
             self._corrected(db, said, who, here=True)
         return said[0]
 

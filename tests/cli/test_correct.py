@@ -55,6 +55,45 @@ def test_the_time_alone_of_an_inspection_is_corrected(run, season):
     assert Season(season).history.inspections.second.tolist() == [22_000, 80_000]
 
 
+def test_a_correction_that_contradicts_what_is_recorded_is_refused_until_it_is_confirmed(
+    run, season
+):
+    kept = Season(season)
+    kept.record(Inspections.of(np.arange(2), np.array([0, 1]), BEGINS), "taps")
+    # a found plant is moved onto one that is clean
+    with closing(sqlite3.connect(season)) as db:
+        db.execute(
+            "UPDATE inspections SET geom = (SELECT geom FROM inspections WHERE plant = 0) "
+            "WHERE plant = 1"
+        )
+        db.commit()
+    code, _, err, made = run("correct", season, "--who", "Ann")
+    assert (code, made) == (2, set())
+    place = f"Row 1, plant 1 on {BEGINS}: recorded as clean, now found."
+    assert place in err
+    assert "Confirm with: --contradicting" in err
+    assert run("correct", season, "--who", "Ann", "--contradicting")[0] == 0
+    assert Season(season).history.inspections.plant.tolist() == [0, 0]
+    # what contradicts already is no news
+    with closing(sqlite3.connect(season)) as db:
+        db.execute("UPDATE inspections SET notes = 'below' WHERE undone = 0 AND result = 'found'")
+        db.commit()
+    assert run("correct", season, "--who", "Ann")[0] == 0
+
+
+def test_a_time_that_puts_clean_and_found_at_one_minute_must_be_confirmed(run, season):
+    kept, at = Season(season), [8 * 3600, 9 * 3600, 10 * 3600]
+    told = Inspections.of(np.zeros(3, int), np.array([0, 1, 0]), BEGINS, second=at)
+    kept.record(told, "taps", confirmed=True)
+    words = ["correct", season, "--who", "Ann", "--inspection", "1", "--time"]
+    assert run(*words, "08:30")[0] == 0
+    assert run(*words, "10:05")[0] == 0
+    code, _, err, _ = run(*words, "09:00")
+    place = f"Row 1, plant 1 on {BEGINS}: recorded as found, now clean."
+    assert (code, place in err, "--contradicting" in err) == (2, True, True)
+    assert run(*words, "09:00", "--contradicting")[0] == 0
+
+
 def test_a_time_alone_must_have_come_and_the_day_stays_in_order(run, season, monkeypatch):
     kept = Season(season)
     told = Inspections.of(np.arange(2), np.array([0, 1]), BEGINS, second=[22_000, 30_000])

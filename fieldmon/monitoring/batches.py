@@ -104,10 +104,14 @@ class BatchContents:
 
 
 class Undone(NamedTuple):
-    """What an undo did: a sentence that says it, and the batch to redo; None: it is for good."""
+    """What an undo did: a sentence that says it, and the batch to redo; None: it is for good.
+
+    `first` must be redone before that, if it is not None.
+    """
 
     said: str
     batch: int | None
+    first: int | None = None
 
 
 @dataclass(frozen=True)
@@ -256,14 +260,16 @@ def undo(
     Return the batches that changed.
     """
     batch = _waiting(db, number)
-    table = _TABLE_OF[batch.kind]
+    table, stay = _TABLE_OF[batch.kind], 0
+    if batch.kind == "findings":
+        stay = rows_that_count.n_corrected(db, batch.number)
     db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
     db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
     rows_that_count.undo_corrections(db, batch.number)
     rows = treatments if batch.kind == "treatment" else rows_that_count
     again = rows.count_again(db)
     touch(db, table)
-    said = _undone(batch, contents(db, [batch.number]).get(batch.number), signs or {})
+    said = _undone(batch, contents(db, [batch.number]).get(batch.number), signs or {}, stay)
     return {batch.number, *again}, _still(said, rows.n_elsewhere(db, batch.number))
 
 
@@ -304,6 +310,22 @@ def to_redo(db: sqlite3.Connection, changed: set[int]) -> int | None:
     return next(numbers, None)
 
 
+def to_redo_first(db: sqlite3.Connection, number: int, but: Sequence[str] = ()) -> int | None:
+    """Return which undone batch must count again before one of corrections can; None: none must.
+
+    `but` as in `redo`.
+    """
+    held = (
+        "SELECT min(batch) FROM inspections JOIN batches ON batches.fid = batch "
+        "WHERE digest = ? AND batches.undone = 1 AND batch <> ?"
+    )
+    for mark in rows_that_count.not_as_before(db, number, but):
+        (first,) = db.execute(held, (mark, number)).fetchone()
+        if first is not None:
+            return int(first)
+    return None
+
+
 def redo(
     db: sqlite3.Connection, number: int, but: Sequence[str] = (),
     signs: Mapping[int, str] | None = None,
@@ -322,6 +344,16 @@ def redo(
             )
         )
     before = rows_that_count.redo_corrections(db, number, but)
+    first = to_redo_first(db, number, but) if before is None else None
+    if first is not None:
+        raise SettingError(
+            worded(
+                "What batch {batch} corrected must count before the correction can, but batch "
+                "{first} was undone. Let that count again first: --redo {first}",
+                batch=number,
+                first=first,
+            )
+        )
     if before is None:
         raise SettingError(
             worded(
@@ -344,6 +376,8 @@ def redo(
     elsewhere = rows.n_elsewhere(db, number, rows_that_count.STANDS_BACK)
     said = contents(db, [number]).get(number)
     n = batch.rows - len(but) - elsewhere
+    if batch.kind == "findings":
+        n -= rows_that_count.n_corrected(db, number)
     return {number, *before, *again}, _counts_again(batch, said, (n, elsewhere), signs or {})
 
 
@@ -357,7 +391,7 @@ def _counts_again(
             "Nothing of batch {batch} counts again: it counts in another already.",
             batch=batch.number,
         )
-    if batch.kind == "findings" and said is not None and batch.rows == 1:
+    if batch.kind == "findings" and said is not None and batch.rows == n == 1:
         return worded(
             "Counts again: row {row}, plant {plant} on {date} ({result}).",
             row=signs.get(said.row, said.row), plant=said.plant, date=date_or_text(said.first),
@@ -373,8 +407,15 @@ def _counts_again(
     return joined(" ", (again, more))
 
 
-def _undone(batch: Batch, said: BatchContents | None, signs: Mapping[int, str]) -> str:
-    """Return what was taken back, in words."""
+def _undone(batch: Batch, said: BatchContents | None, signs: Mapping[int, str], stay: int) -> str:
+    """Return what was taken back, in words; so many of its inspections `stay` as corrected."""
+    if stay:
+        one = _undone(replace(batch, rows=batch.rows - stay), None, signs, 0)
+        more = worded(
+            "{n:,} {n:inspection stays|inspections stay} as {n:it was|they were} corrected since.",
+            n=stay,
+        )
+        return joined(" ", (one, more))
     if batch.kind == "findings" and said is not None and said.n == 1:
         return _undone_one(signs.get(said.row, said.row), said.plant, said.first, said.result)
     what = {

@@ -302,7 +302,7 @@ class SeasonRecords(OpenSeason):
     def take_back(
         self, batch: int | None = None, inspection: int | None = None, who: str = ""
     ) -> Undone:
-        """Do what `undo` does; return also which batch `redo` then lets count again.
+        """Do what `undo` does; return also which batches `redo` then lets count again.
 
         Parameters
         ----------
@@ -333,7 +333,11 @@ class SeasonRecords(OpenSeason):
                 changed, said = batches.undo_one(db, inspection, signs)
                 what = {}
             self._note_undone(db, who, changed, said, **what)
-            return Undone(said, batches.to_redo(db, changed))
+            again = batches.to_redo(db, changed)
+            if again is None:
+                return Undone(said, None)
+            but = season_log.left_out_of(db, again)
+            return Undone(said, again, batches.to_redo_first(db, again, but))
 
     def redo(self, batch: int, who: str = "") -> str:
         """Let a `batch` that was undone count again; `who` does so, for the log.

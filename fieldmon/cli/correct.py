@@ -73,4 +73,4 @@ def correct(
         typer.echo(f"{n} correction{'s' if n > 1 else ''} taken, by {who.strip()}.")
         typer.echo(kept.log()[-1].sentence())
     else:
-        typer.echo("Nothing was changed by another program.")
+        typer.echo("Nothing was changed that inspections say: there is nothing to correct.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import UTC, datetime, time
 from functools import reduce
 from typing import TYPE_CHECKING
 
@@ -51,7 +52,7 @@ from fieldmon.plot.local_clock import local_clock
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Sequence
-    from datetime import date, time
+    from datetime import date
     from pathlib import Path
 
     from fieldmon.monitoring.batches import Batch, BatchContents
@@ -376,7 +377,8 @@ class SeasonRecords(OpenSeason):
         """Take what another program changed of inspections as corrections; return how many.
 
         They are a batch of their own, of `who` corrects; undoing it brings back what was before.
-        Raise `FileProblem` if more than inspections was changed, or what makes no sense;
+        What says nothing else than before is put back as it was, and is none. Raise `FileProblem`
+        if more than inspections was changed, or what makes no sense;
         `ContradictionError` if they contradict what else is recorded and are not `confirmed`.
         """
         with self._lock, self.store.writing() as db:
@@ -420,7 +422,8 @@ class SeasonRecords(OpenSeason):
         ContradictionError
             If it does and nobody confirmed it.
         SettingError
-            If there is no such inspection that counts, or no such day or time yet.
+            If there is no such inspection that counts, no such day or time (yet), or nothing
+            to correct.
         """
         with self._writing() as db:
             plot, settings = (self.plot.grid, self.label), settings_of(db)
@@ -428,6 +431,16 @@ class SeasonRecords(OpenSeason):
                 settings.day(on)
             day, held_at = corrections.made(db, inspection)
             self._must_have_come(on or day, at or held_at)
+            if on in {None, day} and at in {None, held_at}:
+                raise SettingError(
+                    worded(
+                        "A correction must say something else than what is recorded, but "
+                        "inspection {inspection} is of {when} already: there is nothing to "
+                        "correct.",
+                        inspection=inspection,
+                        when=str(day) if held_at is None else f"{day} {held_at:%H:%M}",
+                    )
+                )
             who, when = written_in(db, who), (on, None if at is None else seconds(at))
             said = corrections.retime(db, inspection, when, plot, settings, who)
             if not confirmed:
@@ -436,8 +449,21 @@ class SeasonRecords(OpenSeason):
         return said[0]
 
     def _must_have_come(self, on: date, at: time | None) -> None:
-        """Raise `SettingError` if a moment, or a whole day, lies ahead of the plot's clock."""
-        now = local_clock(self.plot.field).now()
+        """Raise `SettingError` if a moment, or a whole day, lies ahead of the plot's clock.
+
+        So it does if that clock never showed it.
+        """
+        clock = local_clock(self.plot.field)
+        now = clock.now()
+        told = datetime.combine(on, at or time())
+        if at is not None and clock.at(clock.moment(on, at).astimezone(UTC)) != told:
+            raise SettingError(
+                worded(
+                    "An inspection must be of a time that the plot's clock showed, but {day} is "
+                    "none: clocks were put forward over it.",
+                    day=f"{told:%Y-%m-%d %H:%M}",
+                )
+            )
         if (on, at or now.time()) > (now.date(), now.time()):
             raise SettingError(
                 worded(

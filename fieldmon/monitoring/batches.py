@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
-from fieldmon.io.parse.result_words import says_gone
+from fieldmon.io.parse.result_words import GONE, says_gone
 from fieldmon.monitoring import rows_that_count, schema, treatments
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.plot.local_clock import utc_text
@@ -23,7 +23,12 @@ _TABLE_OF = {
     "corrections": "inspections",
     "treatment": "treatments",
 }
-_RESULTS = {"found": worded("found"), "clean": worded("clean"), "skipped": worded("skipped")}
+_RESULTS = {
+    "found": worded("found"),
+    "clean": worded("clean"),
+    "skipped": worded("skipped"),
+    GONE: worded("gone"),
+}
 
 
 @dataclass(frozen=True)
@@ -100,7 +105,17 @@ class BatchContents:
     @property
     def is_gone(self) -> bool:
         """Whether the only inspection says that the plant does not stand there any more."""
-        return self.result == RESULT_NAMES[SKIPPED] and says_gone(self.note)
+        return called(self.result, self.note) == GONE
+
+    @property
+    def called(self) -> str:
+        """The result of the only inspection as people say it: that, or ``"gone"``."""
+        return called(self.result, self.note)
+
+
+def called(result: str, note: str | None) -> str:
+    """Return a result of a season's file as people say it: that, or ``"gone"`` as its note says."""
+    return GONE if result == RESULT_NAMES[SKIPPED] and says_gone(note or "") else result
 
 
 class Undone(NamedTuple):
@@ -395,7 +410,7 @@ def _counts_again(
         return worded(
             "Counts again: row {row}, plant {plant} on {date} ({result}).",
             row=signs.get(said.row, said.row), plant=said.plant, date=date_or_text(said.first),
-            result=_RESULTS.get(said.result, said.result),
+            result=_RESULTS.get(said.called, said.called),
         )  # fmt: skip
     noun = {"findings": "inspection", "corrections": "correction", "treatment": "treatment"}[
         batch.kind
@@ -417,7 +432,7 @@ def _undone(batch: Batch, said: BatchContents | None, signs: Mapping[int, str], 
         )
         return joined(" ", (one, more))
     if batch.kind == "findings" and said is not None and said.n == 1:
-        return _undone_one(signs.get(said.row, said.row), said.plant, said.first, said.result)
+        return _undone_one(signs.get(said.row, said.row), said.plant, said.first, said.called)
     what = {
         "findings": counted(batch.rows, "inspection"),
         "corrections": counted(batch.rows, "correction"),
@@ -501,18 +516,20 @@ def undo_one(
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
     sign = (signs or {}).get(row[0], row[0])
+    of = "SELECT result, notes FROM inspections WHERE fid = ?"
+    result = called(*db.execute(of, (inspection,)).fetchone())
     if counts := [one for mark in before if (one := _result_of(db, mark))]:
         return {row[4], *again}, _undone_correction(sign, row[1], row[2], counts[0])
     return {row[4], *again}, _still(
-        _undone_one(sign, *row[1:4]), rows_that_count.n_counting(db, row[5])
+        _undone_one(sign, *row[1:3], result), rows_that_count.n_counting(db, row[5])
     )
 
 
 def _result_of(db: sqlite3.Connection, mark: str) -> str:
     """Return the result of the inspection with a digest that counts; empty: none does."""
-    of = "SELECT result FROM inspections WHERE digest = ? AND undone = 0"
+    of = "SELECT result, notes FROM inspections WHERE digest = ? AND undone = 0"
     row = db.execute(of, (mark,)).fetchone()
-    return "" if row is None else str(row[0])
+    return "" if row is None else called(*row)
 
 
 def counting(db: sqlite3.Connection, inspection: int) -> tuple[int, int, str, str, int, str]:

@@ -24,7 +24,7 @@ from fieldmon.infestation.inspections import (
     SKIPPED,
     Inspections,
 )
-from fieldmon.io.parse.result_words import GONE, gone_note
+from fieldmon.io.parse.result_words import GONE, begins_gone, gone_note
 from fieldmon.monitoring import (
     batches,
     drafts,
@@ -290,11 +290,16 @@ def in_words(db: sqlite3.Connection, change: OutsideChange) -> str:
     if change.what == "insert":
         return f"{says} was added"
     before = rows_that_count.as_it_was(change.before) if change.before else {}
-    parts = [
+    now = dict(zip(SEEN, values, strict=True))
+    is_gone = now["result"] == RESULT_NAMES[SKIPPED] and begins_gone(now["notes"] or "")
+    is_gone &= any(before.get(name) != now[name] for name in ("result", "notes"))
+    parts = [now["notes"]] if is_gone else []
+    parts += [
         f"at row {line}, plant {number}" if name == "plant"
         else f"{name} {value:g}" if isinstance(value, float) else f"{name} {value or 'none'}"
-        for name, value in zip(SEEN, values, strict=True)
+        for name, value in now.items()
         if name in before and before[name] != value
+        and not (is_gone and name in {"result", "count", "notes"})
     ]  # fmt: skip
     return f"{change.was} is now {', '.join(parts) or says}"
 

@@ -76,6 +76,15 @@ def test_a_correction_of_a_batch_that_was_undone_is_redone_after_that(run, seaso
     assert Season(season).verify() == ()
 
 
+def test_a_plant_that_is_gone_is_called_so(run, season):
+    notes = np.array(["gone"], object)
+    Season(season).record(Inspections.of(np.array([1]), np.array([2]), BEGINS, notes=notes), "me")
+    assert "row 1, plant 2: gone" in run("status", season, "--batches")[1]
+    assert f"row 1, plant 2 on {BEGINS} (gone)." in run("undo", season)[1]
+    assert f"row 1, plant 2 on {BEGINS} (gone)." in run("undo", season, "--redo", "1")[1]
+    assert f"row 1, plant 2 on {BEGINS} (gone)." in run("undo", season, "--inspection", "1")[1]
+
+
 def test_a_change_to_an_earlier_value_is_taken_back_and_no_other(run, season):
     for hours in ("4", "3", "4"):
         run("change", season, "--hours", hours)

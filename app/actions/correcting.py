@@ -64,6 +64,7 @@ def _correct(choices: Choices, plant: int) -> str:
     if day is None and at is None:
         raise SettingError(texts.CORRECT_UNSAID)
     number = st.session_state[_which(choices, plant)]
-    choices.open_season.correct_time(number, at, choices.who or "", day)
+    # what contradicts is shown with the day
+    choices.open_season.correct_time(number, at, choices.who or "", day, confirmed=True)
     boxes.empty()
     return texts.CORRECTED.format(n=1)

@@ -10,7 +10,7 @@ from fieldmon.cli.numbers import within
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.times import clock, day
 from fieldmon.compute.ranges import NUMBER
-from fieldmon.errors import SettingError
+from fieldmon.errors import ContradictionError, SettingError
 
 
 def correct(
@@ -29,12 +29,21 @@ def correct(
     on: Annotated[
         str | None, typer.Option("--date", help="Day of that --inspection, YYYY-MM-DD.")
     ] = None,
+    contradicting: Annotated[  # noqa: FBT002 - a flag
+        bool,
+        typer.Option(
+            "--contradicting",
+            help="Also take corrections that contradict what else is recorded of the same plants "
+            "and days.",
+        ),
+    ] = False,
 ) -> None:
     """Accept inspections that QGIS or another program changed, as somebody's corrections.
 
     Until then the season refuses to go on, and names the rows. With --inspection and --date
-    or --time the day or time of one is corrected instead. fieldmon undo brings back what stood
-    there before.
+    or --time the day or time of one is corrected instead. Corrections that contradict what else is
+    recorded of the same plants and days are listed, and nothing is taken, unless --contradicting is
+    given. fieldmon undo brings back what stood there before.
 
     Example: fieldmon correct season.gpkg --who Ann
     Example: fieldmon correct season.gpkg --who Ann --inspection 12 --date 2026-11-17 --time 08:30
@@ -48,14 +57,20 @@ def correct(
         )
     from fieldmon.monitoring import Season
 
-    if inspection is not None:
-        moment = None if at is None else clock(at, "--time")
-        typer.echo(Season(season).correct_time(inspection, moment, who.strip(), day(on)))
-        return
     kept = Season(season)
-    n = kept.correct(who.strip())
+    try:
+        if inspection is not None:
+            moment = None if at is None else clock(at, "--time")
+            said = kept.correct_time(
+                inspection, moment, who.strip(), day(on), confirmed=contradicting
+            )
+            typer.echo(said)
+            return
+        n = kept.correct(who.strip(), confirmed=contradicting)
+    except ContradictionError as error:
+        raise ContradictionError(f"{error} Confirm with: --contradicting") from None
     if n:
         typer.echo(f"{n} correction{'s' if n > 1 else ''} taken, by {who.strip()}.")
         typer.echo(kept.log()[-1].sentence())
     else:
-        typer.echo("Nothing was changed by another program.")
+        typer.echo("Nothing was changed that inspections say: there is nothing to correct.")

@@ -110,7 +110,7 @@ def _show_batches(kept: Season) -> None:
             what = f"  {counted(said.n, 'plant')}, {said.first}"
         elif said is not None and said.n == batch.rows == 1:
             row = kept.plot.grid.row_signs.get(said.row, said.row)
-            what = f"  row {row}, plant {said.plant}: {said.result}"
+            what = f"  row {row}, plant {said.plant}: {said.called}"
         elif said is not None and (batch.undone or said.counting == batch.rows):
             what = f"  {said.found} found"
         elif said is not None:

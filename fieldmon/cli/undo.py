@@ -66,5 +66,9 @@ def undo(
     if undone.batch is None:
         typer.echo("This cannot be redone. If it was right, record it again.")
     else:
-        again = shlex.join(["fieldmon", "undo", str(season), "--redo", str(undone.batch)])
+        again = ", and then: ".join(
+            shlex.join(["fieldmon", "undo", str(season), "--redo", str(one)])
+            for one in (undone.first, undone.batch)
+            if one is not None
+        )
         typer.echo(f"To let it count again: {again}")

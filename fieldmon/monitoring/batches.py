@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
-from fieldmon.io.parse.result_words import says_gone
+from fieldmon.io.parse.result_words import GONE, says_gone
 from fieldmon.monitoring import rows_that_count, schema, treatments
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.plot.local_clock import utc_text
@@ -23,7 +23,12 @@ _TABLE_OF = {
     "corrections": "inspections",
     "treatment": "treatments",
 }
-_RESULTS = {"found": worded("found"), "clean": worded("clean"), "skipped": worded("skipped")}
+_RESULTS = {
+    "found": worded("found"),
+    "clean": worded("clean"),
+    "skipped": worded("skipped"),
+    GONE: worded("gone"),
+}
 
 
 @dataclass(frozen=True)
@@ -100,14 +105,28 @@ class BatchContents:
     @property
     def is_gone(self) -> bool:
         """Whether the only inspection says that the plant does not stand there any more."""
-        return self.result == RESULT_NAMES[SKIPPED] and says_gone(self.note)
+        return called(self.result, self.note) == GONE
+
+    @property
+    def called(self) -> str:
+        """The result of the only inspection as people say it: that, or ``"gone"``."""
+        return called(self.result, self.note)
+
+
+def called(result: str, note: str | None) -> str:
+    """Return a result of a season's file as people say it: that, or ``"gone"`` as its note says."""
+    return GONE if result == RESULT_NAMES[SKIPPED] and says_gone(note or "") else result
 
 
 class Undone(NamedTuple):
-    """What an undo did: a sentence that says it, and the batch to redo; None: it is for good."""
+    """What an undo did: a sentence that says it, and the batch to redo; None: it is for good.
+
+    `first` must be redone before that, if it is not None.
+    """
 
     said: str
     batch: int | None
+    first: int | None = None
 
 
 @dataclass(frozen=True)
@@ -256,14 +275,16 @@ def undo(
     Return the batches that changed.
     """
     batch = _waiting(db, number)
-    table = _TABLE_OF[batch.kind]
+    table, stay = _TABLE_OF[batch.kind], 0
+    if batch.kind == "findings":
+        stay = rows_that_count.n_corrected(db, batch.number)
     db.execute(f"UPDATE {table} SET undone = 1 WHERE batch = ?", (batch.number,))  # noqa: S608 - ours
     db.execute("UPDATE batches SET undone = 1 WHERE fid = ?", (batch.number,))
     rows_that_count.undo_corrections(db, batch.number)
     rows = treatments if batch.kind == "treatment" else rows_that_count
     again = rows.count_again(db)
     touch(db, table)
-    said = _undone(batch, contents(db, [batch.number]).get(batch.number), signs or {})
+    said = _undone(batch, contents(db, [batch.number]).get(batch.number), signs or {}, stay)
     return {batch.number, *again}, _still(said, rows.n_elsewhere(db, batch.number))
 
 
@@ -304,6 +325,22 @@ def to_redo(db: sqlite3.Connection, changed: set[int]) -> int | None:
     return next(numbers, None)
 
 
+def to_redo_first(db: sqlite3.Connection, number: int, but: Sequence[str] = ()) -> int | None:
+    """Return which undone batch must count again before one of corrections can; None: none must.
+
+    `but` as in `redo`.
+    """
+    held = (
+        "SELECT min(batch) FROM inspections JOIN batches ON batches.fid = batch "
+        "WHERE digest = ? AND batches.undone = 1 AND batch <> ?"
+    )
+    for mark in rows_that_count.not_as_before(db, number, but):
+        (first,) = db.execute(held, (mark, number)).fetchone()
+        if first is not None:
+            return int(first)
+    return None
+
+
 def redo(
     db: sqlite3.Connection, number: int, but: Sequence[str] = (),
     signs: Mapping[int, str] | None = None,
@@ -322,6 +359,16 @@ def redo(
             )
         )
     before = rows_that_count.redo_corrections(db, number, but)
+    first = to_redo_first(db, number, but) if before is None else None
+    if first is not None:
+        raise SettingError(
+            worded(
+                "What batch {batch} corrected must count before the correction can, but batch "
+                "{first} was undone. Let that count again first: --redo {first}",
+                batch=number,
+                first=first,
+            )
+        )
     if before is None:
         raise SettingError(
             worded(
@@ -344,6 +391,8 @@ def redo(
     elsewhere = rows.n_elsewhere(db, number, rows_that_count.STANDS_BACK)
     said = contents(db, [number]).get(number)
     n = batch.rows - len(but) - elsewhere
+    if batch.kind == "findings":
+        n -= rows_that_count.n_corrected(db, number)
     return {number, *before, *again}, _counts_again(batch, said, (n, elsewhere), signs or {})
 
 
@@ -357,11 +406,11 @@ def _counts_again(
             "Nothing of batch {batch} counts again: it counts in another already.",
             batch=batch.number,
         )
-    if batch.kind == "findings" and said is not None and batch.rows == 1:
+    if batch.kind == "findings" and said is not None and batch.rows == n == 1:
         return worded(
             "Counts again: row {row}, plant {plant} on {date} ({result}).",
             row=signs.get(said.row, said.row), plant=said.plant, date=date_or_text(said.first),
-            result=_RESULTS.get(said.result, said.result),
+            result=_RESULTS.get(said.called, said.called),
         )  # fmt: skip
     noun = {"findings": "inspection", "corrections": "correction", "treatment": "treatment"}[
         batch.kind
@@ -373,10 +422,17 @@ def _counts_again(
     return joined(" ", (again, more))
 
 
-def _undone(batch: Batch, said: BatchContents | None, signs: Mapping[int, str]) -> str:
-    """Return what was taken back, in words."""
+def _undone(batch: Batch, said: BatchContents | None, signs: Mapping[int, str], stay: int) -> str:
+    """Return what was taken back, in words; so many of its inspections `stay` as corrected."""
+    if stay:
+        one = _undone(replace(batch, rows=batch.rows - stay), None, signs, 0)
+        more = worded(
+            "{n:,} {n:inspection stays|inspections stay} as {n:it was|they were} corrected since.",
+            n=stay,
+        )
+        return joined(" ", (one, more))
     if batch.kind == "findings" and said is not None and said.n == 1:
-        return _undone_one(signs.get(said.row, said.row), said.plant, said.first, said.result)
+        return _undone_one(signs.get(said.row, said.row), said.plant, said.first, said.called)
     what = {
         "findings": counted(batch.rows, "inspection"),
         "corrections": counted(batch.rows, "correction"),
@@ -460,18 +516,20 @@ def undo_one(
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
     sign = (signs or {}).get(row[0], row[0])
+    of = "SELECT result, notes FROM inspections WHERE fid = ?"
+    result = called(*db.execute(of, (inspection,)).fetchone())
     if counts := [one for mark in before if (one := _result_of(db, mark))]:
         return {row[4], *again}, _undone_correction(sign, row[1], row[2], counts[0])
     return {row[4], *again}, _still(
-        _undone_one(sign, *row[1:4]), rows_that_count.n_counting(db, row[5])
+        _undone_one(sign, *row[1:3], result), rows_that_count.n_counting(db, row[5])
     )
 
 
 def _result_of(db: sqlite3.Connection, mark: str) -> str:
     """Return the result of the inspection with a digest that counts; empty: none does."""
-    of = "SELECT result FROM inspections WHERE digest = ? AND undone = 0"
+    of = "SELECT result, notes FROM inspections WHERE digest = ? AND undone = 0"
     row = db.execute(of, (mark,)).fetchone()
-    return "" if row is None else str(row[0])
+    return "" if row is None else called(*row)
 
 
 def counting(db: sqlite3.Connection, inspection: int) -> tuple[int, int, str, str, int, str]:

@@ -7,22 +7,28 @@ from __future__ import annotations
 
 from dataclasses import replace
 from datetime import date, time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fieldmon.infestation.inspection_columns import BESIDE
-from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
-from fieldmon.monitoring import batches, copy_corrections, outside_changes
+from fieldmon.infestation.inspections import RESULT_CODES, RESULT_NAMES, SKIPPED, Inspections
+from fieldmon.monitoring import (
+    batches,
+    copy_corrections,
+    inspection_lots,
+    outside_changes,
+    rows_that_count,
+)
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.inspection_table import time_text
 from fieldmon.monitoring.outside_changes import OutsideChange
+from fieldmon.monitoring.recorded_before import Contradictions, corrected_against
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
 if TYPE_CHECKING:
     import sqlite3
 
-    from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.plot.grid import PlantGrid, RowLabel
 
@@ -105,6 +111,33 @@ def retime(
     batches.end(db, batch, 1)
     touch(db, INSPECTIONS.name)
     return (outside_changes.in_words(db, change),)
+
+
+def contradicting(db: sqlite3.Connection) -> Contradictions:
+    """Return what the last batch, of corrections, made contradict what else counts."""
+    (batch,) = db.execute("SELECT max(fid) FROM batches").fetchone()
+    told = "SELECT before FROM outside_changes WHERE batch = ? AND before NOTNULL"
+    kept = (rows_that_count.as_it_was(before) for (before,) in db.execute(told, (batch,)))
+    said = "SELECT plant, date, result, time FROM inspections WHERE undone = 0 AND batch"
+    now = db.execute(f"{said} = ?", (batch,)).fetchall()
+    others = f"{said} <> ? AND plant IN (SELECT plant FROM inspections WHERE batch = ?)"  # noqa: S608
+    rest = db.execute(others, (batch, batch)).fetchall()
+    before = [
+        tuple(one.get(name) for name in ("plant", "date", "result", "time"))
+        for one in kept
+        if one["digest"] is not None and one.get("undone") == rows_that_count.COUNTS
+    ]
+    return corrected_against(_inspections(rest + now), _inspections(rest + before))
+
+
+def _inspections(rows: list[tuple[Any, ...]]) -> Inspections:
+    """Return inspections of plants, days, results and times as the file has them."""
+    return Inspections.of(
+        np.array([plant for plant, *_ in rows], np.int32),
+        np.array([RESULT_CODES[result] for _, _, result, _ in rows], np.int8),
+        np.array([day[:10] for _, day, *_ in rows], "datetime64[D]"),
+        second=np.array([inspection_lots.second_of(at) for *_, at in rows]),
+    )
 
 
 def _changed(

@@ -24,7 +24,7 @@ from fieldmon.infestation.inspections import (
     SKIPPED,
     Inspections,
 )
-from fieldmon.io.parse.result_words import GONE, gone_note
+from fieldmon.io.parse.result_words import GONE, begins_gone, gone_note
 from fieldmon.monitoring import (
     batches,
     drafts,
@@ -53,6 +53,8 @@ _DONE = {
 _COUNTLESS = (RESULT_NAMES[CLEAN], RESULT_NAMES[SKIPPED], GONE)
 # nearer to its plant a point was written anew, not moved
 _MOVED_M = 0.01
+_UNDONE = "SELECT undone FROM inspections WHERE fid = ?"
+_FORGET = "DELETE FROM outside_changes WHERE batch IS NULL AND layer = ? AND row = ?"
 #: columns that say what was seen
 SEEN = tuple(column.kept for column in COLUMNS)
 
@@ -190,7 +192,8 @@ def correct(
 ) -> tuple[str, ...]:
     """Take what other programs changed of inspections as a batch of its own; say what, one by one.
 
-    What stood there before stands back, until the correction is taken back. A row that was moved is
+    What stood there before stands back, until the correction is taken back. Where a row says what
+    it said, it is put back as it was. A row that was moved is
     of the plant there; else place, row and number in the row follow the plant's number. A row added
     with a digest is a copy of another, and counts once it has its own.
 
@@ -199,7 +202,7 @@ def correct(
     FileProblem
         If a changed row makes no sense: which one.
     """
-    found = waiting(db)
+    found = [one for one in waiting(db) if not _put_back(db, one, plot, settings)]
     if not found:
         return ()
     batch = batches.begin(db, "corrections", "changed by another program", who)
@@ -227,6 +230,33 @@ def correct(
     db.execute("UPDATE batches SET rows = ? WHERE fid = ?", (len(found), batch))
     db.execute("UPDATE outside_changes SET batch = ? WHERE batch IS NULL", (batch,))
     return tuple(said)
+
+
+def _put_back(
+    db: sqlite3.Connection,
+    change: OutsideChange,
+    plot: tuple[PlantGrid, RowLabel],
+    settings: MonitoringSettings,
+) -> bool:
+    """Put a changed row back as it was, where it says nothing else; return whether it was that."""
+    if change.what != "update" or not is_kept(change):
+        return False
+    before = rows_that_count.as_it_was(change.before)
+    (undone,) = db.execute(_UNDONE, (change.row,)).fetchone()
+    says = _made_anew(db, change, plot, settings, before.get("batch", 0))
+    told, was = (
+        [None if of.get(name) == "" else of.get(name) for name in (*SEEN, "digest")]
+        for of in (says, before)
+    )
+    if told != was or undone != before.get("undone"):
+        return False
+    stood = {**before, "geom": says["geom"]}
+    names = [name for name in INSPECTIONS.names if name in stood]
+    sets = ", ".join(f"{name} = ?" for name in names)
+    row = (*(stood[name] for name in names), change.row)
+    db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", row)  # noqa: S608 - names of ours
+    db.execute(_FORGET, (change.layer, change.row))
+    return True
 
 
 def is_kept(change: OutsideChange) -> bool:
@@ -260,11 +290,16 @@ def in_words(db: sqlite3.Connection, change: OutsideChange) -> str:
     if change.what == "insert":
         return f"{says} was added"
     before = rows_that_count.as_it_was(change.before) if change.before else {}
-    parts = [
+    now = dict(zip(SEEN, values, strict=True))
+    is_gone = now["result"] == RESULT_NAMES[SKIPPED] and begins_gone(now["notes"] or "")
+    is_gone &= any(before.get(name) != now[name] for name in ("result", "notes"))
+    parts = [now["notes"]] if is_gone else []
+    parts += [
         f"at row {line}, plant {number}" if name == "plant"
         else f"{name} {value:g}" if isinstance(value, float) else f"{name} {value or 'none'}"
-        for name, value in zip(SEEN, values, strict=True)
+        for name, value in now.items()
         if name in before and before[name] != value
+        and not (is_gone and name in {"result", "count", "notes"})
     ]  # fmt: skip
     return f"{change.was} is now {', '.join(parts) or says}"
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ContradictionError
-from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
+from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
 from fieldmon.monitoring.inspection_table import time_text
 from fieldmon.plot.grid import row_label
 
@@ -89,12 +89,26 @@ class Contradictions:
         columns = ("which", "plant", "date", "recorded", "brought", "together")
         return Contradictions(*(getattr(self, name)[stays] for name in columns))
 
-    def refuse(self, grid: PlantGrid) -> None:
-        """Raise `ContradictionError` if there are any, with the first few by name."""
+    def refuse(self, grid: PlantGrid, *, corrected: bool = False) -> None:
+        """Raise `ContradictionError` if there are any, with the first few by name.
+
+        `corrected`: those brought are corrections.
+        """
         if not len(self):
             return
         named = joined(" ", self.sentences(grid)[:_MOST_NAMED])
         more = " ..." if len(self) > _MOST_NAMED else ""
+        if corrected:
+            raise ContradictionError(
+                worded(
+                    "Corrections must not contradict what else is recorded of the same plants and "
+                    "days unless that is confirmed, but {n} of them {n:does|do}: {named}{more} "
+                    "Nothing was taken: correct them otherwise, or confirm that both hold.",
+                    n=len(self),
+                    named=named,
+                    more=more,
+                )
+            )
         if self.together.all():
             raise ContradictionError(
                 worded(
@@ -138,6 +152,42 @@ def contradictions(brought: Inspections, held: Inspections) -> Contradictions:
         if was and result not in was:
             found.append((k, min(was), key not in recorded_of))
         was.add(result)
+    return _of(brought, found)
+
+
+def corrected_against(now: Inspections, before: Inspections) -> Contradictions:
+    """Return which of those held after a correction contradict others, and did not `before` it.
+
+    They are of one plant and day; and where clean and found of a day were known to be of different
+    times, of one minute.
+    """
+    of_days = contradictions(now, before).still(now)
+    columns = of_days.which, of_days.recorded, of_days.together
+    found = [*zip(*(column.tolist() for column in columns), strict=True)]
+    told, was = {*_keys(of_days)}, _by_minute(before)
+    for key, rows in _by_minute(now).items():
+        stood = was.get(key, {})
+        if len(rows) > 1 and len(stood) < 2 and key[:2] not in told:
+            recorded = min(stood or rows)
+            found.append((rows[FOUND if recorded == CLEAN else CLEAN], recorded, not stood))
+    return _of(now, sorted(found))
+
+
+def _by_minute(held: Inspections) -> dict[tuple[int, int, int], dict[int, int]]:
+    """Return by plant, day and minute the inspections of each result; unknown times are left out.
+
+    A plant that could not be inspected says nothing.
+    """
+    rows: dict[tuple[int, int, int], dict[int, int]] = {}
+    told = zip(_keys(held), held.second.tolist(), held.result.tolist(), strict=True)
+    for k, (key, second, result) in enumerate(told):
+        if result != SKIPPED and not np.isnan(second):
+            rows.setdefault((*key, int(second // 60)), {})[result] = k
+    return rows
+
+
+def _of(brought: Inspections, found: list[tuple[int, int, bool]]) -> Contradictions:
+    """Return contradictions by numbers among those brought, what is recorded, and if `together`."""
     at = np.array([k for k, *_ in found], np.intp)
     recorded = np.array([result for _, result, _ in found], np.int8)
     together = np.array([both for *_, both in found], bool)

@@ -134,6 +134,29 @@ def undo_corrections(db: sqlite3.Connection, batch: int, now: str | None = None)
     return [was for was in before_it if was is not None]
 
 
+_HELD = "SELECT fid, batch FROM inspections WHERE digest = ? AND undone = 0"
+
+
+def not_as_before(db: sqlite3.Connection, batch: int, but: Sequence[str] = ()) -> list[str]:
+    """Return the digests that corrections of a batch were of, and that do not count any more.
+
+    Those that were taken back are meant, `but` for those to these digests.
+    """
+    rows = db.execute(
+        "SELECT before, now FROM outside_changes WHERE batch = ? AND before NOTNULL AND undone = 1",
+        (batch,),
+    ).fetchall()
+    gone, missing = corrected(_corrections(db)), []
+    for before, made in rows:
+        was = as_it_was(before)["digest"]
+        # what was corrected once more still stands back for that
+        if was is None or made in but or made in gone:
+            continue
+        if db.execute(_HELD, (was,)).fetchone() is None:
+            missing.append(was)
+    return missing
+
+
 def redo_corrections(
     db: sqlite3.Connection, batch: int, but: Sequence[str] = ()
 ) -> set[int] | None:
@@ -147,17 +170,13 @@ def redo_corrections(
         "AND undone = 1",
         (batch,),
     ).fetchall()
-    found, gone = [], corrected(_corrections(db))
+    if not_as_before(db, batch, but):
+        return None
+    found = []
     for fid, before, made in rows:
-        was = as_it_was(before)["digest"]
-        if made in but:
-            continue
-        counts = "SELECT fid, batch FROM inspections WHERE digest = ? AND undone = 0"
-        held = db.execute(counts, (was,)).fetchone()
-        # what was corrected once more still stands back for that
-        if held is None and was is not None and made not in gone:
-            return None
-        found.append((fid, made, held))
+        if made not in but:
+            was = as_it_was(before)["digest"]
+            found.append((fid, made, db.execute(_HELD, (was,)).fetchone()))
     for fid, made, held in found:
         db.execute("UPDATE outside_changes SET undone = 0 WHERE fid = ?", (fid,))
         if held is None:
@@ -191,6 +210,16 @@ def n_counting(db: sqlite3.Connection, mark: str) -> int:
     """Return how many inspections with a digest count: one or none."""
     counts = "SELECT count(*) FROM inspections WHERE digest = ? AND undone = 0"
     (n,) = db.execute(counts, (mark,)).fetchone()
+    return int(n)
+
+
+def n_corrected(db: sqlite3.Connection, batch: int) -> int:
+    """Return how many inspections of a batch stand back, but for none that says the same."""
+    (n,) = db.execute(
+        "SELECT count(*) FROM inspections AS one WHERE batch = ? AND undone = ? AND NOT EXISTS "
+        "(SELECT 1 FROM inspections WHERE digest = one.digest AND undone = 0)",
+        (batch, STANDS_BACK),
+    ).fetchone()
     return int(n)
 
 

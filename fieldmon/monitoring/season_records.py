@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import UTC, datetime, time
 from functools import reduce
 from typing import TYPE_CHECKING
 
@@ -51,7 +52,7 @@ from fieldmon.plot.local_clock import local_clock
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Sequence
-    from datetime import date, time
+    from datetime import date
     from pathlib import Path
 
     from fieldmon.monitoring.batches import Batch, BatchContents
@@ -302,7 +303,7 @@ class SeasonRecords(OpenSeason):
     def take_back(
         self, batch: int | None = None, inspection: int | None = None, who: str = ""
     ) -> Undone:
-        """Do what `undo` does; return also which batch `redo` then lets count again.
+        """Do what `undo` does; return also which batches `redo` then lets count again.
 
         Parameters
         ----------
@@ -333,7 +334,11 @@ class SeasonRecords(OpenSeason):
                 changed, said = batches.undo_one(db, inspection, signs)
                 what = {}
             self._note_undone(db, who, changed, said, **what)
-            return Undone(said, batches.to_redo(db, changed))
+            again = batches.to_redo(db, changed)
+            if again is None:
+                return Undone(said, None)
+            but = season_log.left_out_of(db, again)
+            return Undone(said, again, batches.to_redo_first(db, again, but))
 
     def redo(self, batch: int, who: str = "") -> str:
         """Let a `batch` that was undone count again; `who` does so, for the log.
@@ -368,22 +373,32 @@ class SeasonRecords(OpenSeason):
         season_log.append(db, "undone", written_in(db, who), states=states, said=said, **what)
         self._refresh(db, min(batches.first_day(db, one) for one in changed))
 
-    def correct(self, who: str) -> int:
+    def correct(self, who: str, *, confirmed: bool = False) -> int:
         """Take what another program changed of inspections as corrections; return how many.
 
         They are a batch of their own, of `who` corrects; undoing it brings back what was before.
-        Raise `FileProblem` if more than inspections was changed, or what makes no sense.
+        What says nothing else than before is put back as it was, and is none. Raise `FileProblem`
+        if more than inspections was changed, or what makes no sense;
+        `ContradictionError` if they contradict what else is recorded and are not `confirmed`.
         """
         with self._lock, self.store.writing() as db:
             outside_changes.refuse_more(db)
             settings, plot = settings_of(db), (self.plot.grid, self.label)
             who = written_in(db, who)
             taken = outside_changes.correct(db, plot, settings, who)
+            if taken and not confirmed:
+                corrections.contradicting(db).refuse(self.plot.grid, corrected=True)
             self._corrected(db, taken, who)
         return len(taken)
 
     def correct_time(
-        self, inspection: int, at: time | None, who: str, on: date | None = None
+        self,
+        inspection: int,
+        at: time | None,
+        who: str,
+        on: date | None = None,
+        *,
+        confirmed: bool = False,
     ) -> str:
         """Give one inspection another day, or another time of its day; return what was done.
 
@@ -399,11 +414,16 @@ class SeasonRecords(OpenSeason):
             Who corrects.
         on
             The day that is right, of the season and not to come; None: as it is.
+        confirmed
+            Whether it counts though it contradicts what else is recorded of the plant and day.
 
         Raises
         ------
+        ContradictionError
+            If it does and nobody confirmed it.
         SettingError
-            If there is no such inspection that counts, or no such day or time yet.
+            If there is no such inspection that counts, no such day or time (yet), or nothing
+            to correct.
         """
         with self._writing() as db:
             plot, settings = (self.plot.grid, self.label), settings_of(db)
@@ -411,14 +431,39 @@ class SeasonRecords(OpenSeason):
                 settings.day(on)
             day, held_at = corrections.made(db, inspection)
             self._must_have_come(on or day, at or held_at)
+            if on in {None, day} and at in {None, held_at}:
+                raise SettingError(
+                    worded(
+                        "A correction must say something else than what is recorded, but "
+                        "inspection {inspection} is of {when} already: there is nothing to "
+                        "correct.",
+                        inspection=inspection,
+                        when=str(day) if held_at is None else f"{day} {held_at:%H:%M}",
+                    )
+                )
             who, when = written_in(db, who), (on, None if at is None else seconds(at))
             said = corrections.retime(db, inspection, when, plot, settings, who)
+            if not confirmed:
+                corrections.contradicting(db).refuse(self.plot.grid, corrected=True)
             self._corrected(db, said, who, here=True)
         return said[0]
 
     def _must_have_come(self, on: date, at: time | None) -> None:
-        """Raise `SettingError` if a moment, or a whole day, lies ahead of the plot's clock."""
-        now = local_clock(self.plot.field).now()
+        """Raise `SettingError` if a moment, or a whole day, lies ahead of the plot's clock.
+
+        So it does if that clock never showed it.
+        """
+        clock = local_clock(self.plot.field)
+        now = clock.now()
+        told = datetime.combine(on, at or time())
+        if at is not None and clock.at(clock.moment(on, at).astimezone(UTC)) != told:
+            raise SettingError(
+                worded(
+                    "An inspection must be of a time that the plot's clock showed, but {day} is "
+                    "none: clocks were put forward over it.",
+                    day=f"{told:%Y-%m-%d %H:%M}",
+                )
+            )
         if (on, at or now.time()) > (now.date(), now.time()):
             raise SettingError(
                 worded(

@@ -2,7 +2,7 @@
 
 import sqlite3
 from contextlib import closing
-from datetime import UTC, date, datetime, timedelta
+from datetime import UTC, date, datetime, time, timedelta
 
 import numpy as np
 
@@ -55,6 +55,45 @@ def test_the_time_alone_of_an_inspection_is_corrected(run, season):
     assert Season(season).history.inspections.second.tolist() == [22_000, 80_000]
 
 
+def test_a_correction_that_contradicts_what_is_recorded_is_refused_until_it_is_confirmed(
+    run, season
+):
+    kept = Season(season)
+    kept.record(Inspections.of(np.arange(2), np.array([0, 1]), BEGINS), "taps")
+    # a found plant is moved onto one that is clean
+    with closing(sqlite3.connect(season)) as db:
+        db.execute(
+            "UPDATE inspections SET geom = (SELECT geom FROM inspections WHERE plant = 0) "
+            "WHERE plant = 1"
+        )
+        db.commit()
+    code, _, err, made = run("correct", season, "--who", "Ann")
+    assert (code, made) == (2, set())
+    place = f"Row 1, plant 1 on {BEGINS}: recorded as clean, now found."
+    assert place in err
+    assert "Confirm with: --contradicting" in err
+    assert run("correct", season, "--who", "Ann", "--contradicting")[0] == 0
+    assert Season(season).history.inspections.plant.tolist() == [0, 0]
+    # what contradicts already is no news
+    with closing(sqlite3.connect(season)) as db:
+        db.execute("UPDATE inspections SET notes = 'below' WHERE undone = 0 AND result = 'found'")
+        db.commit()
+    assert run("correct", season, "--who", "Ann")[0] == 0
+
+
+def test_a_time_that_puts_clean_and_found_at_one_minute_must_be_confirmed(run, season):
+    kept, at = Season(season), [8 * 3600, 9 * 3600, 10 * 3600]
+    told = Inspections.of(np.zeros(3, int), np.array([0, 1, 0]), BEGINS, second=at)
+    kept.record(told, "taps", confirmed=True)
+    words = ["correct", season, "--who", "Ann", "--inspection", "1", "--time"]
+    assert run(*words, "08:30")[0] == 0
+    assert run(*words, "10:05")[0] == 0
+    code, _, err, _ = run(*words, "09:00")
+    place = f"Row 1, plant 1 on {BEGINS}: recorded as found, now clean."
+    assert (code, place in err, "--contradicting" in err) == (2, True, True)
+    assert run(*words, "09:00", "--contradicting")[0] == 0
+
+
 def test_a_time_alone_must_have_come_and_the_day_stays_in_order(run, season, monkeypatch):
     kept = Season(season)
     told = Inspections.of(np.arange(2), np.array([0, 1]), BEGINS, second=[22_000, 30_000])
@@ -72,6 +111,46 @@ def test_a_time_alone_must_have_come_and_the_day_stays_in_order(run, season, mon
     monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2026, 11, 3, 5, tzinfo=UTC))
     code, _, err, _ = run(*words, "1", "--date", "2026-11-03")
     assert (code, "but 2026-11-03 12:00 has not" in err) == (2, True), err
+
+
+def test_where_nothing_is_corrected_there_is_no_batch(run, season):
+    kept = Season(season)
+    kept.record(Inspections.of(np.arange(2), np.zeros(2, int), BEGINS, second=[28_800] * 2), "taps")
+    kept.correct_time(1, time(8, 30), "Ann")
+    words = ["correct", season, "--who", "Ann", "--inspection", "1"]
+    for more in (["--time", "08:30"], ["--date", BEGINS], ["--date", BEGINS, "--time", "08:30"]):
+        code, _, err, _ = run(*words, *more)
+        assert (code, f"of {BEGINS} 08:30 already: there is nothing to correct" in err) == (2, True)
+    before = [one.number for one in kept.batches()]
+    with closing(sqlite3.connect(season)) as db:
+        db.execute("UPDATE inspections SET geom = NULL, line = 99, notes = '' WHERE fid = 1")
+        db.commit()
+    assert "Nothing was changed" in run("correct", season, "--who", "Ann")[1]
+    kept = Season(season)
+    assert ([one.number for one in kept.batches()], kept.verify()) == (before, ())
+    with closing(sqlite3.connect(season)) as db:
+        assert db.execute(
+            "SELECT geom IS NULL, line, batch FROM inspections WHERE fid = 1"
+        ).fetchone() == (0, 1, 2)
+        # one of two says something else
+        db.execute("UPDATE inspections SET geom = NULL WHERE fid = 1")
+        db.execute("UPDATE inspections SET result = 'found' WHERE fid = 2")
+        db.commit()
+    assert "1 correction taken" in run("correct", season, "--who", "Ann")[1]
+    assert Season(season).history.inspections.result.tolist() == [1, 0]
+    run("undo", season)
+    assert Season(season).history.inspections.result.tolist() == [0, 0]
+    assert Season(season).held_to_log() == ()
+
+
+def test_a_time_that_the_clock_left_out_is_refused(run, season, monkeypatch):
+    monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2027, 3, 27, 12, tzinfo=UTC))
+    told = Inspections.of(np.arange(1), np.zeros(1, int), "2027-03-26", second=[3600])
+    Season(season).record(told, "taps")
+    words = ["correct", season, "--who", "Ann", "--inspection", "1", "--time"]
+    code, _, err, _ = run(*words, "02:30")
+    assert (code, "2027-03-26 02:30 is none: clocks were put forward" in err) == (2, True), err
+    assert run(*words, "03:00")[0] == 0
 
 
 def test_the_day_of_an_inspection_is_corrected_and_days_stay_in_order(run, season, monkeypatch):

@@ -1,9 +1,10 @@
 """`fieldmon undo`: what was recorded is taken back."""
 
-from datetime import date
+from datetime import date, time
 
 import numpy as np
 
+from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, filled_in
 
@@ -43,6 +44,45 @@ def test_one_inspection_alone_is_taken_back(run, season, tmp_path):
     out = run("undo", season, "--inspection", 4)[1]
     assert out.splitlines()[1] == f"To let it count again: fieldmon undo {season} --redo 2"
     assert "Counts again" in run("undo", season, "--redo", 2)[1]
+
+
+def test_a_correction_of_a_batch_that_was_undone_is_redone_after_that(run, season):
+    kept = Season(season)
+    for k, plants in enumerate(([0, 1, 2], [3])):
+        kept.record(Inspections.of(np.array(plants), np.zeros(len(plants), int), BEGINS), f"f{k}")
+    number = kept.inspections_of(1)[0].number
+    kept.correct_time(number, time(7), "Ann")
+    kept.correct_time(kept.inspections_of(3)[0].number, time(7), "Ann")
+    stays = " stays as it was corrected since."
+    out = run("undo", season, "--batch", "1")[1]
+    assert "Batch 1 was undone: 2 inspections from f0. 1 inspection" + stays in out
+    assert (
+        "Batch 2 was undone: 0 inspections from f1. 1 inspection" + stays
+        in run("undo", season, "--batch", "2")[1]
+    )
+    assert sorted(Season(season).history.inspections.plant.tolist()) == [1, 3]
+    again = "fieldmon undo {} --redo {}".format
+    out = run("undo", season, "--batch", "3")[1]
+    both = f"To let it count again: {again(season, 1)}, and then: {again(season, 3)}\n"
+    assert out.endswith(both)
+    code, _, err, _ = run("undo", season, "--redo", "3")
+    assert (code, "To let it" in err, "batch 1" in err) == (2, False, True)
+    assert "Batch 1 counts again: 3 inspections." in run("undo", season, "--redo", "1")[1]
+    assert run("undo", season, "--redo", "3")[0] == 0
+    assert kept.inspections_of(1)[0].second == 7 * 3600
+    # that one alone stands again: its batch counts but for it
+    run("undo", season, "--batch", "1")
+    assert "Batch 1 counts again: 2 inspections." in run("undo", season, "--redo", "1")[1]
+    assert Season(season).verify() == ()
+
+
+def test_a_plant_that_is_gone_is_called_so(run, season):
+    notes = np.array(["gone"], object)
+    Season(season).record(Inspections.of(np.array([1]), np.array([2]), BEGINS, notes=notes), "me")
+    assert "row 1, plant 2: gone" in run("status", season, "--batches")[1]
+    assert f"row 1, plant 2 on {BEGINS} (gone)." in run("undo", season)[1]
+    assert f"row 1, plant 2 on {BEGINS} (gone)." in run("undo", season, "--redo", "1")[1]
+    assert f"row 1, plant 2 on {BEGINS} (gone)." in run("undo", season, "--inspection", "1")[1]
 
 
 def test_a_change_to_an_earlier_value_is_taken_back_and_no_other(run, season):

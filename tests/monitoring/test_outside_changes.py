@@ -69,7 +69,7 @@ def test_a_result_changed_to_gone_is_a_correction_and_is_taken_back(path):
     plant = plant_of(path, 1)
     assert season.correct("Ann") == 1
     assert season.history.gone(0).nonzero()[0].tolist() == [plant]
-    assert season.log()[-1].sentence().endswith("is now result skipped, notes gone: burnt")
+    assert season.log()[-1].sentence().endswith("is now gone: burnt")
     assert season.verify() == ()
     season.undo()
     assert not season.history.gone(0).any()

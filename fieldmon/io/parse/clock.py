@@ -83,14 +83,35 @@ def as_clocks(name: str, cells: list[str]) -> list[str]:
 
 
 def without_midnights(cells: list[str]) -> list[str]:
-    """Return the cells of a column of times as days alone, where all clocks in it say midnight.
+    """Return the cells of a column of times, midnights as days alone where `are_days` says so.
 
-    Programs store a day as its midnight, here or in UTC. Beside other times, midnight is one.
+    Programs store a day as its midnight, here or in UTC.
     """
-    clocks = [clock for cell in set(cells) if (clock := clock_time(cell)) is not None]
-    if not clocks or any(clock.seconds for clock in clocks):
+    clocks = {cell: clock for cell in set(cells) if (clock := clock_time(cell)) is not None}
+    timed = [cell for cell in cells if cell in clocks]
+    n_midnights = sum(clocks[cell].seconds == 0 for cell in timed)
+    if n_midnights < len(timed):  # a clock beside a day's own column is what somebody wrote
+        timed = [cell for cell in timed if not is_clock_alone(cell)]
+        n_midnights = sum(clocks[cell].seconds == 0 for cell in timed)
+    if not are_days(n_midnights, len(timed)):
         return cells
-    return [_day_alone(cell) if clock_time(cell) is not None else cell for cell in cells]
+    days = {cell: _day_alone(cell) for cell in timed if clocks[cell].seconds == 0}
+    return [days.get(cell, cell) for cell in cells]
+
+
+def n_midnights_left_out(cells: list[str], without: list[str]) -> int:
+    """Return how many midnights `without_midnights` left out beside times; 0: there were none."""
+    if not any(clock_time(cell) for cell in set(without)):
+        return 0
+    return sum(was != now for was, now in zip(cells, without, strict=True))
+
+
+def are_days(n_midnights: int, n_times: int) -> bool:
+    """Return whether the midnights among the times of a column are days without a time.
+
+    They are where all times are midnight, or half of them and at least two. Fewer are times.
+    """
+    return n_midnights == n_times or (n_midnights >= 2 and 2 * n_midnights >= n_times)
 
 
 def _day_alone(cell: str) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import worded
-from fieldmon.io.import_report import ImportMessage, doubtful
+from fieldmon.io.import_report import ImportMessage, doubtful, guessed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,6 +40,18 @@ def in_future(day: NDArray[np.datetime64], where: str | None = None) -> list[Imp
         latest=np.nanmax(day),
     )
     return [doubtful(said, where)]
+
+
+def midnights_left_out(n: int, where: str | None = None) -> list[ImportMessage]:
+    """Return the guess that `n` midnights among times are days."""
+    if not n:
+        return []
+    said = worded(
+        "{n} {n:date|dates} with the time 00:00 among others {n:was|were} read as "
+        "{n:a day|days} without a time.",
+        n=n,
+    )
+    return [guessed(said, where)]
 
 
 def broken_times(cells: list[str]) -> list[ImportMessage]:

@@ -26,6 +26,7 @@ from fieldmon.io.parse.clock import (
     as_clocks,
     clock_time,
     local_time,
+    n_midnights_left_out,
     without_midnights,
     zone_of,
 )
@@ -50,7 +51,12 @@ from fieldmon.io.parse.values import (
     numbers,
     presence,
 )
-from fieldmon.io.readers.date_doubts import broken_times, in_future, mixed_dates
+from fieldmon.io.readers.date_doubts import (
+    broken_times,
+    in_future,
+    midnights_left_out,
+    mixed_dates,
+)
 from fieldmon.io.readers.inspection_file.columns import names_in, own_column
 from fieldmon.io.readers.inspection_file.results import results_in_names
 from fieldmon.io.readers.other_counts import about_other_counts
@@ -227,6 +233,7 @@ def _days(table: _Table, lonlat: NDArray[np.float64]) -> _Days:
     parts = tuple(name for role in ("year", "month", "day") if (name := table.named(role)))
     by_hand = table.options.column("date")
     zoned: list[ImportMessage] = []
+    of_midnights: list[ImportMessage] = []
     name = None
     if len(set(parts)) == 3 and by_hand is None:
         read = dates_of_parts(*(numbers(table.layer.column(part)) for part in parts))
@@ -242,10 +249,13 @@ def _days(table: _Table, lonlat: NDArray[np.float64]) -> _Days:
         where, quoted = name, repr(name)
     at_s, unread = _times(table, read.day, name)
     if name is not None:
-        day, zoned = _as_local(read.day, without_midnights(table.cells(name)), lonlat)
+        cells = table.cells(name)
+        days = without_midnights(cells)
+        of_midnights = midnights_left_out(n_midnights_left_out(cells, days), name)
+        day, zoned = _as_local(read.day, days, lonlat)
         read = read._replace(day=day)
     of_dates = seen(worded("Dates were read from {where}.", where=quoted))
-    about = (*_about_dates(read, where), *broken_times(unread))
+    about = (*_about_dates(read, where), *of_midnights, *broken_times(unread))
     return _Days(read.day, at_s, [of_dates, *zoned, *about])
 
 

@@ -310,6 +310,18 @@ def test_what_is_no_count_is_not_said_to_be_read_roughly():
     assert "2 counts are no plain number ('<5', '5+'); read roughly." in doubts
 
 
+def test_midnights_that_are_most_of_the_times_are_days_and_that_is_told_once():
+    times = ["2026-11-18 00:00:00", "2026-11-19 00:00:00", "2026-11-19 09:30:00"]
+    told = said(read(count=[1, 1, 1], date=times), Severity.GUESSED)
+    assert told.count("2 dates with the time 00:00 among others were read as days") == 1
+    # the same place and day: a day alone is no other visit
+    same = table(
+        lon=[35.150123] * 3, lat=[30.360789] * 3, found=[1] * 3, detection_id=[1, 2, 3],
+        date=[times[0], times[0], times[2].replace("19", "18")],
+    )  # fmt: skip
+    assert len(records_of(same, ANY).value) == 1
+
+
 def test_dates_in_both_orders_are_doubted_with_how_many_could_be_either():
     records = read(
         count=[1, 1, 1, 1], date=["18/11/2026", "11/15/2026", "11/06/2026", "2026-11-01"]

@@ -9,16 +9,23 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
 from fieldmon.io.parse.clock import (
+    are_days,
     as_clocks,
     clock_time,
     is_clock_alone,
     local_time,
+    n_midnights_left_out,
     without_midnights,
     zone_of,
 )
 from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.values import dates, is_missing, is_written_as_day, numbers
-from fieldmon.io.readers.date_doubts import broken_times, in_future, mixed_dates
+from fieldmon.io.readers.date_doubts import (
+    broken_times,
+    in_future,
+    midnights_left_out,
+    mixed_dates,
+)
 from fieldmon.io.readers.inspection_file.columns import arrivals_in, own_column, texts_in
 
 if TYPE_CHECKING:
@@ -43,10 +50,12 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     A record that says no day is of the day of its planned arrival, which stands in the route files
     given out, or, with no time either, of the day on which that route begins; else of the day told
     by hand, or of the day of the work where no record says one; else its day is left open. One that
-    says a day that is none (30 February) is left open too: nothing is put in its place. Where all
-    times are midnight, none is stated.
+    says a day that is none (30 February) is left open too: nothing is put in its place. Midnights
+    are days without a time where `are_days` says so.
     """
-    days, clocks = _cells(layer, columns, options)
+    written = _cells(layer, columns, options)
+    days, clocks = map(without_midnights, written)
+    n_days = sum(map(n_midnights_left_out, written, (days, clocks)))
     own = dates(_object(clocks), options.date_order).day
     # what says the day: the cell of the time, where it holds one, else that of the date
     on = [
@@ -67,7 +76,7 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     day = np.where(unsaid, otherwise, read.day).astype("datetime64[D]")
     when = np.full(len(layer), "NaT", dtype="datetime64[s]")
     zone = None if options.zone is None else zone_of(options.zone)
-    n_utc, broken = 0, []
+    n_utc, broken, zoned = 0, [], np.zeros(len(layer), bool)
     for i, cell in enumerate(at):
         clock = read_clocks[cell]
         if not unsaid[i] and np.isnat(read.day[i]):
@@ -77,12 +86,18 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
         elif clock is not None and not np.isnat(day[i]):
             when[i] = local_time(day[i], clock, zone)
             n_utc += clock.offset is not None and zone is None
+            zoned[i] = clock.offset is not None
     day = np.where(np.isnat(when), day, when.astype("datetime64[D]")).astype("datetime64[D]")
-    if (when == day)[~np.isnat(when)].all():
-        when[:] = "NaT"  # midnights of here, written in UTC
+    midnights, n_times = when == day, int((~np.isnat(when)).sum())  # of here, written in UTC
+    if midnights.sum() < n_times:
+        midnights &= zoned
+        n_days += n_here if are_days(n_here := int(midnights.sum()), n_times) else 0
+    if are_days(int(midnights.sum()), n_times):
+        when[midnights] = "NaT"
+    of_days = midnights_left_out(n_days)
     about = _about_times(broken, read.is_ambiguous, n_utc)
     idle = _of_told_day(options.day, day, needed=unsaid & np.isnat(planned))
-    return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *idle, *about])
+    return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *idle, *of_days, *about])
 
 
 def _of_told_day(
@@ -152,7 +167,7 @@ def _cells(
     date = options.column("date") or find("date", layer.columns, away)
     days, clocks = texts_in(layer, date).tolist(), texts_in(layer, time).tolist()
     clocks = clocks if time is None else as_clocks(time, clocks)
-    return without_midnights(days), without_midnights(clocks)
+    return days, clocks
 
 
 def _no_day(cell: str) -> bool:

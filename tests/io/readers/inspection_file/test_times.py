@@ -69,6 +69,28 @@ def test_midnight_among_other_times_is_a_time():
     assert times.when.astype(str).tolist() == ["2026-11-18T00:00:00", "2026-11-18T00:10:00"]
 
 
+@pytest.mark.parametrize(
+    ("zone", "cells", "timed"),
+    [
+        (None, ["2026-11-18 00:00:00", "2026-11-19 00:00:00", "2026-11-18 09:30:00"], "001"),
+        (None, ["2026-11-18T00:00", "2026-11-19T00:00", *["2026-11-18T09:30"] * 2], "0011"),
+        ("Asia/Jerusalem", [*["2026-11-17T22:00:00Z"] * 2, "2026-11-18T07:30Z"], "001"),
+        # fewer of them are times, and so are clocks that somebody wrote beside their day
+        (None, ["2026-11-18 00:00", "2026-11-19 00:00", *["2026-11-18 09:30"] * 3], "11111"),
+        (None, ["2026-11-18 00:00", "2026-11-18 09:30", "", "2026-11-18"], "1100"),
+        (None, ["00:00", "00:00", "00:10"], "111"),
+    ],
+)  # fmt: skip
+def test_midnights_are_days_where_they_are_half_of_the_times_and_that_is_told(zone, cells, timed):
+    days = {"date": ["2026-11-18"] * 3} if cells[0] == "00:00" else {}
+    times = read(InspectionOptions(zone=zone), **days, time=cells)
+    assert (~np.isnat(times.when)).astype(int).astype(str).tolist() == list(timed)
+    assert times.day.astype(str)[0] == "2026-11-18"
+    said = [m.sentence for m in times.messages if m.severity is Severity.GUESSED]
+    told = ["2 dates with the time 00:00 among others were read as days without a time."]
+    assert [one for one in said if "00:00" in one] == (told if timed[0] == "0" else [])
+
+
 def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
     told = InspectionOptions(day=np.datetime64("2026-11-20"))
     times = read(told, arrive=["2026-11-18T08:30:00", None])

@@ -127,9 +127,8 @@ class Inspections:
         beyond = np.flatnonzero((self.detects < 0.0) | (self.detects > 1.0))
         if beyond.size:
             raise ObservationError(
-                "detects, the share of what is there that an inspection finds, must be above 0, "
-                f"and 1 at most, but that of inspection {beyond[0] + 1} of {k} is "
-                f"{self.detects[beyond[0]]:g}."
+                "The chance to see an infested plant (detects) must be above 0, and 1 at most, but "
+                f"that of inspection {beyond[0] + 1} of {k} is {self.detects[beyond[0]]:g}."
             )
 
     def __repr__(self) -> str:

@@ -172,13 +172,13 @@ def files(choices: Choices, advice: Advice) -> None:
     ending = st.selectbox(texts.DECIDE_FILE, _ENDINGS, key="decide file",
                           format_func=lambda one: texts.DECIDE_FILES[one[1:]])  # fmt: skip
     name = f"zones_{choices.day}{ending}"
-    of = partial(advice.treatment_map, choices.plot.field, product)
+    of = advice.treatment_map(choices.plot.field, product)
     st.download_button(
-        texts.DECIDE_DOWNLOAD, lambda: treatment_map_bytes(of(), name), name,
+        texts.DECIDE_DOWNLOAD, lambda: treatment_map_bytes(of, name), name,
         type="secondary" if advice.is_below else "primary",
         key="decide download", on_click="ignore",
     )  # fmt: skip
-    if said := said_of_cells(of(), name, choices.units.of_library):
+    if said := said_of_cells(of, name, choices.units.of_library):
         st.caption(in_words(said))
 
 

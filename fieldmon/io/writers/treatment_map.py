@@ -5,7 +5,8 @@ from __future__ import annotations
 import io
 import re
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -82,6 +83,17 @@ class TreatmentMap:
                     "written."
                 )
             )
+
+    @cached_property
+    def areas(self) -> tuple[list[MultiPolygon], MultiPolygon]:
+        """The zones and the rest of the plot as they are written, see `_clean_areas`."""
+        return _clean_areas(self)
+
+    @cached_property
+    def cells(self) -> ZoneCells:
+        """The same as cells of a grid: all files of a map, and what is said of them, have these."""
+        zones, _ = self.areas
+        return zone_cells(self.boundary, zones, cell_for(self.boundary, zones)[1])
 
     def __repr__(self) -> str:
         return f"<TreatmentMap {self.title}: {self.rate_l_ha:g} l/ha>"
@@ -179,7 +191,7 @@ def _frame(of: TreatmentMap) -> gpd.GeoDataFrame:
     """Return a row a zone and one for the rest of the plot, whose rate is 0."""
     import geopandas as gpd  # noqa: PLC0415 - half a second to import
 
-    zones, rest = _clean_areas(of)
+    zones, rest = of.areas
     areas = [*zones, *([] if rest.is_empty else [rest])]
     n = len(zones)
     more = len(areas) - n
@@ -248,7 +260,7 @@ def _write(frame: gpd.GeoDataFrame, path: Path, driver: str, **more: str) -> Non
 
 def _taskdata(version: int, grid: int | None = None) -> Callable[[TreatmentMap], bytes]:
     def make(of: TreatmentMap) -> bytes:
-        zones = _clean_areas(of)[0] if grid is None else _cells(of, grid)
+        zones = of.areas[0] if grid is None else replace(of.cells, kind=grid)
         return isoxml_taskdata(
             of.title, of.boundary, zones, of.rate_l_ha, of.product, version=version
         )
@@ -256,19 +268,14 @@ def _taskdata(version: int, grid: int | None = None) -> Callable[[TreatmentMap],
     return make
 
 
-def _cells(of: TreatmentMap, kind: int = 1) -> ZoneCells:
-    zones = _clean_areas(of)[0]
-    return zone_cells(of.boundary, zones, cell_for(of.boundary, zones)[1], kind)
-
-
 def said_of_cells(of: TreatmentMap, name: str, units: Units | None = None) -> str:
     """Return what cells spray beside the zones, and miss; "" for a file whose format has none."""
     if not _IN_CELLS.search(checked_ending(name)):
         return ""
     units = units or Units()
-    zones = _clean_areas(of)[0]
+    zones, _ = of.areas
     should, is_m = cell_for(of.boundary, zones)
-    beside, missed = beside_and_missed(zones, zone_cells(of.boundary, zones, is_m))
+    beside, missed = beside_and_missed(zones, of.cells)
     m2 = sum(map(area_m2, zones))
     said = worded(
         "Cells of {cell} spray {beside} beside the zones and miss {missed} of their {whole}.",
@@ -286,7 +293,7 @@ def said_of_cells(of: TreatmentMap, name: str, units: Units | None = None) -> st
 
 
 def _geotiff(of: TreatmentMap) -> bytes:
-    return rates_geotiff(_cells(of), of.rate_l_ha)
+    return rates_geotiff(of.cells, of.rate_l_ha)
 
 
 #: by ending; one whose ending ends another's comes later

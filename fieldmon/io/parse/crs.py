@@ -241,6 +241,11 @@ def _projection(crs: pyproj.CRS) -> dict[str, float] | None:
     return {name: value for name, value in figures.items() if value}
 
 
+def middle_of(xy: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the median of positions ``(n, 2)``."""
+    return float(np.median(xy[:, 0])), float(np.median(xy[:, 1]))
+
+
 def code_of(crs: pyproj.CRS) -> str:
     """Return the code of a system as people write it, or its name where it has none."""
     authority = crs.to_authority(min_confidence=70)
@@ -249,7 +254,7 @@ def code_of(crs: pyproj.CRS) -> str:
 
 def ask_for_crs(xy: NDArray[np.float64], options: ReadOptions, why: str) -> ChoiceNeeded:
     """Return the question for the coordinate system, with candidates by where they lead."""
-    centre = (float(np.median(xy[:, 0])), float(np.median(xy[:, 1])))
+    centre = middle_of(xy)
     offered = candidates(centre, options.country, options.near)
     lines = [
         f"{c.code} ({c.name}) would put it at {c.lon:.4f}, {c.lat:.4f}"

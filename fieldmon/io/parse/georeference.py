@@ -21,6 +21,7 @@ from fieldmon.io.parse.crs import (
     code_of,
     km_between,
     km_outside,
+    middle_of,
     system,
     transformation_from,
     utm_zone,
@@ -101,7 +102,7 @@ def place(xy: NDArray[np.float64], stated: str | None, options: ReadOptions) -> 
     crs = system(wanted)
     _check_range(xy, crs, options)
     xy, more = _without_zone(xy, crs)
-    through = transformation_from(crs, _middle(xy))
+    through = transformation_from(crs, middle_of(xy))
     lonlat = through.lonlat(xy)
     if options.crs is None:
         _check_metres(xy, lonlat, crs, options)
@@ -145,7 +146,7 @@ def few_unplaceable(
     if _in_degrees(crs):
         lands = (np.abs(xy) <= (360, 90)).all(axis=1)
     else:
-        lonlat = transformation_from(crs, _middle(xy)).lonlat(xy)
+        lonlat = transformation_from(crs, middle_of(xy)).lonlat(xy)
         lands = np.isfinite(lonlat).all(axis=1) & (np.abs(lonlat[:, 1]) <= 90)
     wrong: NDArray[np.bool_] = np.asarray(~lands, dtype=bool)
     return wrong if 2 * np.count_nonzero(wrong) < len(xy) else np.zeros(len(xy), dtype=bool)
@@ -155,10 +156,6 @@ def written(xy: NDArray[np.float64]) -> str:
     """Return one position as a file has it."""
     first, second = xy.tolist()
     return f"{first:.12g} / {second:.12g}"
-
-
-def _middle(xy: NDArray[np.float64]) -> tuple[float, float]:
-    return float(np.median(xy[:, 0])), float(np.median(xy[:, 1]))
 
 
 def _in_degrees(crs: pyproj.CRS) -> bool:
@@ -211,7 +208,7 @@ def _check_metres(
     """Ask where metres are as small as degrees, and lie where the system is not used."""
     if not crs.is_projected or (np.abs(xy) > (180, 90)).any():
         return
-    lon, lat = _middle(lonlat)
+    lon, lat = middle_of(lonlat)
     if km_outside(crs, lon, lat) > 0 or abs(lon) + abs(lat) < _OF_NOWHERE_DEG:
         raise ask_for_crs(
             xy,
@@ -254,7 +251,7 @@ def _exchanged(
 def _belongs(lonlat: NDArray[np.float64], crs: pyproj.CRS) -> bool:
     """Return whether positions lie where a projected system is used."""
     return bool(
-        crs.is_projected and np.isfinite(lonlat).all() and km_outside(crs, *_middle(lonlat)) == 0
+        crs.is_projected and np.isfinite(lonlat).all() and km_outside(crs, *middle_of(lonlat)) == 0
     )
 
 
@@ -277,12 +274,12 @@ def _outside(
 ) -> list[ImportMessage]:
     """Return a doubt where a file lies outside of where its coordinate system is used."""
     lonlat, exchanged = either_way
-    lon, lat = _middle(lonlat)
+    lon, lat = middle_of(lonlat)
     away = km_outside(crs, lon, lat)
     if not away > (_FAR_FROM_ZONE_KM if utm_zone(crs) else _FAR_FROM_USE_KM):
         return []
     if _belongs(other := exchanged(), crs):
-        there_lon, there_lat = _middle(other)
+        there_lon, there_lat = middle_of(other)
         said = worded(
             "It lies at {lon:.4f}, {lat:.4f}, which is {away:.0f} km outside of where {name} is "
             "used; with easting and northing exchanged it lies within, at {there_lon:.2f}, "
@@ -305,7 +302,9 @@ def _outside(
         name=crs.name,
     )
     others = [
-        c for c in candidates(_middle(xy), options.country, options.near) if c.code != code_of(crs)
+        c
+        for c in candidates(middle_of(xy), options.country, options.near)
+        if c.code != code_of(crs)
     ]
     if not others:
         return [doubtful(said)]
@@ -332,7 +331,7 @@ def _either_order(
         return []
     if crs.area_of_use is None or (crs.area_of_use.east - crs.area_of_use.west) % 360 == 0:
         return []  # a grid of the whole earth lies everywhere
-    here, there = _middle(lonlat), _middle(other := exchanged())
+    here, there = middle_of(lonlat), middle_of(other := exchanged())
     if not _belongs(other, crs) or at_sea(*there) or km_between(here, there) < _FAR_KM:
         return []
     said = worded(

@@ -13,7 +13,7 @@ from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import guessed
 from fieldmon.io.parse.columns import plain
-from fieldmon.io.parse.crs import km_between, system, transformation_from, utm_zone
+from fieldmon.io.parse.crs import km_between, middle_of, system, transformation_from, utm_zone
 from fieldmon.plot.local_clock import at_sea
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def stated_zone(
     if wanted is not None:
         return None, []
     if len(read[0]) > 1:
-        raise _which_half(name, stated[0], read[0], _middle(xy[known]))
+        raise _which_half(name, stated[0], read[0], middle_of(xy[known]))
     said = worded(
         "Column {name!r} names UTM zone {zone}, which was read as {crs}.",
         name=name,
@@ -104,7 +104,7 @@ def _systems(zone: str, xy: Float, options: ReadOptions) -> tuple[str, ...]:
         code = _lettered(zone, xy[:, 1])
         return () if code is None else (code,)
     both = {f"EPSG:{half}{int(number[1]):02d}": half == 326 for half in (326, 327)}
-    landed = {code: _landing(code, _middle(xy), is_north=north) for code, north in both.items()}
+    landed = {code: _landing(code, middle_of(xy), is_north=north) for code, north in both.items()}
     found = {code: at for code, at in landed.items() if at is not None}
     if options.near is None or not found:
         return tuple(found)
@@ -129,10 +129,6 @@ def _lettered(zone: str, northing_m: Float) -> str | None:
     return f"EPSG:{327 if south else 326}{number:02d}"
 
 
-def _middle(xy: Float) -> tuple[float, float]:
-    return float(np.median(xy[:, 0])), float(np.median(xy[:, 1]))
-
-
 def _landing(code: str, xy: tuple[float, float], *, is_north: bool) -> tuple[float, float] | None:
     """Return where a position lies in a UTM system; None: nowhere where anybody plants."""
     easting, northing = xy[0] % 1e6, xy[1]  # some write the zone before it
@@ -149,7 +145,7 @@ def _in_their_zones(xy: Float, cells: NDArray[np.str_], wanted: str) -> bool:
     crs = system(wanted)
     if utm_zone(crs) is None:
         return True  # it is none of UTM: they name theirs for other uses
-    lon = transformation_from(crs, _middle(xy)).lonlat(xy)[:, 0]
+    lon = transformation_from(crs, middle_of(xy)).lonlat(xy)[:, 0]
     zone = np.array([int(found[0]) if (found := re.match(r"\d+", one)) else 0 for one in cells])
     off_deg = np.abs((lon - (_WIDE_DEG * zone - 183.0) + 180.0) % 360.0 - 180.0)
     return bool((off_deg[zone > 0] <= _HALF_DEG).all())

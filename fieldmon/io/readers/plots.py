@@ -24,7 +24,7 @@ from fieldmon.io.import_report import (
     seen,
 )
 from fieldmon.io.parse.columns import find, plain
-from fieldmon.io.parse.crs import system, transformation_from, utm_zone
+from fieldmon.io.parse.crs import middle_of, system, transformation_from, utm_zone
 from fieldmon.io.parse.geometry import boundaries, boundary, closed_lines, filled, geometry_kinds
 from fieldmon.io.parse.georeference import few_unplaceable, place_geometry, written
 from fieldmon.io.parse.positions import located
@@ -32,10 +32,9 @@ from fieldmon.io.parse.utm_zones import of_another_zone, stated_zone
 from fieldmon.io.readers.known_rows import KnownRows, known_rows
 from fieldmon.io.readers.walked_outline import (
     MOST_CORNERS,
-    around,
-    ends_meet,
     goes_round,
     in_order,
+    nearly_closed,
     not_in_order,
     outline_of,
 )
@@ -136,8 +135,7 @@ def _in_another_zone(
         xy = xy[:, ::-1]
     if zone is None or len(xy) < _TWO:
         return ()
-    middle = (float(np.median(xy[:, 0])), float(np.median(xy[:, 1])))
-    far = of_another_zone(transformation_from(crs, middle).lonlat(xy), zone)
+    far = of_another_zone(transformation_from(crs, middle_of(xy)).lonlat(xy), zone)
     some = [] if far is None else [names[k] for k in chosen.tolist() if far.which[k]]
     if far is None or not some:
         return ()
@@ -369,8 +367,8 @@ def _nearly_closed(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     """Return the layer with lines that end near where they begin as the areas inside them."""
     shapes = _shapes(layer)
     lines = geometry_kinds(shapes).lines
-    met = [k for k in np.flatnonzero(lines).tolist() if ends_meet(shapes[k])]
-    outlines = {k: found for k in met if (found := around(shapes[k])) is not None}
+    some = np.flatnonzero(lines).tolist()
+    outlines = {k: found for k in some if (found := nearly_closed(shapes[k])) is not None}
     if not outlines:
         return layer, []
     as_areas = shapes.copy()

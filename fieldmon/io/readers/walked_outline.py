@@ -86,19 +86,17 @@ def outline_of(xy: Floats) -> WalkedOutline | None:
     return WalkedOutline(area, len(ring), n_loops) if off.max() <= most else None
 
 
-def around(line: shapely.Geometry) -> WalkedOutline | None:
-    """Return the outline that a line goes around, its parts one after the other, or None."""
-    return outline_of(shapely.get_coordinates(line))
+def nearly_closed(line: shapely.Geometry) -> WalkedOutline | None:
+    """Return the outline of a line, its parts one after the other, that ends about where it begins.
 
-
-def ends_meet(line: shapely.Geometry) -> bool:
-    """Return whether a line goes around something and ends about where it begins."""
+    None where it does not, or goes around nothing.
+    """
     xy = shapely.get_coordinates(line)
     length = float(np.hypot(*np.diff(xy, axis=0).T).sum())
     if len(xy) <= _TRIANGLE or np.hypot(*(xy[-1] - xy[0])) > _NEAR * length:
-        return False
-    found = around(line)
-    return found is not None and goes_round(found.area)
+        return None
+    found = outline_of(xy)
+    return found if found is not None and goes_round(found.area) else None
 
 
 def goes_round(area: shapely.Polygon) -> bool:

@@ -1,10 +1,12 @@
 """The app's frame: the map on the whole page, a panel beside it; `fieldmon app` runs it."""
 
+from __future__ import annotations
+
 import importlib
 import sys
 from contextlib import ExitStack
 from pathlib import Path
-from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
@@ -26,6 +28,16 @@ from .startup import first_screen, preload  # noqa: E402
 from .state import browser, button_presses, chosen_language, plot_source, rooms, widget_memory  # noqa: E402
 from .words import language, texts  # noqa: E402
 from .words.language import of_error  # noqa: E402
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import ModuleType
+
+    from streamlit.delta_generator import DeltaGenerator
+
+#: what shows a page, by the page's address
+SHOWN_BY: dict[str, Callable[[], None]] = {}
+_IN_PLACE = "page in its place"
 
 chosen_language.begin()
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
@@ -64,11 +76,26 @@ def load(*, map_sent: bool = False) -> None:
     FILES.enter_context(kept_open())
 
 
+def page(run: Callable[[], None], **settings: Any) -> st.Page:  # noqa: ANN401 - those of a page
+    """Return a page that this script shows, see below."""
+    made = st.Page(run, **settings)
+    SHOWN_BY[made.url_path] = run
+    return made
+
+
+def place_of(key: str, name: str) -> DeltaGenerator:
+    """Return the place of a page, without what another page left in it."""
+    place: Any = st if st.session_state.get(_IN_PLACE) == name else st.empty()
+    made: DeltaGenerator = place.container(key=key)
+    st.session_state[_IN_PLACE] = name
+    return made
+
+
 def page_of(name: str) -> st.Page:
     """Return the page of a room: what was chosen in the panel, or how to begin."""
 
     def run() -> None:
-        with st.container(key="panel"), st.container(key=f"room_{name}"):
+        with place_of("panel", name), st.container(key=f"room_{name}"):
             if name == "plots":
                 links()
                 load()
@@ -76,7 +103,7 @@ def page_of(name: str) -> st.Page:
             else:
                 in_panel(name)
 
-    return st.Page(
+    return page(
         run, title=texts.ROOMS[name], icon=f":material/{rooms.ROOMS[name].icon}:",
         url_path=name, default=name == "today",
     )  # fmt: skip
@@ -126,7 +153,7 @@ def in_panel(name: str) -> None:
 
 def wide(run: str, *, of_plot: bool) -> None:
     """Show a page of research, which has no place on the map."""
-    with st.container(key="wide"):
+    with place_of("wide", run):
         if not of_plot:
             view(run).show()
             return
@@ -160,8 +187,8 @@ turned = st.navigation(
     {
         "": [*ROOM_PAGES.values()],
         texts.RESEARCH: [
-            st.Page(page_study, title=texts.STUDY, icon=":material/science:", url_path="study"),
-            st.Page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
+            page(page_study, title=texts.STUDY, icon=":material/science:", url_path="study"),
+            page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
         ],
     },
     position="top",
@@ -170,7 +197,9 @@ widget_memory.turn(turned.url_path)
 if (room := rooms.turned_to()) is not None:
     st.switch_page(ROOM_PAGES[room])
 with ExitStack() as FILES:
-    turned.run()
+    # as a part of this script: of what stands on a page of its own Streamlit sends nothing with the
+    # turn to another, and drops what was sent of it a moment before
+    SHOWN_BY[turned.url_path]()
     with map_place:
         field_map.draw()
     button_presses.forget()

@@ -22,19 +22,24 @@ _VALUES, _PAGE, _BEGINS = "widget values", "page", "widget begins"
 
 
 def turn(page: str) -> None:
-    """Say which page is about to be shown."""
+    """Say which page is about to be shown; keep what was said on the one before.
+
+    The run that was to hear of it may have been broken off before the box's turn came.
+    """
     st.session_state[_PAGE] = page
+    for key in list(_values()):
+        value(key)
 
 
 @contextmanager
 def part(name: str) -> Iterator[None]:
     """Show a part of the page: a box of several parts begins again, as on another page."""
     page = st.session_state.get(_PAGE, "")
-    turn(f"{page} {name}")
+    st.session_state[_PAGE] = f"{page} {name}"
     try:
         yield
     finally:
-        turn(page)
+        st.session_state[_PAGE] = page
 
 
 def first(key: str, value: object) -> None:

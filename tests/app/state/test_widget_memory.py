@@ -40,6 +40,14 @@ def test_a_widget_begins_with_its_default_and_keeps_what_was_chosen_on_another_p
     assert widget_memory.value("hours") == 3.0
 
 
+def test_what_was_said_is_kept_though_the_run_was_broken_off_before_its_box(box, session):
+    shown(box, "today", default=8.0)
+    session["hours"] = 3.0  # and the run is broken off
+    widget_memory.turn("map")  # where there is no such box
+    del session["hours"]
+    assert shown(box, "today", default=8.0) == 3.0
+
+
 def test_what_a_widget_is_to_begin_with_does_not_override_what_was_chosen(box, session):
     widget_memory.first("hours", None)
     assert shown(box, "today", default=8.0) == 8.0

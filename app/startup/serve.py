@@ -42,9 +42,11 @@ if TYPE_CHECKING:
 #: what Streamlit is told through its own variables; all else is in .streamlit/config.toml
 ADDRESS, PORT = "STREAMLIT_SERVER_ADDRESS", "STREAMLIT_SERVER_PORT"
 PAGE = Path(__file__).resolve().parents[1] / "streamlit_app.py"
-# without it the page asks for the server below its own address first: two errors a page
+# without it the page asks for the server below its own address first: two errors a page; and who
+# goes back is heard of by turning.js before Streamlit
 _WHERE = b"""<head>
-<script>window.__streamlit = {BACKEND_BASE_URL: new URL(".", location.href).href}</script>"""
+<script>window.__streamlit = {BACKEND_BASE_URL: new URL(".", location.href).href};
+addEventListener("popstate", (event) => window.goesBack?.(event))</script>"""
 _FOR_GOOD, _ASK = b"public, immutable, max-age=31536000", b"no-cache"
 _OWN_FOR_GOOD = b"private, immutable, max-age=86400"
 # Streamlit's page writes scripts and styles into itself, and charts are made of compiled text

@@ -35,6 +35,15 @@ EVERYTHING = os.environ.get("FIELDMON_AXE") == "all"
 #: the room that the suite sees in the dark: the one with a map, a route and figures
 DARK = "today"
 NAVIGATION = "ul[data-testid=stSidebarNavItems]"
+# two messages to the server leave together
+HELD = """() => {
+  const { send } = WebSocket.prototype, held = [];
+  WebSocket.prototype.send = function (said) {
+    if (held.push([this, said]) < 2) return;
+    WebSocket.prototype.send = send;
+    for (const [line, one] of held) send.call(line, one);
+  };
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -219,14 +228,38 @@ def test_a_fraction_typed_with_a_comma_in_spanish_is_not_ten_times_as_much(today
     open_room(page, texts.ROOMS["ahead"])
     box = page.get_by_role("spinbutton", name=texts.INFESTED)
     for language, typed in (("es", "2.5"), ("en", "25")):
-        page.evaluate("(spoken) => { document.documentElement.lang = spoken; }", language)
+        # a map that is just shown says the page's language, too
+        page.evaluate(
+            """(spoken) => Object.defineProperty(document.documentElement, "lang",
+          { get: () => spoken, set() {}, configurable: true })""",
+            language,
+        )
         box.press("Control+a")
         page.keyboard.type("2,5")
         assert box.input_value() == typed
-    # turned at once, while the box still holds what was typed last
-    open_room(page, texts.ROOMS["today"])
+    page.evaluate("() => { delete document.documentElement.lang; }")
+
+
+@pytest.mark.parametrize("way", ["click", "keys", "back"])
+def test_a_number_typed_just_before_a_page_is_turned_is_there_again(today, way):
+    page = today
     open_room(page, texts.ROOMS["ahead"])
-    until(lambda: box.input_value() == "25", 60)
+    box = page.get_by_role("spinbutton", name=texts.INFESTED)
+    typed = str(int(float(box.input_value())) + 7)
+    box.press("Control+a")
+    page.keyboard.type(typed)
+    # what is typed reaches the server with the turn, not a moment before
+    page.evaluate(HELD)
+    if way == "back":
+        page.go_back()
+    else:
+        link = page.get_by_role("link", name=texts.ROOMS["today"]).first
+        link.click() if way == "click" else link.press("Enter")
+    here = page.locator("a[aria-current=page]").filter(has_text=texts.ROOMS["today"])
+    here.first.wait_for(state="attached")
+    rest(page)
+    open_room(page, texts.ROOMS["ahead"])
+    assert box.input_value() == typed
 
 
 def test_strategies_are_compared_and_a_plot_is_brought_by_keys_alone(today):

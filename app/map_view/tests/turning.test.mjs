@@ -5,12 +5,16 @@ import { test } from "node:test";
 
 import { waitForBoxes } from "../src/turning.js";
 
+const heard = {}, again = [];
+globalThis.document = { addEventListener: (kind, hear) => { heard[kind] = hear; } };
+globalThis.window = { dispatchEvent: (event) => { again.push(event.kind); window.goesBack(event); } };
+globalThis.location = { href: "/" };
+globalThis.history = { replaceState: (_, __, href) => { location.href = href; } };
+globalThis.PopStateEvent = class { constructor(kind) { this.kind = kind; } };
+
 test("a link waits for a box that was left for it, and only for that", (context) => {
   context.mock.timers.enable({ apis: ["setTimeout"] });
   let now = 1000;
-  context.mock.method(performance, "now", () => now);
-  const heard = {};
-  globalThis.document = { addEventListener: (kind, hear) => { heard[kind] = hear; } };
   waitForBoxes();
   const turned = [], link = { click: () => press() || turned.push(now) };
   const press = (more = {}) => {
@@ -39,4 +43,32 @@ test("a link waits for a box that was left for it, and only for that", (context)
   heard.pointerdown({ target: { closest: () => null } });
   context.mock.timers.tick(500);
   assert.equal(turned.length, 2, "and it is turned once");
+});
+
+test("a browser that was busy since a box was left has not sent it yet", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  let stopped = false, now = 1000;
+  context.mock.method(performance, "now", () => now);
+  const press = () => heard.click({ target: { closest: () => ({ click() {} }) }, preventDefault() {}, stopImmediatePropagation() { stopped = true; } });
+  heard.focusout({ target: { tagName: "INPUT" } });
+  now += 1000; // and no timer's turn came
+  press();
+  assert.equal(stopped, true);
+});
+
+test("who goes back leaves the box first, and goes back then", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const left = [], back = () => {
+    let stopped = false;
+    window.goesBack({ stopImmediatePropagation() { stopped = true; } });
+    return stopped;
+  };
+  document.activeElement = { tagName: "BUTTON" };
+  assert.equal(back(), false);
+  document.activeElement = { tagName: "INPUT", blur() { left.push("box"); document.activeElement = { tagName: "BODY" }; } };
+  assert.equal(back(), true);
+  setTimeout(() => { left.push("sent"); location.href = "/ahead"; }); // by the page, as it is left
+  context.mock.timers.tick(0);
+  context.mock.timers.tick(0);
+  assert.deepEqual([left, again, location.href], [["box", "sent"], ["popstate"], "/"]);
 });

@@ -58,6 +58,7 @@ def test_every_page_says_where_its_server_is_so_that_it_need_not_try():
     assert len(set(pages)) == 1
     assert pages[0].count(b"window.__streamlit = {BACKEND_BASE_URL") == 1
     assert pages[0].index(b"window.__streamlit") < pages[0].index(b'type="module"')
+    assert pages[0].index(b"goesBack") < pages[0].index(b'type="module"')
 
 
 def test_the_page_says_which_script_draws_maps_so_that_it_comes_early():

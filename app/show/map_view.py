@@ -42,22 +42,27 @@ KEY = "map"
 # as many as the browser offers
 _MOST_PICKED = 20_000
 # The script is fetched once; the component is called with every answer of the server. The last
-# call alone decides: Streamlit may end one that was overtaken after the next has begun. A fetch
-# that fails is tried again, at another address, as a browser may remember the failure.
+# call alone decides: Streamlit may end one that was overtaken after the next has begun, and may
+# begin it after the next: Chromium brings a script that two ask for to either of them first. It is
+# ended at once then, and what it overtook is shown. A fetch that fails is tried again, at another
+# address, as a browser may remember the failure.
 LOADER = """const load = (address, ms) => import(address).catch(async () => {
   await new Promise((done) => setTimeout(done, ms));
   return load(address.replace(/[?].*|$/, `?after=${ms}`), Math.min(2 * ms, 8000));
 });
+const show = async (place, component) => {
+  const { mount } = await load(new URL("%s", location.href).href, 200);
+  if (place.last === component) place.end = mount(component);
+};
 export default (component) => {
-  const place = component.parentElement;
+  const place = component.parentElement, before = place.last;
   place.last = component;
-  load(new URL("%s", location.href).href, 200).then(({ mount }) => {
-    if (place.last === component) place.end = mount(component);
-  });
+  show(place, component);
   return () => {
     if (place.last !== component) return;
-    place.last = null;
-    place.end?.();
+    place.last = place.isConnected ? before : null;
+    if (place.last) show(place, place.last);
+    else place.end?.();
   };
 }"""
 _component = st.components.v2.component("fieldmon_map", html="", js=LOADER % ADDRESS)

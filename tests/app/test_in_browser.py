@@ -248,15 +248,18 @@ def test_a_map_comes_though_the_network_fails_and_the_server_has_let_go_of_a_par
     assert not failures, "it was asked for, and did fail"
 
 
-#: as Streamlit does when new data come while the first call is not through: it is ended last
-_OVERTAKEN = """async () => {
-  const { default: call } = await import("/loader.js"), place = {};
-  const first = call({ parentElement: place, data: 1 }), last = call({ parentElement: place, data: 2 });
-  first();
+#: as Streamlit does when new data come while the first call is not through: it is ended last, and
+#: may begin last
+_OVERTAKEN = """async (order) => {
+  const { default: call } = await import("/loader.js"), ends = {};
+  const host = document.body.appendChild(document.createElement("div")), place = host.attachShadow({ mode: "open" });
+  for (const data of order) ends[data] = call({ parentElement: place, data });
+  ends[1]();
   await import("/map.js");
   await new Promise((done) => setTimeout(done));
   const mounted = window.mounted;
-  last();
+  host.remove();
+  ends[2]();
   return [mounted, window.mounted];
 }"""  # noqa: E501
 _MAP = """export const mount = ({ data }) => {
@@ -265,7 +268,10 @@ _MAP = """export const mount = ({ data }) => {
 }"""
 
 
-def test_the_map_is_shown_by_the_last_call_though_an_earlier_one_ends_after_it(page):
+@pytest.mark.parametrize("order", [[1, 2], [2, 1]])
+def test_the_map_is_shown_by_the_last_call_though_an_earlier_one_ends_or_begins_after_it(
+    page, order
+):
     files = {"/": ("text/html", ""), "/map.js": ("text/javascript", _MAP),
              "/loader.js": ("text/javascript", LOADER % "/map.js")}  # fmt: skip
 
@@ -275,7 +281,7 @@ def test_the_map_is_shown_by_the_last_call_though_an_earlier_one_ends_after_it(p
 
     page.route("http://fieldmon.test/**", answer)
     page.goto("http://fieldmon.test/")
-    assert page.evaluate(_OVERTAKEN) == [2, None]
+    assert page.evaluate(_OVERTAKEN, order) == [2, None]
 
 
 @pytest.fixture

@@ -18,6 +18,7 @@ import shapely
 from PIL import Image
 from playwright.sync_api import TimeoutError as PlaywrightTimeout
 from shapely import box
+from streamlit.proto.ForwardMsg_pb2 import ForwardMsg
 
 from app.show.map_view import LOADER
 from app.show.maps import colours
@@ -246,6 +247,42 @@ def test_a_map_comes_though_the_network_fails_and_the_server_has_let_go_of_a_par
     page.goto(address)
     rest(page)
     assert not failures, "it was asked for, and did fail"
+
+
+def test_a_page_is_shown_again_over_a_line_so_slow_that_another_was_turned_to_meanwhile(
+    page, address
+):
+    on_the_way, done, line = [], [], []
+
+    def say(message):
+        if is_slow:
+            on_the_way.append(message)
+        else:
+            line[0].send(message)
+        if ForwardMsg.FromString(message).WhichOneof("type") == "script_finished":
+            done.append(message)
+
+    def connected(socket):
+        line[:] = [socket]
+        socket.connect_to_server().on_message(say)
+
+    def turn(name, runs):
+        page.get_by_role("link", name=texts.ROOMS[name]).first.click()
+        until(lambda: page.wait_for_timeout(10) or len(done) == runs)
+
+    is_slow = False
+    page.route_web_socket("**/_stcore/stream", connected)
+    shown(page, address)
+    turn("plots", len(done) + 1)
+    rest(page)
+    is_slow = True
+    for name in ("season", "today"):
+        turn(name, len(done) + 1)
+    for message in on_the_way:
+        line[0].send(message)
+    broken = page.get_by_role("dialog")
+    page.get_by_text("Keep this season").or_(broken).first.wait_for()
+    assert broken.count() == 0
 
 
 #: as Streamlit does when new data come while the first call is not through: it is ended last, and

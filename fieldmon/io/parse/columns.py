@@ -32,7 +32,9 @@ _NAMES = {
     "date": "date eventdate day datum fecha data datetime timestamp time dateobserved obsdate "
     "observationdate samplingdate sampledate surveydate visitdate startdate collectiondate "
     "dateofobservation recorddate fechamuestreo fechademuestreo datederelevé datereleve "
-    "erfassungsdatum aufnahmedatum תאריך תאריךבדיקה תאריךניטור תאריךדיגום creationdate when",
+    "erfassungsdatum aufnahmedatum תאריך תאריךבדיקה תאריךניטור תאריךדיגום inspectiondate inspdate "
+    "dateinspected inspectedon scoutingdate scoutdate monitoringdate datesampled sampledon "
+    "dateofsampling dateofinspection when",
     "year": "year jahr año ano annee année anno שנה yr yyyy",
     "month": "month monat mes mês mois mese חודש mon mm",
     "day": "day tag dia día jour giorno יום dd dayofmonth",
@@ -40,6 +42,7 @@ _NAMES = {
     "quantity mites nmites mitecount numberofmites pests npests pestcount insects adults females "
     "anzahl zahl menge stück stueck conteo cantidad recuento "
     "effectif comptage conteggio contagem quantidade מספר כמות ספירה כמותאקריות מספראקריות "
+    "catch catches trapcatch captures captura capturas fang fänge "
     "aantal mitesperleaf tetranychus mitesleaf anzahlmilben milbenanzahl milbenzahl milben "
     "anzahlschädlinge anzahltiere numerodeacaros numeroacaros nacaros acaros conteodeacaros "
     "nombredacariens nombreacariens nbacariens acariens numerodiacari acari aantalmijten mijten "
@@ -70,6 +73,9 @@ _NAMES = {
     "nome bezeichnung schlagname flurname lage naam parcela lote parcelle schlag שם שםחלקה שםשטח "
     "שםהחלקה חלקה uniqueid idparcel parcelid fieldid plotid",
 }
+# what may stand behind the word for a row or a plant: ROW_NUM, Plant index
+_NUMBERING = re.compile(r"(?<=\w)(?:number|num|nr|no|nbr|index|idx|id)$")
+_NUMBERED = ("row", "plant")
 _CUT = 10
 _SYNONYMS = {role: tuple(names.split()) for role, names in _NAMES.items()}
 
@@ -90,6 +96,10 @@ def find(role: str, names: Iterable[str], taken: frozenset[str] = frozenset()) -
     exact = next((known[name] for name in _PLAIN[role] if name in known), None)
     if exact is not None:
         return exact
+    if role in _NUMBERED:
+        bare = {_NUMBERING.sub("", name): own for name, own in known.items()}
+        if numbered := next((bare[name] for name in _PLAIN[role] if name in bare), None):
+            return numbered
     # a shapefile cuts names to ten characters: decimalLon, individual, coordinate
     cut = {name for name, own in known.items() if len(own) == _CUT}
     return next((known[name[:_CUT]] for name in _PLAIN[role] if name[:_CUT] in cut), None)
@@ -97,9 +107,27 @@ def find(role: str, names: Iterable[str], taken: frozenset[str] = frozenset()) -
 
 def recognised(names: Iterable[str]) -> frozenset[str]:
     """Return the names that could play some role."""
-    return frozenset(name for name in names if plain(name) in _ALL)
+    return frozenset(name for name in names if plain(name) in _ALL or _is_numbered(name))
 
 
+def _is_numbered(name: str) -> bool:
+    """Return whether a column numbers rows or plants by its name."""
+    own = plain(name)
+    bare = _NUMBERING.sub("", own)
+    return bare != own and any(bare in _PLAIN[role] for role in _NUMBERED)
+
+
+_SPLIT = re.compile(r"[\W_]+|(?<=[a-z])(?=[A-Z])")
+
+
+def is_of_rows(name: str) -> bool:
+    """Return whether one of the words of a column's name is a word for rows: Vine Row Label."""
+    words = {plain(word) for word in _SPLIT.split(name) if word}
+    return not words.isdisjoint(_ROW_WORDS) and not words & _OF_SPACINGS
+
+
+_OF_SPACINGS = frozenset({"spacing", "space", "width", "dist", "distance", "bearing", "m", "count"})
+_ROW_WORDS = frozenset(_PLAIN["row"]) - {"line", "linha", "rang"} | {"rows"}
 _ALL = frozenset(name for names in _PLAIN.values() for name in names)
 
 
@@ -160,6 +188,17 @@ _TIMES = frozenset(_PLAIN["date"])
 def is_time(name: str) -> bool:
     """Return whether a column holds by its name a time or a day."""
     return plain(name) in _TIMES or plain(name).endswith(("time", "date", "stamp"))
+
+
+_WRITTEN = re.compile(
+    r"creat|edit|updat|modif|uploaded|export|submi|synced|published|received|reported|entered"
+    r"|lastchange|processed|due|planned|next"
+)
+
+
+def is_of_writing(name: str) -> bool:
+    """Return whether a column says by its name when a record was written, sent or is due."""
+    return bool(_WRITTEN.search(plain(name)))
 
 
 _HEIGHTS = frozenset({"z", "ele", "elevation", "alt", "altitude", "hdop", "vdop", "pdop"})

@@ -5,7 +5,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.io.options import ROLES
-from fieldmon.io.parse.columns import _SYNONYMS, find, plain, recognised
+from fieldmon.io.parse.columns import (
+    _SYNONYMS,
+    find,
+    is_of_rows,
+    is_of_writing,
+    plain,
+    recognised,
+)
 
 
 @pytest.mark.parametrize("role", ROLES)
@@ -60,3 +67,18 @@ def test_those_that_could_play_some_role_are_recognised():
 )
 def test_finds_and_counts_are_called_by_their_names_in_many_languages(role, name):
     assert find(role, ["crop", name]) == name
+
+
+@pytest.mark.parametrize("name", ["created_date", "CreationDate", "last_edited_date", "uploaded"])
+def test_when_a_record_was_written_is_no_day_of_the_work(name):
+    assert is_of_writing(name)
+    assert not is_of_writing("Inspection date")
+
+
+def test_rows_are_numbered_under_many_names():
+    for name in ("ROW_NUM", "Row No.", "rownumber", "vine row id", "Reihe Nr"):
+        assert find("row", [name]) == name
+        assert recognised([name]) == {name}
+    assert is_of_rows("Row label")
+    assert not is_of_rows("row spacing")
+    assert not is_of_rows("arrow")

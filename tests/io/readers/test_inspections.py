@@ -404,15 +404,16 @@ def test_leaves_of_a_plant_are_one_inspection_found_if_any_leaf_is():
     assert any("both found and clean" in m.sentence for m in twice.messages)
 
 
-def test_several_species_at_one_plant_on_a_day_are_a_question():
-    text = "plant,date,species,count\n7,2026-11-18,mite,3\n7,2026-11-18,{},0\n8,2026-11-18,{},0\n"
-    with pytest.raises(ChoiceNeeded, match="'species' tells of several at 1 plant on") as asked:
-        read(text.format("thrips", "mite"))
+@pytest.mark.parametrize("elsewhere", [7, 8])
+def test_several_species_are_a_question(elsewhere):
+    text = "plant,date,species,count\n7,2026-11-18,mite,3\n{},2026-11-18,thrips,1\n"
+    with pytest.raises(ChoiceNeeded, match="but column 'species' names 2: mite, thrips") as asked:
+        read(text.format(elsewhere))
     assert asked.value.choices == ("species=mite", "species=thrips")
     options = InspectionOptions().choose(asked.value.option, asked.value.choices[0])
-    assert read(text.format("thrips", "mite"), options).value.result.tolist() == [FOUND, CLEAN]
-    elsewhere = read(text.format("none", "thrips"))
-    assert any("2 species are mixed" in m.sentence for m in elsewhere.messages)
+    assert read(text.format(elsewhere), options).value.plant.tolist() == [7]
+    as_one = read(text.format(elsewhere), InspectionOptions().choose("columns", "species="))
+    assert as_one.value.plant.tolist() == [7, elsewhere]
 
 
 @pytest.mark.parametrize(

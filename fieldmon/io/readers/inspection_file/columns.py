@@ -11,7 +11,8 @@ from fieldmon.compute.ranges import DETECTS
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, ObservationError, SettingError
 from fieldmon.io.formats.layer import Layer, text
-from fieldmon.io.parse.columns import find, is_confidence, is_id, plain, recognised
+from fieldmon.io.parse.columns import find, is_confidence, is_id, is_of_rows, plain, recognised
+from fieldmon.io.parse.result_words import ResultWords
 from fieldmon.io.parse.values import told_number
 
 if TYPE_CHECKING:
@@ -39,7 +40,6 @@ _NAMES = {
     "feuille numérofeuille foglia folha עלה מספרעלה ورقة",
 }
 _PLAIN = {role: tuple(plain(name) for name in names.split()) for role, names in _NAMES.items()}
-_IDS = frozenset(_PLAIN["id"])
 #: what a waypoint given out says of its plan, in front of what its scout noted: see `writers.gpx`
 PLANNED = re.compile(
     r"^plant \d+; (?:arrive (?P<arrive>[^;]*)|after [^;]* s); stay [^;]* s; "
@@ -78,13 +78,15 @@ def is_own(role: str, name: str) -> bool:
 def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     """Return the columns that matter; raise `ChoiceNeeded` where nothing says what was found."""
     names = list(layer.columns)
-    line = options.column("row") or find("row", names)
+    line = _line(layer, options)
     number = own_column("number", layer, {line})
     plant = options.column("plant") or own_column("id", layer)
     plant = plant or find("plant", names, frozenset({line} if line else ()))
     number = number or (own_column("ordinal", layer) if plant is None else None)
     count = options.column("count") or find("count", names, frozenset({plant or "", number or ""}))
     result = options.column("present") or _result_name(layer, count)
+    if result is None and count is None:
+        result = by_its_words(layer, options)
     marks = None
     if result is None and count is None:
         marks = names_in(layer)
@@ -100,7 +102,7 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
                 "columns",
                 tuple(f"{role}={n}" for role in ("present", "count") for n in _open(layer)),
             )
-    if plant is not None and line is not None and number is None and plain(plant) not in _IDS:
+    if plant is not None and line is not None and number is None:
         plant, number = None, plant
     arrive = next((n for n in names if plain(n) == "arrive"), None)
     if arrive is None and any(plain(n) == plain("arrive_s") for n in names):
@@ -108,11 +110,56 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
         arrive = next((n for n in names if plain(n) == "timestamp"), None)
     block = options.column("block") or find("block", names, frozenset({line or "", plant or ""}))
     used = (result, count, marks, plant, line, number, block)
-    species = options.column("species") or find("species", names, frozenset(n for n in used if n))
+    species = options.column("species")  # empty: none says it
+    if species is None:
+        species = find("species", names, frozenset(n for n in used if n))
     face, leaf = own_column("face", layer), own_column("leaf", layer, used)
     return InspectionColumns(
-        result, count, marks, plant, line, number, face, arrive, block, leaf, species
+        result, count, marks, plant, line, number, face, arrive, block, leaf, species or None
     )
+
+
+def _line(layer: Layer, options: InspectionOptions) -> str | None:
+    """Return the column of rows; ask where an unknown one seems to be of rows, as none else is."""
+    if (told := options.column("row")) is not None:
+        return told or None  # empty: none is of rows
+    named = find("row", layer.columns)
+    known = recognised(layer.columns)
+    alike = [name for name in layer.columns if name not in known and is_of_rows(name)]
+    alike = [name for name in alike if any(texts_in(layer, name))]
+    by_number = options.column("plant") or find("plant", layer.columns)
+    by_number = by_number or own_column("id", layer) or own_column("number", layer)
+    if named is not None or not alike or by_number is None:
+        return named
+    raise ChoiceNeeded(
+        worded(
+            "A plant must be known by its row and its number in it, but whether {names} "
+            "{n:says|say} the row is not clear. Name the column of rows, or none (columns=row=) "
+            "where plants are numbered through the whole plot.",
+            names=", ".join(map(repr, alike)),
+            n=len(alike),
+        ),
+        "columns",
+        (*(f"row={name}" for name in alike), "row="),
+    )
+
+
+def by_its_words(layer: Layer, options: InspectionOptions) -> str | None:
+    """Return the one column of unknown name whose cells all say what is found; None: no such."""
+    known = recognised(layer.columns)
+    alike = []
+    for name in layer.columns:
+        if name in known or any(is_own(role, name) for role in _PLAIN):
+            continue
+        cells = [cell for cell in texts_in(layer, name).tolist() if cell]
+        words = ResultWords(cells, options)
+        if cells and all(words[cell] is not None and not _is_figure(cell) for cell in set(cells)):
+            alike.append(name)
+    return alike[0] if len(alike) == 1 else None
+
+
+def _is_figure(cell: str) -> bool:
+    return cell.replace(".", "", 1).isdecimal()
 
 
 def plot_column(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> str | None:

@@ -21,6 +21,7 @@ from fieldmon.io.options import source_name
 from fieldmon.io.parse.columns import is_position, plain
 from fieldmon.io.parse.result_words import gone_note
 from fieldmon.io.readers.inspection_file.columns import (
+    by_its_words,
     columns_of,
     detects_in,
     is_own,
@@ -33,7 +34,7 @@ from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
 from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in, unknown_faces
 from fieldmon.io.readers.inspection_file.results import results_in
 from fieldmon.io.readers.inspection_file.times import times_in
-from fieldmon.io.readers.species import mixed_species, species_in
+from fieldmon.io.readers.species import species_in
 from fieldmon.io.readers.visits import telling
 from fieldmon.io.readers.wide_tables import by_day
 
@@ -124,8 +125,9 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
         plot_column=np.full(len(layer), plot or ""),
     )
     kept = whole.take(said)
-    mixed = _mixed(kept, columns.species, texts_in(layer, columns.species)[said])
-    every = (*layer.messages, *messages, *results.messages, *more, *times.messages, *mixed)
+    _of_one_pest(columns.species, texts_in(layer, columns.species)[said])
+    messages += _by_words(layer, columns, options)
+    every = (*layer.messages, *messages, *results.messages, *more, *times.messages)
     return Imported(kept, every)
 
 
@@ -180,31 +182,27 @@ def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) 
     return np.array(cells or [""] * len(layer), dtype=np.str_)
 
 
-def _mixed(
-    rows: InspectionRows, name: str | None, species: NDArray[np.str_]
+def _by_words(
+    layer: Layer, columns: InspectionColumns, options: InspectionOptions
 ) -> list[ImportMessage]:
-    """Return a doubt where species are mixed; ask for one where several are of one plant and day.
-
-    What is found of one and not of another is no contradiction, but a season is of one.
-    """
-    if name is None or not (mixed := mixed_species(name, species.tolist())):
+    """Return a guess where the column of results was known by its words, not by its name."""
+    told = options.column("present"), options.column("count")
+    if any(told) or columns.result is None or columns.result != by_its_words(layer, options):
         return []
-    columns = (rows.plant, rows.line, rows.number, rows.face, *np.nan_to_num(rows.lonlat).T)
-    columns += tuple(c for c in (rows.row_called, rows.plant_called) if c is not None)
-    at = zip(*(column.tolist() for column in (*columns, rows.day.astype(np.int64))), strict=True)
-    told: dict[tuple[object, ...], list[str]] = {}
-    for key, kind in zip(at, species.tolist(), strict=True):
-        told.setdefault(key, []).append(kind)
-    n = sum(len(species_in(kinds)) > 1 for kinds in told.values())
-    if not n:
-        return mixed
-    kinds = species_in(species.tolist())
+    return [guessed(worded("What was found is taken from column {name!r}.", name=columns.result))]
+
+
+def _of_one_pest(name: str | None, species: NDArray[np.str_]) -> None:
+    """Ask for one pest where a column names several: a season is of one."""
+    kinds = species_in(species.tolist()) if name else []
+    if len(kinds) < 2:
+        return
     raise ChoiceNeeded(
         worded(
-            "Inspections must be of one pest, but column {name!r} tells of several at {n} "
-            "{n:plant|plants} on one day: {shown}. Choose one.",
+            "Inspections must be of one pest, but column {name!r} names {n}: {shown}. Choose one, "
+            "or let no column name pests (columns=species=): then all count as one.",
             name=name,
-            n=n,
+            n=len(kinds),
             shown=first_few(kinds, 5),
         ),
         "where",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.wording import worded
+from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
 from fieldmon.io.parse.clock import (
     are_days,
@@ -18,7 +19,7 @@ from fieldmon.io.parse.clock import (
     without_midnights,
     zone_of,
 )
-from fieldmon.io.parse.columns import find, plain
+from fieldmon.io.parse.columns import find, is_of_writing, is_time, plain
 from fieldmon.io.parse.values import dates, is_missing, is_written_as_day, numbers
 from fieldmon.io.readers.date_doubts import (
     broken_times,
@@ -26,7 +27,7 @@ from fieldmon.io.readers.date_doubts import (
     midnights_left_out,
     mixed_dates,
 )
-from fieldmon.io.readers.inspection_file.columns import arrivals_in, own_column, texts_in
+from fieldmon.io.readers.inspection_file.columns import arrivals_in, is_own, own_column, texts_in
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,7 +54,8 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     says a day that is none (30 February) is left open too: nothing is put in its place. Midnights
     are days without a time where `are_days` says so.
     """
-    written = _cells(layer, columns, options)
+    date, time = _columns(layer, columns, options)
+    written = _cells(layer, date, time)
     days, clocks = map(without_midnights, written)
     n_days = sum(map(n_midnights_left_out, written, (days, clocks)))
     own = dates(_object(clocks), options.date_order).day
@@ -97,6 +99,7 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     of_days = midnights_left_out(n_days)
     about = _about_times(broken, read.is_ambiguous, n_utc)
     idle = _of_told_day(options.day, day, needed=unsaid & np.isnat(planned))
+    idle += _of_writing(date, options)
     return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *idle, *of_days, *about])
 
 
@@ -157,14 +160,70 @@ def _object(cells: list[str]) -> NDArray[np.object_]:
     return values
 
 
-def _cells(
+def _columns(
     layer: Layer, columns: InspectionColumns, options: InspectionOptions
-) -> tuple[list[str], list[str]]:
-    """Return the texts of each record's date and of its time, empty where there is no column."""
+) -> tuple[str | None, str | None]:
+    """Return the columns of days and of times; ask which one where two say different days.
+
+    When a record was written or sent is no day of the work where another column says a day.
+    """
     taken = {columns.arrive, columns.result, columns.marks}
     time = own_column("time", layer, taken)
     away = frozenset(name for name in (*taken, time) if name)
-    date = options.column("date") or find("date", layer.columns, away)
+    if told := options.column("date"):
+        return told, time
+    named = find("date", layer.columns, away)
+    alike = [
+        name
+        for name in layer.columns
+        if name not in away and (name == named or (is_time(name) and not is_own("time", name)))
+    ]
+    of_work = [name for name in alike if not is_of_writing(name)]
+    of_work = [name for name in of_work if name == named or (~np.isnat(_days(layer, name))).any()]
+    if len(of_work) > 1 and (n := _n_apart([_days(layer, name) for name in of_work])):
+        raise ChoiceNeeded(
+            worded(
+                "A result must be of one day, but columns {names} say different days of {n} of "
+                "{total} {total:record|records}. Choose the one of the inspection.",
+                names=", ".join(map(repr, of_work)),
+                n=n,
+                total=len(layer),
+            ),
+            "columns",
+            tuple(f"date={name}" for name in of_work),
+        )
+    date = named if named in of_work else next(iter(of_work), None)
+    return date or (None if time else next(iter(alike), None)), time
+
+
+def _days(layer: Layer, name: str) -> NDArray[np.datetime64]:
+    return dates(_object(texts_in(layer, name).tolist())).day
+
+
+def _n_apart(days: list[NDArray[np.datetime64]]) -> int:
+    """Return how many records are of different days ``(n,)`` in two of several columns."""
+    first = days[0]
+    apart = np.zeros(len(first), bool)
+    for other in days[1:]:
+        apart |= ~np.isnat(first) & ~np.isnat(other) & (first != other)
+        first = np.where(np.isnat(first), other, first)
+    return int(apart.sum())
+
+
+def _of_writing(date: str | None, options: InspectionOptions) -> list[ImportMessage]:
+    """Return a guess where days are only known from when records were written or sent."""
+    if date is None or options.column("date") or not is_of_writing(date):
+        return []
+    said = worded(
+        "Days are those of column {date!r}, when a record was written or sent: the only one with "
+        "days.",
+        date=date,
+    )
+    return [guessed(said)]
+
+
+def _cells(layer: Layer, date: str | None, time: str | None) -> tuple[list[str], list[str]]:
+    """Return the texts of each record's date and of its time, empty where there is no column."""
     days, clocks = texts_in(layer, date).tolist(), texts_in(layer, time).tolist()
     clocks = clocks if time is None else as_clocks(time, clocks)
     return days, clocks

@@ -30,7 +30,10 @@ def found(*names, **chosen):
         (("stop", "row", "number", "plant", "found"), "row", "number", "plant"),
         (("row", "nr", "found"), "row", "nr", None),
         (("No", "row", "plant", "found"), "row", "plant", None),
-        (("row", "plant_id", "found"), "row", None, "plant_id"),
+        (("row", "plant_id", "found"), "row", "plant_id", None),
+        (("ROW_NUM", "PLANT_NO", "found"), "ROW_NUM", "PLANT_NO", None),
+        (("ROWNUM", "PLANTNUM", "found"), "ROWNUM", "PLANTNUM", None),
+        (("plant_id", "found"), None, None, "plant_id"),
     ],
 )
 def test_plants_are_named_by_number_or_by_row_and_number_in_it(names, line, number, plant):
@@ -94,3 +97,31 @@ def test_who_inspected_is_as_the_file_says_or_as_told():
     assert who_in(layer, columns_of(layer, options), options).tolist() == ["Noa", "Ann"]
     unsaid = InspectionOptions()
     assert who_in(layer, columns_of(layer, unsaid), unsaid).tolist() == ["Noa", ""]
+
+
+@pytest.mark.parametrize("name", ["Row label", "VineyardRow", "שורה בכרם", "row_code"])
+def test_a_column_that_may_be_of_rows_beside_plants_alone_is_a_question(name):
+    with pytest.raises(ChoiceNeeded, match="the row is not clear") as asked:
+        found(name, "plant", "found")
+    assert asked.value.choices == (f"row={name}", "row=")
+    assert found(name, "plant", "found", row=name).number == "plant"
+    whole_plot = found(name, "plant", "found", row="")
+    assert (whole_plot.line, whole_plot.plant) == (None, "plant")
+    assert found("row spacing", "plant", "found").line is None
+
+
+@pytest.mark.parametrize(
+    ("cells", "result"),
+    [
+        (["infested", "healthy"], "class"),
+        (["infested", ""], "class"),
+        (["1", "0"], None),
+        (["infested", "Arachnida"], None),
+    ],
+)
+def test_one_column_of_words_for_results_is_taken_whatever_its_name(cells, result):
+    columns = table(**{"name": ["img 1", "img 2"], "class": cells})
+    assert columns_of(columns, InspectionOptions()).result == result
+    two = table(**{"plant": ["1", "2"], "class": cells, "as before": cells})
+    with pytest.raises(ChoiceNeeded, match="says what was found"):
+        columns_of(two, InspectionOptions())

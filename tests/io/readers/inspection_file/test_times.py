@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import Severity
 from fieldmon.io.readers.inspection_file.columns import columns_of
 from fieldmon.io.readers.inspection_file.times import times_in
@@ -162,3 +163,37 @@ def test_days_that_could_be_months_are_told():
     assert [m.remedy.option for m in times.messages] == ["date_order"]
     read_as_told = read(InspectionOptions(date_order="mdy"), date=["03/04/2026"])
     assert read_as_told.day[0] == np.datetime64("2026-03-04")
+
+
+@pytest.mark.parametrize(
+    ("columns", "day"),
+    [
+        ({"INSP_DATE": "2026-09-28", "CreationDate": "2026-10-05 11:00"}, "2026-09-28"),
+        ({"CreationDate": "2026-10-05", "Inspection_Date": "2026-09-28"}, "2026-09-28"),
+        ({"Date received": "2026-10-05", "Date sampled": "2026-09-28"}, "2026-09-28"),
+        ({"Scouting date (2026)": "2026-09-28", "EditDate": "2026-10-05"}, "2026-09-28"),
+        ({"date": "2026-09-28", "survey date": ""}, "2026-09-28"),
+        ({"date": "2026-09-28", "survey date": "28.9.2026"}, "2026-09-28"),
+    ],
+)
+def test_the_day_of_the_work_goes_before_the_day_on_which_a_record_was_written(columns, day):
+    times = read(**{name: [cell] for name, cell in columns.items()})
+    assert (str(times.day[0]), times.messages) == (day, [])
+
+
+def test_a_day_known_only_from_when_a_record_was_written_is_a_guess():
+    times = read(CreationDate=["2026-10-05 11:00"], EditDate=["2026-10-06 11:00"])
+    assert str(times.when[0]) == "2026-10-05T11:00:00"
+    (said,) = times.messages
+    assert (said.severity, "column 'CreationDate'" in said.sentence) == (Severity.GUESSED, True)
+    told = InspectionOptions().naming(date="EditDate")
+    assert read(told, CreationDate=["2026-10-05"], EditDate=["2026-10-06"]).messages == []
+
+
+def test_two_columns_that_say_different_days_are_a_question():
+    cells = {"Date": ["2026-10-12", "2026-10-12"], "Sampling date": ["2026-09-28", "2026-10-12"]}
+    with pytest.raises(ChoiceNeeded, match="different days of 1 of 2 records") as asked:
+        read(**cells)
+    assert set(asked.value.choices) == {"date=Date", "date=Sampling date"}
+    chosen = InspectionOptions().choose(asked.value.option, "date=Sampling date")
+    assert str(read(chosen, **cells).day[0]) == "2026-09-28"

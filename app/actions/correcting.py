@@ -15,6 +15,8 @@ from ..words import texts
 from . import acting
 
 if TYPE_CHECKING:
+    from datetime import date, time
+
     from fieldmon.monitoring.numbered_inspections import NumberedInspection
 
     from ..state.choices import Choices
@@ -48,10 +50,10 @@ def show(choices: Choices, plant: int | None) -> None:
                             boxes=boxes)  # fmt: skip
 
 
-def _told(choices: Choices, plant: int) -> tuple[object, ...]:
-    """Return what is to be corrected, and to what."""
+def _told(choices: Choices, plant: int) -> tuple[str, int, date | None, time | None]:
+    """Return of which season and inspection what is to be corrected to."""
     said = FreshBoxes(_WHEN, choices).said
-    which = st.session_state[_which(choices, plant)]
+    which: int = st.session_state[_which(choices, plant)]
     return choices.key, which, said("when_day"), said("when_time")
 
 

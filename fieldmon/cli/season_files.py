@@ -147,8 +147,8 @@ def refuse_unrecorded(season: Season | None, files: Iterable[Path]) -> None:
             "results. Choose another name or folder, or move away what was filled in."
         )
     for file in filled_in:
-        results, left_out = _results_in(file, season)
-        if n := season.unrecorded(results):
+        said, left_out = _results_in(file, season)
+        if n := season.unrecorded(said):
             pasted = shlex.join([str(season.path), str(file)])
             results = "1 result" if n == 1 else f"{n} results"
             raise SettingError(

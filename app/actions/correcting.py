@@ -9,12 +9,14 @@ import streamlit as st
 from fieldmon.errors import SettingError
 
 from ..show import plant_history
-from ..state import notices
+from ..state import notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..words import texts
 from . import acting
 
 if TYPE_CHECKING:
+    from datetime import date, time
+
     from fieldmon.monitoring.numbered_inspections import NumberedInspection
 
     from ..state.choices import Choices
@@ -43,6 +45,16 @@ def show(choices: Choices, plant: int | None) -> None:
         boxes.show(at.time_input, texts.CORRECT_TIME, box="when_time")
         acting.at_press(texts.CORRECT_BUTTON, _correct, choices, plant, key="correct_when",
                         boxes=boxes)  # fmt: skip
+        if unconfirmed.refused(_told(choices, plant)):
+            acting.at_press(texts.CORRECT_BOTH, _correct_both, choices, plant, key="correct_both",
+                            boxes=boxes)  # fmt: skip
+
+
+def _told(choices: Choices, plant: int) -> tuple[str, int, date | None, time | None]:
+    """Return of which season and inspection what is to be corrected to."""
+    said = FreshBoxes(_WHEN, choices).said
+    which: int = st.session_state[_which(choices, plant)]
+    return choices.key, which, said("when_day"), said("when_time")
 
 
 def _which(choices: Choices, plant: int) -> str:
@@ -59,12 +71,21 @@ def _said(choices: Choices, one: NumberedInspection) -> str:
 
 @notices.reporting
 def _correct(choices: Choices, plant: int) -> str:
-    boxes = FreshBoxes(_WHEN, choices)
-    day, at = map(boxes.said, ("when_day", "when_time"))
+    return _taken(choices, plant, confirmed=False)
+
+
+@notices.reporting
+def _correct_both(choices: Choices, plant: int) -> str:
+    """Correct it though it contradicts what else is recorded."""
+    return _taken(choices, plant, confirmed=True)
+
+
+def _taken(choices: Choices, plant: int, *, confirmed: bool) -> str:
+    _, number, day, at = told = _told(choices, plant)
     if day is None and at is None:
         raise SettingError(texts.CORRECT_UNSAID)
-    number = st.session_state[_which(choices, plant)]
-    # what contradicts is shown with the day
-    choices.open_season.correct_time(number, at, choices.who or "", day, confirmed=True)
-    boxes.empty()
+    season, who = choices.open_season, choices.who or ""
+    with unconfirmed.of_corrections(told):
+        season.correct_time(number, at, who, day, confirmed=confirmed)
+    FreshBoxes(_WHEN, choices).empty()
     return texts.CORRECTED.format(n=1)

@@ -243,6 +243,9 @@ def _show_file(choices: Choices) -> None:
                           help=texts.CORRECTED_BY_HELP)  # fmt: skip
         acting.at_press(texts.RECORD_BUTTON, _record_file, choices, key="record_file",
                         boxes=boxes, type="primary")  # fmt: skip
+        if unconfirmed.refused(_corrections_in(choices, brought.name, brought.getvalue())):
+            acting.at_press(texts.CORRECT_BOTH, _record_file_both, choices, key="correct_both",
+                            boxes=boxes)  # fmt: skip
         asked, said = st.session_state.get(_SAID_OF_FILE, ("", ()))
         if asked and (file := _file(brought.name, brought.getvalue())).asked == asked:
             bringing_files.ask_of_findings(file, said)
@@ -252,8 +255,23 @@ def _file(name: str, data: bytes) -> brought_files.File:
     return brought_files.file_of(brought_files.FINDINGS, (Upload(name, data),))
 
 
+def _corrections_in(choices: Choices, name: str, data: bytes) -> tuple[object, ...]:
+    """Return of which corrections a file brought to a season is."""
+    return choices.key, _file(name, data).asked
+
+
 @notices.reporting
 def _record_file(choices: Choices) -> str:
+    return _file_recorded(choices, confirmed=False)
+
+
+@notices.reporting
+def _record_file_both(choices: Choices) -> str:
+    """Record a file with corrections that contradict what else is recorded."""
+    return _file_recorded(choices, confirmed=True)
+
+
+def _file_recorded(choices: Choices, *, confirmed: bool) -> str:
     """Record findings from a file: a route filled in, a table, positions, a copy of the season."""
     from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415 - late
 
@@ -269,7 +287,8 @@ def _record_file(choices: Choices) -> str:
     with working_folder() as folder:
         options = brought_files.answered(file, options)
         read = read_brought(season, Upload(name, data), options, Path(folder))
-        corrected = _corrected(choices, read, boxes)
+        with unconfirmed.of_corrections(_corrections_in(choices, name, data)):
+            corrected = _corrected(choices, read, boxes, confirmed=confirmed)
     st.session_state[_SAID_OF_FILE] = file.asked, read.messages
     messages = [message.sentence for message in read.messages]
     _warn_of_lost(read.messages)
@@ -300,14 +319,16 @@ def _listed(sentences: Iterable[str]) -> str:
     return "".join(f"\n- {in_words(sentence)}" for sentence in sentences)
 
 
-def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes) -> str:
+def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes, *, confirmed: bool) -> str:
     """Take what another program corrected or deleted in a copy; return how many were new."""
     if read.copy is None or not read.corrections:
         return ""
     who = str(boxes.said("corrected_by") or "").strip()
     if not who:
         raise SettingError(texts.CORRECTED_UNSAID)
-    return texts.CORRECTED.format(n=choices.open_season.take_corrections(read.copy, read.name, who))
+    season = choices.open_season
+    n = season.take_corrections(read.copy, read.name, who, confirmed=confirmed)
+    return texts.CORRECTED.format(n=n)
 
 
 def recorded(

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.errors import ContradictionError
+
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.io.import_report import ImportMessage
 
-_KEY = "unconfirmed results"
+_KEY, _CORRECTIONS = "unconfirmed results", "unconfirmed corrections"
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,3 +50,19 @@ def of(season: str, day: str) -> Unconfirmed | None:
 def drop() -> None:
     """Let nothing wait any more."""
     st.session_state.pop(_KEY, None)
+
+
+def refused(corrections: tuple[object, ...]) -> bool:
+    """Return whether these corrections, and none since, were refused as they contradict results."""
+    return bool(st.session_state.get(_CORRECTIONS) == corrections)
+
+
+@contextmanager
+def of_corrections(corrections: tuple[object, ...]) -> Iterator[None]:
+    """Keep in mind, while they are taken, which corrections are refused as they contradict."""
+    st.session_state.pop(_CORRECTIONS, None)
+    try:
+        yield
+    except ContradictionError:
+        st.session_state[_CORRECTIONS] = corrections
+        raise

@@ -884,6 +884,7 @@ CORRECT_WHICH, CORRECT_DAY, CORRECT_TIME = "Inspection", "Right day", "Right tim
 CORRECT_UNSAID = (
     "A day or a time must be said that is right, but both boxes are empty. Fill in one or both."
 )
+CORRECT_BOTH = "Correct it all the same, both hold"
 CORRECTED = Plural("{n} correction taken", "{n} corrections taken")
 RECORD_FILE_IN = (
     "The route file with its found column filled in, any table or GPS file with plants, rows "

@@ -41,6 +41,8 @@ def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> Non
     refuse_what_was_chosen(context, _OF_A_PLAN)
     season = Season(file)
     tell_drafts(season.drafts)
+    for sentence in season.settings.unlike_its_pest():
+        typer.echo(f"doubtful: {sentence}", err=True)
     on = day_on(season.plot.field, day(options.on))
     enters = season.entering_treated() if options.enter_treated else nullcontext()
     with season.as_now(on) if options.as_now else nullcontext(), enters:

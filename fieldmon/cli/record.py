@@ -16,7 +16,7 @@ from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
 from fieldmon.cli.times import day
 from fieldmon.compute.working_folder import working_folder
-from fieldmon.errors import ChoiceNeeded, ContradictionError
+from fieldmon.errors import ChoiceNeeded, ContradictionError, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -116,6 +116,7 @@ def _read(
     season: Season, files: list[Path], options: InspectionOptions, folder: Path
 ) -> list[BroughtFile]:
     """Return what is in files, all of them before any is recorded: nothing is left half-done."""
+    from fieldmon.io.readers.other_plots import left_out
     from fieldmon.monitoring.brought_findings import read_brought
 
     read = []
@@ -126,6 +127,14 @@ def _read(
     for one in read:
         for message in one.messages:
             typer.echo(f"{one.name}: {message.line(FLAGS['findings'])}", err=True)
+    for one in read:
+        why = left_out(one.messages)
+        if why and not len(one.findings) and not one.corrections:
+            raise SettingError(
+                f"{one.name} must hold records of {season.plot.field.name}, but none could be "
+                f"taken, and nothing was recorded. {why} Leave the file away, or say that they "
+                f"are of this plot: {FLAGS['findings']} columns=plot="
+            )
     return read
 
 

@@ -147,14 +147,19 @@ def refuse_unrecorded(season: Season | None, files: Iterable[Path]) -> None:
             "results. Choose another name or folder, or move away what was filled in."
         )
     for file in filled_in:
-        n = season.unrecorded(_results_in(file, season))
-        if n:
+        said, left_out = _results_in(file, season)
+        if n := season.unrecorded(said):
             pasted = shlex.join([str(season.path), str(file)])
             results = "1 result" if n == 1 else f"{n} results"
             raise SettingError(
                 f"{file} would be written over, but it was filled in and holds {results} that "
                 f"nobody recorded. Record them first: fieldmon record {pasted}; or choose another "
                 "name, or move it away."
+            )
+        if left_out:
+            raise SettingError(
+                f"{file} would be written over, but it was filled in for another plot. {left_out} "
+                "Choose another name, or move it away."
             )
 
 
@@ -186,20 +191,23 @@ def _is_filled_in(file: Path) -> bool:
         return False
 
 
-def _results_in(file: Path, season: Season) -> Inspections:
-    """Return what a file says of this season's plants without a doubt; nothing of other files.
+def _results_in(file: Path, season: Season) -> tuple[Inspections, str]:
+    """Return what a file says of this season's plants, as it is recorded; nothing of other files.
 
+    Beside it why records of other plots are none of this season; empty where there are none.
     Raise `SettingError` if it was torn: what it says nobody could record.
     """
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.io.readers.inspections import dated, read_inspections
+    from fieldmon.io.readers.other_plots import left_out
+    from fieldmon.monitoring.brought_findings import read_findings
 
     try:
-        return dated(read_inspections(file, season.plot.grid)).value
+        read = read_findings(season, file)
     except FileProblem as torn:
         raise SettingError(
             f"{file} would be written over, but it was filled in and cannot be read. {torn} Then "
             "record it; or choose another name, or move it away."
         ) from torn
     except FieldmonError:
-        return Inspections.none()
+        return Inspections.none(), ""
+    return read.value, left_out(read.messages)

@@ -58,6 +58,8 @@ def status(
 def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     typer.echo("\n".join(lines(kept, now)))
     typer.echo(f"  forecast               {kept.forecast(now.on).sentence()}")
+    if assumed := assumed_in_words(kept.plot.assumed):
+        typer.echo(f"  assumed of its rows    {assumed}")
     for line in (*_contradicting(kept, now.on), *of_treatments(kept, now)):
         typer.echo(line)
     if rows:

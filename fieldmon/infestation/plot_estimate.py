@@ -41,6 +41,8 @@ _GOLDEN, _SILVER = 0.6180339887498949, 0.4142135623730950
 _TAILS, _MOST_OFF = 3.0, 6.0
 # a plant found and treated has no more than that; and of so many expected among such, none is
 _AS_GOOD_AS_CLEAN, _HARDLY_ANY = 2.0 * LEAST_CHANCE, 0.001
+# a chance of none that is too small for a number is no certainty: where one is infested it is 0
+_HARDLY = float(np.finfo(np.float64).tiny)
 
 
 @dataclass(frozen=True)
@@ -213,7 +215,7 @@ def _estimate(
 ) -> PlotEstimate:
     clean, sure = clean_sure
     # there is one with no higher chance than so many are expected (Markov)
-    clean = max(clean, 1.0 - expected)
+    clean = max(clean, 1.0 - expected, _HARDLY)
     below, above = _ends(sure)
     low, high = map(float, np.quantile(numbers, [below, above]))
     # doubted, to the nearest: outwards, an interval of a few plants would hold far more than asked

@@ -38,7 +38,7 @@ from fieldmon.io.unused_row_settings import unused_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plants_outside import distance_m
-from fieldmon.plot.plot import Plot, planting_of, plot_around
+from fieldmon.plot.plot import Plot, planting_of, plot_around, plot_of
 from fieldmon.plot.row_report import told_by_hand
 
 if TYPE_CHECKING:
@@ -223,9 +223,9 @@ def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
     """Return a field with its plants: those measured, or laid as said, stated or usual."""
     choices = choices or PlantingChoices()
     if not choices.in_rows:
-        return Laid(Plot.of(replace(field, in_rows=False)))
+        return Laid(plot_of(replace(field, in_rows=False)))
     given = choices.given()
-    plot = Plot.of(field, planting_of(field, **given))
+    plot = plot_of(field, planting_of(field, **given))
     return Laid(replace(_told(plot, given), assumed=assumed_of(field, choices)))
 
 

@@ -18,7 +18,7 @@ from fieldmon.monitoring.transactions import MAGIC, connect, copy_season, is_sea
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from fieldmon.io.import_report import ImportMessage
+    from fieldmon.io.import_report import Imported, ImportMessage
     from fieldmon.io.options import Source
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.phone_file import PhoneFile
@@ -101,7 +101,6 @@ def read_brought(
     """
     # what reads files is half a second to import
     from fieldmon.io.read import read_phone_file  # noqa: PLC0415
-    from fieldmon.io.readers.inspections import dated, read_inspections  # noqa: PLC0415
     from fieldmon.io.readers.phone_file import is_phone_file  # noqa: PLC0415
 
     name = source_name(source)
@@ -116,9 +115,21 @@ def read_brought(
     if copy is not None:
         (folder / "new").mkdir()
         source = counting_copy(copy, folder / "new", corrected)
-    called = (season.plot.field.name, season.path.stem)
-    read = dated(read_inspections(source, season.plot.grid, options, called))
+    read = read_findings(season, source, options)
     return BroughtFile(name, read.value, (*read.messages, *treated), None, copy, len(corrected))
+
+
+def read_findings(
+    season: Season, source: Source, options: InspectionOptions | None = None
+) -> Imported[Inspections]:
+    """Return what a file says of a season's plants; what names another plot is left out.
+
+    Dates, and what is raised, as in `read_brought` and `read_inspections`.
+    """
+    from fieldmon.io.readers.inspections import dated, read_inspections  # noqa: PLC0415
+
+    called = (season.plot.field.name, season.path.stem)
+    return dated(read_inspections(source, season.plot.grid, options, called))
 
 
 def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:

@@ -315,10 +315,13 @@ class Season(SeasonPlans, SeasonFrames):
     def verify(self, *, whole: bool = True) -> tuple[str, ...]:
         """Hold the file to its digests; return a sentence for each thing that differs.
 
+        And for what its pest says otherwise, though nobody chose it.
+
         If `whole`, every morning since the first is worked out again and each row is held to the
         log; else only the last morning that the file keeps, and those after it.
         """
         doubt = () if self.store.doubt is None else (self.store.doubt,)
+        doubt = (*doubt, *self.settings.unlike_its_pest())
         held = self.held_to_log() if whole else ()
         return (*doubt, *held, *self.other_maps(whole=whole))
 

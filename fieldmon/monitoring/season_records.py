@@ -149,7 +149,7 @@ class SeasonRecords(OpenSeason):
         who
             The person, where the inspections name none.
         confirmed
-            Whether results count that contradict what is recorded, or one another.
+            Whether results and corrections count that contradict what is recorded, or one another.
         into
             Batch to add all of them to; None: new ones.
         copies
@@ -170,7 +170,9 @@ class SeasonRecords(OpenSeason):
         done = []
         with self._writing() as db:
             taken = [
-                0 if copy is None else self._take_corrections(db, copy, source, who)
+                0
+                if copy is None
+                else self._take_corrections(db, copy, (source, who), confirmed=confirmed)
                 for copy, (_, source) in zip(copies or [None] * len(brought), brought, strict=True)
             ]
             before = self._read(db)
@@ -386,8 +388,7 @@ class SeasonRecords(OpenSeason):
             settings, plot = settings_of(db), (self.plot.grid, self.label)
             who = written_in(db, who)
             taken = outside_changes.correct(db, plot, settings, who)
-            if taken and not confirmed:
-                corrections.contradicting(db).refuse(self.plot.grid, corrected=True)
+            self._may_be_taken(db, taken, confirmed=confirmed)
             self._corrected(db, taken, who)
         return len(taken)
 
@@ -443,8 +444,7 @@ class SeasonRecords(OpenSeason):
                 )
             who, when = written_in(db, who), (on, None if at is None else seconds(at))
             said = corrections.retime(db, inspection, when, plot, settings, who)
-            if not confirmed:
-                corrections.contradicting(db).refuse(self.plot.grid, corrected=True)
+            self._may_be_taken(db, said, confirmed=confirmed)
             self._corrected(db, said, who, here=True)
         return said[0]
 
@@ -576,17 +576,20 @@ class SeasonRecords(OpenSeason):
         with Store(copy).reading() as theirs:
             return copy_corrections.waiting(theirs)
 
-    def take_corrections(self, copy: Path, name: str, who: str) -> int:
+    def take_corrections(self, copy: Path, name: str, who: str, *, confirmed: bool = False) -> int:
         """Take what was corrected or deleted in a `copy` of this season; return how many were new.
 
         They are a batch of their own, of `who`; `name` is what the copy is called.
-        Raise `FileProblem` if a changed row makes no sense or is not here, and `SettingError` if
-        nobody is named.
+        Raise `FileProblem` if a changed row makes no sense or is not here, `SettingError` if
+        nobody is named, and `ContradictionError` as `correct` does.
         """
         with self._writing() as db:
-            return self._take_corrections(db, copy, name, who)
+            return self._take_corrections(db, copy, (name, who), confirmed=confirmed)
 
-    def _take_corrections(self, db: sqlite3.Connection, copy: Path, name: str, who: str) -> int:
+    def _take_corrections(
+        self, db: sqlite3.Connection, copy: Path, said: tuple[str, str], *, confirmed: bool
+    ) -> int:
+        name, who = said
         if not who.strip():
             raise SettingError(
                 worded(
@@ -598,8 +601,16 @@ class SeasonRecords(OpenSeason):
         with Store(copy).reading() as theirs:
             plot, who = (self.plot.grid, self.label), written_in(db, who)
             taken = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who))
+        self._may_be_taken(db, taken, confirmed=confirmed)
         self._corrected(db, taken, who)
         return len(taken)
+
+    def _may_be_taken(
+        self, db: sqlite3.Connection, taken: tuple[str, ...], *, confirmed: bool
+    ) -> None:
+        """Raise `ContradictionError` if the last corrections contradict what else is recorded."""
+        if taken and not confirmed:
+            corrections.contradicting(db).refuse(self.plot.grid, corrected=True)
 
     def _corrected(
         self, db: sqlite3.Connection, taken: tuple[str, ...], who: str, *, here: bool = False

@@ -14,7 +14,7 @@ import numpy as np
 from fieldmon.compute.arguments import day_of, must_be_in, must_be_known
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import SEED, AllowedRange
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import chance_figure, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.earlier_season import earlier_from
 from fieldmon.infestation.pest_in_weather import PestInWeather
@@ -171,6 +171,44 @@ class MonitoringSettings:
 
         team = tuple(replace(one, robot=seeing(one.robot)) for one in self.team)
         return replace(made, robot=seeing(self.robot), team=team)
+
+    def unlike_its_pest(self) -> tuple[str, ...]:
+        """Return what the pest says otherwise, though nobody chose it, in a sentence; or none.
+
+        So are seasons that Python began before a season took its pest's values.
+        """
+        if self.pest is None:
+            return ()
+        told, usual = [], self.prior.half_life_days == PriorSettings().half_life_days
+        for robot in dict.fromkeys(one.robot for one in self.team) or [self.robot]:
+            its = self.pest.seen_by(robot).detects
+            if not tells_detection(robot) and its != robot.detects:
+                told.append(
+                    worded(
+                        "an inspection finds {its} of what is there, not {ours}",
+                        its=chance_figure(its),
+                        ours=chance_figure(robot.detects),
+                    )
+                )
+        half = self.of_its_pest().prior.half_life_days
+        if usual and half != self.prior.half_life_days:
+            told.append(
+                worded(
+                    "records count half after {its:g} days, not {ours:g}",
+                    its=half,
+                    ours=self.prior.half_life_days,
+                )
+            )
+        if not told:
+            return ()
+        return (
+            worded(
+                "This season was begun before seasons took what their pest says: {told}. To go by "
+                "the pest, take it out and name it again, with its weather: fieldmon change "
+                "--pest.",
+                told=joined("; ", dict.fromkeys(told)),
+            ),
+        )
 
     def decides(self) -> Sampler:
         """Return the sampler; raise `SettingError` if there is none of that name."""

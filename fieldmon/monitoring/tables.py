@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 _FRAME, _IN_ROWS = "frame", "in_rows"
 _SPACINGS = ("row_spacing_m", "plant_spacing_m")
 _ASSUMED = ("row_spacing_m", "plant_spacing_m")
+_BEARING, _NOTHING = "row_bearing_deg", np.empty(0)
 _STATED = ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
 # what all arrays of a season may unpack to: those of a million plants take a third of it
 _MOST_BYTES = 1 << 30
@@ -128,6 +129,8 @@ def _write_field(db: sqlite3.Connection, plot: Plot) -> None:
     taken = {one.setting: one.value for one in plot.assumed}
     assumed = [taken.get(name, np.nan) for name in _ASSUMED]
     write_array(db, "assumed", np.array(assumed, np.float64))
+    if _BEARING in taken:
+        write_array(db, "assumed_bearing", np.array([taken[_BEARING]], np.float64))
     for table in (schema.PLOTS, schema.PLACES):
         touch(db, table.name, field.boundary.bounds)
 
@@ -217,6 +220,7 @@ def read_plot(db: sqlite3.Connection) -> Plot:
     # a file of an earlier version does not say
     taken = arrays.get("assumed", np.full(len(_ASSUMED), np.nan)).tolist()
     assumed = [Assumed(*one) for one in zip(_ASSUMED, taken, strict=True) if not np.isnan(one[1])]
+    assumed += [Assumed(_BEARING, one) for one in arrays.get("assumed_bearing", _NOTHING).tolist()]
     aisles = Aisles(grid, gate_xy_m, grid.frame.geometry_m(field.no_go))  # found when asked for
     return Plot(field, aisles, tuple(assumed))
 

@@ -190,16 +190,23 @@ def whole_generation(pest: Pest) -> Stage | None:
 
     Where thresholds differ and nobody published the whole, it is counted above their mean, each
     stage weighing as much as it needs, to a tenth of a degree or to as many digits as theirs have.
+    Below the mean of their upper thresholds, likewise: so no stage counts for all (our choice). A
+    stage without one never stops, and then a generation has none.
     """
     if pest.generation is not None or not pest.stages:
         return pest.generation
     needs = np.array([stage.degree_days for stage in pest.stages])
-    thresholds = np.array([stage.threshold_c for stage in pest.stages])
-    mean = float(np.average(thresholds, weights=needs))
-    digits = max(len(f"{one:g}".partition(".")[2]) for one in thresholds)
-    threshold = round(mean, max(digits, 1))
-    return replace(pest.stages[0], name="generation", threshold_c=threshold,
+    lower_c = _mean_c([stage.threshold_c for stage in pest.stages], needs)
+    uppers = [stage.upper_c for stage in pest.stages if stage.upper_c is not None]
+    upper_c = _mean_c(uppers, needs) if len(uppers) == len(needs) else None
+    return replace(pest.stages[0], name="generation", threshold_c=lower_c, upper_c=upper_c,
                    degree_days=float(needs.sum()))  # fmt: skip
+
+
+def _mean_c(thresholds_c: list[float], needs: NDArray[np.float64]) -> float:
+    """Return the mean threshold of stages, each weighing as much as it needs."""
+    digits = max(len(f"{one:g}".partition(".")[2]) for one in thresholds_c)
+    return round(float(np.average(thresholds_c, weights=needs)), max(digits, 1))
 
 
 def _thresholds(pest: Pest, stage: Stage) -> Thresholds:

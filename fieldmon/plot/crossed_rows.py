@@ -91,7 +91,7 @@ def crossed_rows(xy_m: Float, row: NDArray[np.integer]) -> CrossedRows:
         return CrossedRows()
     step = np.diff(xy_m, axis=0)
     step_m = np.where(np.diff(own) == 0, np.hypot(*step.T), np.inf)
-    usual_m = _usual_m(step_m, own, start)
+    usual_m = _of_whole_rows(_usual_m(step_m, own, start), own)
     ahead = _ahead(xy_m, own)
     slots = _slots(xy_m, own, start, (step_m, usual_m))
     off_m, plant = cKDTree(xy_m).query(slots.xy_m)
@@ -123,6 +123,16 @@ def _usual_m(step_m: Float, row: Int, start: Int) -> Float:
     middle = np.minimum(first + np.maximum(n_steps - 1, 0) // 2, len(order) - 1)
     usual_m: Float = np.where(n_steps > 0, step_m[order[middle]], np.inf)
     return usual_m
+
+
+def _of_whole_rows(usual_m: Float, row: Int) -> Float:
+    """Return the usual step of each row as if it missed no plant: of every other one twice that."""
+    common_m = np.median(usual_m[row])
+    times = np.divide(usual_m, common_m, out=np.ones(len(usual_m)), where=np.isfinite(usual_m))
+    missing = np.round(times) - 1
+    lacks = (np.abs(times - missing - 1) < _OFF) & (missing > 0) & (missing <= _MOST_MISSING)
+    whole_m: Float = np.where(lacks, usual_m / (missing + 1), usual_m)
+    return whole_m
 
 
 def _ahead(xy_m: Float, row: Int) -> Float:

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import shapely
 
+from fieldmon.compute.wording import worded
 from fieldmon.plot.row_detection import main_bearing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.plot.field import Field
+    from fieldmon.plot.planting import Planting
 
     Float = NDArray[np.float64]
 
@@ -50,6 +52,41 @@ class OutlineBearing(NamedTuple):
 def bearing_of(field: Field) -> OutlineBearing:
     """Return the direction in which most of the edge of a plot's largest part runs."""
     return area_bearing(field.frame().geometry_m(field.boundary))
+
+
+def guessed_bearing(field: Field, planting: Planting) -> OutlineBearing | None:
+    """Return along which of its sides a plot's rows are laid; None where that is known."""
+    drawn = field.plants is not None or field.blocks or not field.row_lines.is_empty
+    if drawn or not field.in_rows or planting.row_bearing_deg is not None:
+        return None
+    return bearing_of(field)
+
+
+def doubt_of_bearing(field: Field, planting: Planting) -> str:
+    """Return the doubt that rows may run otherwise, by more than a row spacing at their ends.
+
+    Empty where there is none.
+    """
+    bearing = guessed_bearing(field, planting)
+    if bearing is None or not bearing.off_deg:
+        return ""
+    rows = {"along": bearing.bearing_deg, "off": max(bearing.off_deg, 1.0)}
+    if bearing.or_deg is not None:
+        return worded(
+            "Rows are laid along {along:.0f} degrees, the longest side of a ragged outline, but "
+            "that along {other:.0f} degrees is about as long: say the rows' bearing.",
+            other=bearing.or_deg,
+            **rows,
+        )
+    frame = field.frame(bearing.bearing_deg)
+    long_m = np.ptp(frame.xy_m(shapely.get_coordinates(field.boundary))[:, 0])
+    if long_m * np.tan(np.deg2rad(min(bearing.off_deg, 80.0))) <= planting.row_spacing_m:
+        return ""
+    return worded(
+        "Rows are laid along {along:.0f} degrees, the longest side of a ragged outline. It may be "
+        "off by {off:.0f} {off:degree|degrees}: say the rows' bearing.",
+        **rows,
+    )
 
 
 def area_bearing(area: shapely.Geometry) -> OutlineBearing:

@@ -20,6 +20,7 @@ from fieldmon.plot.line_layout import lay_along
 from fieldmon.plot.measured_rows import said_rows
 from fieldmon.plot.missing_plants import without
 from fieldmon.plot.names_on_ground import doubts_of_order, said_of_strays
+from fieldmon.plot.outline_bearing import doubt_of_bearing
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, numbered
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plants_outside import PlantsOutside
@@ -158,18 +159,18 @@ class Plot:
         planting
             Bearing, spacings and headland; None: what the field states, else the defaults.
 
+        Warns
+        -----
+        ImportDoubt
+            Where rows are laid along the longest side of a ragged outline, and may run otherwise.
+
         Raises
         ------
         PlotError
             If there is no room for a plant, or no way to a row.
         """
-        if not field.in_rows:
-            return cls.of_trees(field)
-        if field.plants is not None:
-            names = PlantNames.of(field)
-            grid, rows = _in_rows(field.plants, names, field, planting)
-            return cls._measured(field, grid, rows)
-        return cls._with(field, lay(field, planting or planting_of(field)))
+        _warn_of(_doubts_of_bearing(field, planting))
+        return plot_of(field, planting)
 
     @classmethod
     def around(
@@ -314,7 +315,8 @@ class Plot:
         Warns
         -----
         ImportDoubt
-            Of lines without a place, of points that are left out, and for each of `doubts`.
+            Of lines without a place, of points that are left out, of rows along a ragged outline,
+            and for each of `doubts`.
 
         Raises
         ------
@@ -337,7 +339,9 @@ class Plot:
         if boundary is None:
             plot = plot_around(name, plants, planting, gate, names)
         elif not len(plants):
-            plot = cls.of(Field(name, boundary, gate=gate), planting)
+            field = Field(name, boundary, gate=gate)
+            plot = plot_of(field, planting)
+            said += _doubts_of_bearing(field, planting)
         else:
             field = Field(name, boundary, gate=gate)
             outside = PlantsOutside.of(plants, field, far)
@@ -346,7 +350,7 @@ class Plot:
                 said += [left_out + keeps, outside.of_beside()]
             here = ~outside.left_out
             field = names.take(here).on(replace(field, plants=plants[here]))
-            plot = cls.of(field, planting)
+            plot = plot_of(field, planting)
         _warn_of(one for one in (*said, *plot.doubts) if one)
         return plot
 
@@ -415,6 +419,22 @@ def _outline(grid: PlantGrid) -> MultiPolygon:
     mended = shapely.make_valid(outline, method="structure", keep_collapsed=False)
     areas = shapely.get_parts(mended)
     return MultiPolygon([part for part in areas if part.geom_type == "Polygon"])
+
+
+def plot_of(field: Field, planting: Planting | None = None) -> Plot:
+    """Return `Plot.of` a field, without a warning: imports say its doubts themselves."""
+    if not field.in_rows:
+        return Plot.of_trees(field)
+    if field.plants is not None:
+        names = PlantNames.of(field)
+        grid, rows = _in_rows(field.plants, names, field, planting)
+        return Plot._measured(field, grid, rows)  # noqa: SLF001 - its own module
+    return Plot._with(field, lay(field, planting or planting_of(field)))  # noqa: SLF001 - as above
+
+
+def _doubts_of_bearing(field: Field, planting: Planting | None) -> list[str]:
+    doubt = doubt_of_bearing(field, planting or planting_of(field))
+    return [doubt] if doubt else []
 
 
 def plot_around(

@@ -155,6 +155,9 @@ def _of_plot(settings: WorkSettings, units: Units) -> Iterator[Row]:
     rows_m, plants_m = settings.spacing_m
     yield words.ROWS_APART, units.metres(rows_m, 1), _told(settings, "row_spacing_m")
     yield words.PLANTS_APART, units.metres(plants_m, 1), _told(settings, "plant_spacing_m")
+    for one in settings.assumed:
+        if one.setting == "row_bearing_deg":
+            yield words.ROWS_RUN, worded(words.ROWS_RUN_SO, deg=one.value), words.FROM_NOBODY
 
 
 def _told(settings: WorkSettings, setting: str) -> str:

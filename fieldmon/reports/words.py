@@ -130,6 +130,7 @@ TREATMENT_COLUMNS = ("day", "product", "plants", "works on", "harvest from")
 TREATMENTS_NONE = "No treatment was noted."
 ASSUMED = "Assumed, though nobody said so: {what}."
 ROWS_APART, PLANTS_APART = "From row to row", "From plant to plant"
+ROWS_RUN, ROWS_RUN_SO = "Rows run along the longest side", "{deg:.1f}° from north"
 SAMPLER, HOURS = "Who chooses the plants", "Working hours"
 LOOK, SPEED = "Seconds at a plant", "Speed"
 DETECTS = "Finds what is there"

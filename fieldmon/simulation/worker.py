@@ -12,7 +12,7 @@ from fieldmon.infestation.pest_prior import prior_for
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
-from fieldmon.plot.plot import Plot
+from fieldmon.plot.plot import plot_of
 from fieldmon.plot.robot import USUAL_TIMES, Robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.own import label_of
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.plot.plot import Plot
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.study_plot import Combination, StudyPlot
     from fieldmon.simulation.team_season import Team
@@ -129,7 +130,7 @@ class _Unhashed:
 @lru_cache(maxsize=_KEPT)
 def _laid(digest: str, of: _Unhashed) -> LaidPlot:  # noqa: ARG001 - the key
     """Return a plot with its plants, and their chances of infestation."""
-    plot = Plot.of(of.plot.field, of.plot.planting)
+    plot = plot_of(of.plot.field, of.plot.planting)
     records, day, pest_in_weather = of.plot.observations, of.plot.day, of.plot.pest_in_weather
     prior = PriorSettings()
     if pest_in_weather is not None:

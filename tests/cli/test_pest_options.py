@@ -1,6 +1,7 @@
 """A pest and its weather are named alike in every command that spreads insects."""
 
 import csv
+from dataclasses import replace
 from datetime import date, timedelta
 
 import pytest
@@ -10,8 +11,11 @@ from fieldmon.cli.main import app
 from fieldmon.cli.pest_options import PestName
 from fieldmon.cli.status import lines
 from fieldmon.io.packaged import pest_names
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.settings import MonitoringSettings
 from tests.cli.estate import BEGINS, MITES, ZIP
+from tests.monitoring.seasons import a_season
 
 PLOT = (ZIP, "--feature", "Nursery", "--observations", MITES)
 
@@ -174,3 +178,17 @@ def test_every_command_that_believes_or_simulates_nights_takes_a_pest():
     for name in ("plan", "init", "change", "simulate"):
         flags = {flag for one in commands[name].params for flag in one.opts}
         assert {"--pest", "--weather"} <= flags, name
+
+
+def test_a_season_begun_before_it_took_its_pests_values_says_so_in_plan_and_status(
+    run, tmp_path, monkeypatch
+):
+    file = tmp_path / "season.gpkg"
+    with monkeypatch.context() as before:
+        before.setattr(MonitoringSettings, "of_its_pest", lambda self, _=None: self)
+        a_season(file, pest=replace(shipped_pest("spider-mite"), detection=0.6))
+    (said,) = Season(file).verify()
+    assert "an inspection finds 60 % of what is there, not 84 %." in said
+    for command in ("plan", "status"):
+        code, _, err, _ = run(command, file)
+        assert (code, err.count(f"doubtful: {said}")) == (0, 1), err

@@ -108,6 +108,20 @@ def test_a_day_told_for_files_without_one_is_none_of_records_beside_dated_ones(
     assert len(Season(season).history.inspections) == 2
 
 
+def test_a_file_all_of_which_names_another_plot_is_refused_before_others_are_recorded(
+    run, season, tmp_path
+):
+    (tmp_path / "ours.csv").write_text("plot,row,plant,found\nNursery,1,1,yes\n")
+    (tmp_path / "pond.csv").write_text("plot,row,plant,found\nPond,1,2,yes\n")
+    words = "record", season, "ours.csv", "pond.csv", "--date", BEGINS
+    code, _, err, _ = run(*words)
+    assert code == 2
+    assert "pond.csv must hold records of Nursery, but none could be taken" in err
+    assert not len(Season(season).history.inspections)
+    code, out, err, _ = run(*words, "--finding-option", "columns=plot=")
+    assert (code, out.count("1 new")) == (0, 2), err
+
+
 def test_corrections_of_a_copy_are_taken_with_its_findings_or_not_at_all(run, season, tmp_path):
     run("plan", season, "--date", BEGINS, "-o", "r.csv")
     filled_in(tmp_path / "r.csv", finds={0}, n=5)

@@ -13,6 +13,8 @@ from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, MITES, ZIP, begin_next_year, filled_in, table
 from tests.cli.test_merge import worked
 
+OTHERS = f"plot,row,plant,found,date\nNursery,1,1,yes,{BEGINS}\nPond,1,2,yes,{BEGINS}\n"
+
 
 def find_in(file, stop):
     """Fill in a find at a stop of a route's GeoJSON."""
@@ -110,6 +112,20 @@ def test_a_day_that_was_filled_in_is_not_written_over_before_it_is_recorded(run,
     run("undo", season)  # what was taken back was recorded
     code, _, err, _ = run(*words)
     assert code == 0, err
+
+
+def test_what_was_filled_in_for_another_plot_is_kept_and_nobody_is_told_to_record_it(
+    run, season, tmp_path
+):
+    (tmp_path / "day.csv").write_text(OTHERS)
+    words = "plan", season, "--date", BEGINS, "-o", "day.csv"
+    code, _, err, _ = run(*words)
+    assert (code, "holds 1 result that" in err) == (2, True)
+    code, _, err, _ = run("record", season, "day.csv")
+    assert code == 0, err
+    code, _, err, made = run(*words)
+    assert (code, made) == (2, set())
+    assert "filled in for another plot. 1 record is of 1 other plot: Pond. Choose" in err
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,10 @@ from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.local_clock import LocalClock, local_clock
 from tests.cli.estate import BEGINS
-from tests.monitoring.seasons import a_season, all_on
+from tests.monitoring.seasons import a_plot, a_season, all_on
 
 
 def test_a_season_is_told_in_the_lines_of_its_status(run, season):
@@ -58,14 +59,18 @@ def test_no_share_is_said_to_be_nothing_or_all_that_is_not(season):
     assert "share found            under 1 % (under 1 % to 100 %) of found" in said
 
 
-def test_plants_only_flagged_are_told_beside_those_not_found(run, tmp_path):
-    file = tmp_path / "flagged.gpkg"
-    kept = a_season(file, belief=BeliefSettings(treated=False))
+def test_plants_only_flagged_are_told_beside_those_not_found_and_what_is_assumed_of_rows(
+    run, tmp_path
+):
+    file, taken = tmp_path / "flagged.gpkg", Assumed("row_bearing_deg", 72.31)
+    plot = replace(a_plot(), assumed=(taken,))
+    kept = a_season(file, plot, belief=BeliefSettings(treated=False))
     kept.record(
         Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(kept.settings.begins)), "x"
     )
     out = run("status", file)[1]
     assert "are not found yet, and 20 were found and only flagged." in out
+    assert "assumed of its rows    row bearing 72.3 degrees, along the longest side\n" in out
     # the forecast begins with as many
     still = re.search(r"still infested +(\d+) ", out)[1]
     assert int(still) > 20

@@ -34,6 +34,13 @@ def test_for_independent_plants_it_is_the_binomial():
     assert ahead.chance_clean == pytest.approx(0.97**400, rel=1e-6)
 
 
+def test_a_chance_of_clean_too_small_for_a_number_is_not_none_unless_one_is_known():
+    chance = np.full(400, 0.9)
+    ahead = estimate_plot(GRID, chance, pair_chances(chance, GRID, clustering=0.0))
+    assert "the chance that the plot is clean is under 1 %" in ahead.sentence()
+    assert ahead.beside(1).chance_clean == 0.0
+
+
 def test_for_a_row_of_plants_the_chance_of_clean_is_that_of_the_chain():
     row = rectangle(1, 5)
     belief = PairApproximation.of(row, np.full(5, 0.2), clustering=0.6)

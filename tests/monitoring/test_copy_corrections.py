@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from fieldmon.errors import FileProblem, SettingError
+from fieldmon.errors import ContradictionError, FileProblem, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season
 from tests.monitoring.seasons import BEGINS, three_results
@@ -31,6 +31,19 @@ def test_a_corrected_finding_is_corrected_in_the_season_by_its_author(path, copy
     assert season.verify() == ()
     assert season.take_corrections(copy, "copy.gpkg", "Ann") == 0  # twice is once
     assert len(season.history.inspections) == 15
+
+
+def test_corrections_of_a_copy_that_contradict_what_is_recorded_are_to_be_confirmed(path, copy):
+    season = Season(path)
+    held, before = season.history.inspections, len(season.log())
+    outside(copy, moved_to(season.plot.grid.lonlat(held.plant[:1])[0], 3))
+    with pytest.raises(ContradictionError, match="Corrections must not contradict"):
+        season.take_corrections(copy, "copy.gpkg", "Ann")
+    with pytest.raises(ContradictionError, match="Corrections must not contradict"):
+        season.record_all([(held.take([]), "copy.gpkg")], "Ann", copies=[copy])
+    assert len(season.log()) == before
+    assert season.take_corrections(copy, "copy.gpkg", "Ann", confirmed=True) == 1
+    assert season.verify() == ()
 
 
 def test_a_finding_corrected_to_gone_is_taken_once(path, copy):

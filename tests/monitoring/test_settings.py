@@ -239,6 +239,19 @@ def test_a_season_is_as_its_pest_and_weather_have_it_and_without_them_as_it_was(
     assert later == replace(alone, pest=whitefly, weather=FIFTEEN_DAYS).of_its_pest()
 
 
+def test_a_season_that_goes_by_none_of_its_pests_values_says_so_unless_they_were_chosen():
+    early = MonitoringSettings(BEGINS, pest=MITE, weather=FIFTEEN_DAYS)
+    (said,) = early.unlike_its_pest()
+    assert "an inspection finds 60 % of what is there, not 84 %" in said
+    assert "records count half after 15 days, not 14." in said
+    told = Robot(detection=0.84)
+    chosen = replace(early, robot=told, prior=PriorSettings(half_life_days=3.5))
+    for fine in (early.of_its_pest(), chosen, replace(early, pest=None)):
+        assert fine.unlike_its_pest() == ()
+    (said,) = replace(early, robot=told).unlike_its_pest()
+    assert "finds" not in said
+
+
 def test_a_half_life_that_was_chosen_and_what_does_not_change_stay():
     chosen = MonitoringSettings(
         BEGINS, pest=MITE, weather=FIFTEEN_DAYS, prior=PriorSettings(half_life_days=3.5)

@@ -22,6 +22,7 @@ from fieldmon.infestation.observations import Observations
 from fieldmon.io.import_report import Remedy, guessed, seen
 from fieldmon.monitoring import Season, tables
 from fieldmon.monitoring.tables import KeptMessage
+from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.block import Block
 from fieldmon.plot.clear_lanes import clear_lanes
 from fieldmon.plot.field import Field
@@ -113,6 +114,8 @@ def full_field():
 @pytest.mark.parametrize("faces", [1, 2])
 def test_a_plot_comes_back_exactly_as_it_was_laid(db, faces):
     plot = Plot.of(full_field(), Planting(row_bearing_deg=12.5, row_spacing_m=4.0, faces=faces))
+    taken = Assumed("plant_spacing_m", 3.0), Assumed("row_bearing_deg", 72.3)
+    plot = replace(plot, assumed=taken[:faces])
     check_comes_back(db, plot)
 
 
@@ -165,6 +168,7 @@ def test_measured_plants_come_back_with_their_names_and_those_of_their_rows_and_
 def check_comes_back(db, plot):
     tables.write_plot(db, plot)
     again = tables.read_plot(db)
+    assert again.assumed == plot.assumed
     assert [block.content for block in again.field.blocks] == [
         block.content for block in plot.field.blocks
     ]

@@ -92,3 +92,9 @@ def test_a_generation_is_the_published_one_or_the_sum_of_its_stages():
     # (11.5 * 90 + 9 * 150 + 10 * 40) / 280 is 9.946...
     egg, larva, adult = Stage("egg", 11.5, 90), Stage("larva", 9, 150), Stage("adult", 10, 40)
     assert whole_generation(Pest("a", stages=(egg, larva, adult))).threshold_c == 9.9
+
+
+@pytest.mark.parametrize(("uppers", "of_all"), [((30, 38), 32), ((30, None), None), ((30, 30), 30)])
+def test_a_generation_stops_where_its_stages_do_and_not_where_the_first_does(uppers, of_all):
+    egg, adult = Stage("egg", 10, 30, upper_c=uppers[0]), Stage("adult", 14, 10, upper_c=uppers[1])
+    assert whole_generation(Pest("a", stages=(egg, adult))).upper_c == of_all

@@ -79,6 +79,16 @@ def test_plants_that_a_row_across_took_are_counted_with_the_rows():
     )
 
 
+def test_a_row_across_that_lost_every_other_plant_is_counted_with_the_rows_that_took_them():
+    xy_m, row = with_rows_across(1, 2.0, 10, 12, 2.0, 1.0)
+    across = np.flatnonzero(row == 10)
+    assert crossed_rows(xy_m, row).doubts == ()
+    taken = row.copy()
+    taken[across[::2]] = np.arange(10)
+    order = np.lexsort((xy_m[:, 0], xy_m[:, 1] * (taken == 10), taken))
+    assert crossed_rows(xy_m[order], taken[order]).n_plants == 10
+
+
 def test_a_row_that_goes_on_round_a_corner_is_named():
     one, other = rows_along(1, 10, 1.0, 1.0)[0], rows_along(1, 9, 1.0, 1.0)[0][:, ::-1]
     found = crossed_rows(np.concatenate([one, other + np.array([10.0, 1.0])]), np.zeros(19, int))

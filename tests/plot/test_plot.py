@@ -1,5 +1,6 @@
 """A field with its plants and ways: whichever way it is made, the plants are those."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -10,11 +11,13 @@ from shapely import MultiLineString, MultiPolygon, box
 import fieldmon as fm
 from fieldmon.errors import ImportDoubt, PlotError, SettingError
 from fieldmon.io import prepare
+from fieldmon.io.guessed_bearing import doubts_of_bearing
 from fieldmon.io.sources import PlantingChoices
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot, planting_of, plot_around
+from tests.walked import FRAME, walked
 
 AREA = MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)])
 PLANTING = Planting(row_bearing_deg=90.0, row_spacing_m=5.0, plant_spacing_m=4.0)
@@ -71,6 +74,24 @@ def test_what_is_doubtful_about_measured_plants_is_warned_of():
     assert {one.filename for one in said} == {__file__}
     with pytest.warns(ImportDoubt, match="No rows were found"):
         Plot.around("three", np.array([[1.0, 41.0], [2.0, 41.0], [1.0001, 41.0]]))
+
+
+def test_rows_along_a_ragged_outline_are_doubted_as_those_of_a_file_unless_they_are_said():
+    import geopandas as gpd
+
+    ring = walked([(0, 0), (100, 0), (100, 98), (0, 98)], 3, 1)
+    area = MultiPolygon([FRAME.geometry_lonlat(shapely.Polygon(ring))])
+    ragged, frame = Field("Gate", area), gpd.GeoSeries([area], crs="EPSG:4326")
+    (doubt,) = doubts_of_bearing(ragged, PlantingChoices())
+    for make in (lambda: Plot.of(ragged), lambda: Plot.from_geopandas(frame)):
+        with pytest.warns(ImportDoubt) as said:
+            make()
+        assert [str(one.message) for one in said] == [doubt.sentence]
+        assert {one.filename for one in said} == {__file__}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        Plot.of(ragged, PLANTING)
+        Plot.of(FIELD)
 
 
 def test_around_plants_whose_boundary_nobody_drew_there_is_room_to_turn():

@@ -72,6 +72,11 @@ def test_the_sentence_names_what_is_assumed_with_its_value():
         ({}, "From row to row", ("4.0 m", "of the plot's file")),
         ({"chosen": ("row_spacing_m",)}, "From row to row", ("4.0 m", "chosen")),
         ({"assumed": ALL[:1]}, "From row to row", ("4.0 m", "assumed")),
+        (
+            {"assumed": (Assumed("row_bearing_deg", 72.31),)},
+            "Rows run along the longest side",
+            ("72.3° from north", "assumed"),
+        ),
     ],
 )
 def test_each_value_is_said_with_where_it_comes_from(changed, name, shown):

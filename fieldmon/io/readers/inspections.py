@@ -93,7 +93,7 @@ def read_inspections(
     """
     chosen = options or InspectionOptions()
     rows = read_inspection_rows(source, chosen)
-    here, of_others = of_this_plot(rows.value, called, chosen)
+    here, of_others = of_this_plot(rows.value, grid, called, chosen)
     inspections, more = look_up(here, grid, chosen)
     return rows.having(inspections, (*of_others, *more))
 

@@ -2,7 +2,8 @@
 
 Decisions
 ---------
-- A position says more than a name: only records without one are told apart by name.
+- A position says more than a name: only records without one are told apart by name. Those that
+  name another plot and lie on this one are taken, with a doubt.
 - Where some record names this plot, those that name others are left out. Where none does, the
   names may be another way to call it: that is a doubt, and one can say that they are its own.
 - Of blocks and of places wider than a plot (`_NOT_ONLY_PLOTS`) a name is one of a plot only beside
@@ -17,13 +18,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import first_few, worded
+from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, dropped
 from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.readers.places import of_other_plots
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
     from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
     from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.plot.grid import PlantGrid
 
 _NOT_ONLY_PLOTS = frozenset({"locality", "site"})
 _NAMED = 5
@@ -31,27 +38,45 @@ _OURS = Remedy("columns", "plot=", worded("They are of this plot"))
 
 
 def of_this_plot(
-    rows: InspectionRows, called: tuple[str, ...], options: InspectionOptions
+    rows: InspectionRows, grid: PlantGrid, called: tuple[str, ...], options: InspectionOptions
 ) -> tuple[InspectionRows, list[ImportMessage]]:
     """Return the records that are of a plot `called` so, and what to say of the others."""
     if rows.plot_called is None or rows.plot_column is None or not called:
         return rows, []
     names = rows.plot_called
     ours = _ours(set(names.tolist()) - {""}, called)
-    others = ~np.isin(names, ["", *ours]) & ~np.isfinite(rows.lonlat).all(axis=1)
+    others = ~np.isin(names, ["", *ours])
     if not others.any():
         return rows, []
-    named = names[others].tolist()
-    if ours:
+    if not ours and options.column("plot") is None and _may_be_else(str(rows.plot_column[0])):
+        return rows, []
+    placed = np.isfinite(rows.lonlat).all(axis=1)
+    kept, said = _by_name(rows, others & ~placed, called[0], options, is_named=bool(ours))
+    return kept, [*said, *_lying_here(rows, others & placed, grid)]
+
+
+def left_out(messages: Iterable[ImportMessage]) -> str:
+    """Return why records that name other plots were left out; empty where none were."""
+    out = (one.sentence for one in messages if one.remedy == _OURS)
+    return next(out, "")
+
+
+def _by_name(
+    rows: InspectionRows, others: NDArray[np.bool_], plot: str, options: InspectionOptions,
+    *, is_named: bool,
+) -> tuple[InspectionRows, list[ImportMessage]]:  # fmt: skip
+    """Leave out the records of `others`, and say so; `is_named`: some record names this plot."""
+    if rows.plot_called is None or rows.plot_column is None or not others.any():
+        return rows, []
+    named = rows.plot_called[others].tolist()
+    if is_named:
         return rows.take(~others), [dropped(of_other_plots(named), remedy=_OURS)]
     column = str(rows.plot_column[0])
-    if options.column("plot") is None and _may_be_else(column):
-        return rows, []
     said = {
         "n": len(named),
         "column": column,
         "names": first_few(sorted(set(named)), _NAMED),
-        "plot": called[0],
+        "plot": plot,
     }
     if options.take_doubtful:
         taken = worded(
@@ -66,6 +91,23 @@ def of_this_plot(
         **said,
     )
     return rows.take(~others), [doubtful(left_out, remedy=_OURS)]
+
+
+def _lying_here(
+    rows: InspectionRows, others: NDArray[np.bool_], grid: PlantGrid
+) -> list[ImportMessage]:
+    """Return a doubt about records that name another plot, but lie on this one."""
+    at = np.flatnonzero(others)
+    at = at[outside_m(grid, rows.lonlat[at]) == 0]
+    if rows.plot_called is None or not len(at):
+        return []
+    said = worded(
+        "{n} {n:record names|records name} another plot ({names}), but {n:lies|lie} on this one: "
+        "taken by {n:its position|their positions}.",
+        n=len(at),
+        names=first_few(sorted(set(rows.plot_called[at].tolist())), _NAMED),
+    )
+    return [doubtful(said)]
 
 
 def _may_be_else(column: str) -> bool:

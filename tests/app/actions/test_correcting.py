@@ -2,8 +2,10 @@
 
 from datetime import date, time
 
+import numpy as np
+
 from app.words import texts
-from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.plot.grid import plant_at
 from tests.app.driving import boxed, go, press
 
@@ -38,3 +40,22 @@ def test_the_day_and_time_of_one_inspection_are_corrected_and_taken_back(season_
     assert season().history.inspections.second.tolist() == [22_000]
     press(season_app, "Redo")
     assert season().history.inspections.second.tolist() == [5.75 * 3600]
+
+
+def test_a_correction_that_contradicts_another_result_is_taken_only_when_both_hold(
+    season_app, season
+):
+    plant = int(plant_at(season().plot.grid, 3, 4))
+    days = np.array(["2026-11-16", "2026-11-17"], "datetime64[D]")
+    season().record(Inspections.of([plant] * 2, [FOUND, CLEAN], days), "phone", "Dana")
+    go(season_app, "record")
+    boxed(season_app.number_input, "one_row").set_value(3)
+    boxed(season_app.number_input, "one_plant").set_value(4).run()
+    boxed(season_app.date_input, "when_day").set_value(date(2026, 11, 16)).run()
+    season_app.button(key="correct_when").click().run()
+    assert "recorded as found, now clean" in season_app.error[0].value
+    assert str(season().history.inspections.date[1]) == "2026-11-17"
+    season_app.button(key="correct_both").click().run()
+    assert "1 correction taken" in season_app.success[0].value
+    assert str(season().history.inspections.date[1]) == "2026-11-16"
+    assert "correct_both" not in [one.key for one in season_app.button]

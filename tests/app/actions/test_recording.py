@@ -22,7 +22,7 @@ from fieldmon.plot.grid import plant_at, row_label
 from tests.app.chosen import in_season
 from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
 from tests.monitoring.seasons import a_season
-from tests.monitoring.test_outside_changes import outside
+from tests.monitoring.test_outside_changes import moved_to, outside
 
 
 def test_one_plant_is_recorded_and_undone(season_app, season):
@@ -268,6 +268,17 @@ def test_what_qgis_corrected_and_added_in_a_copy_comes_in_by_uploading_it(
     assert kept.history.states(0)[first] == FOUND
     assert kept.batches()[0].who == "Ann"
     assert kept.verify() == ()
+    # another result of that plant and day, the other way
+    clean = int(kept.history.inspections.plant[-1])
+    copy = shutil.copy(kept.path, tmp_path / "copy.gpkg")
+    outside(copy, moved_to(kept.plot.grid.lonlat([clean])[0]))
+    data = Path(copy).read_bytes()
+    brought()
+    boxed(season_app.text_input, "corrected_by").set_value("Ann").run()
+    season_app.button(key="record_file").click().run()
+    assert "Corrections must not contradict" in season_app.error[0].value
+    season_app.button(key="correct_both").click().run()
+    assert "1 correction taken" in season_app.success[0].value
 
 
 @pytest.mark.parametrize("data", [b"a,b\n1,2\n", b"row,number,found\n999,1,yes\n", b"\x00\x01"])

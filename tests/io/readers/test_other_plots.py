@@ -69,8 +69,18 @@ def test_plots_that_differ_in_brackets_are_not_one():
     assert imported.value.plant.tolist() == [0]
 
 
-def test_where_a_record_lies_says_more_than_the_plot_it_names():
-    lon, lat = GRID.lonlat([7])[0]
-    imported = read_inspections(upload(f"plot,lon,lat,found\nOld name,{lon},{lat},x\n"), GRID,
-                                None, ("Gate",))  # fmt: skip
+@pytest.mark.parametrize(
+    ("head", "name", "doubt"),
+    [
+        ("plot", "Old name", "1 record names another plot (Old name), but lies on this one"),
+        ("plot", "GATE", ""),
+        ("block", "A", ""),
+    ],
+)
+def test_where_a_record_lies_says_more_than_the_plot_it_names_and_it_is_doubted(head, name, doubt):
+    (lon, lat), far = GRID.lonlat([7])[0], "Pond,10.0,20.0,x"
+    table = f"{head},lon,lat,found\n{name},{lon},{lat},x\n{far}\n"
+    imported = read_inspections(upload(table), GRID, None, ("Gate",))
     assert imported.value.plant.tolist() == [7]
+    doubts = [one.sentence for one in imported.of(Severity.DOUBTFUL) if "another" in one.sentence]
+    assert [one.split(":")[0] for one in doubts] == ([doubt] if doubt else [])

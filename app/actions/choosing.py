@@ -234,15 +234,15 @@ def whose_day(choices: Choices) -> None:
         )  # fmt: skip
 
 
-def mark_day(choices: Choices, part: str) -> None:
-    """Say above a part of a room that its day is not today, with the way back."""
+def mark_day(choices: Choices, page: str) -> None:
+    """Say above a page that its day is not today, with the way back."""
     if choices.is_today:
         return
     today = choices.today or choices.on
     day, now = (choices.units.said_day(on, today) for on in (choices.day, today))
     # below each other: beside the sentence there is no room for the button's words
     said = [texts.OTHER_DAY.format(day=day, today=now)]
-    if part in _RECORDING:
+    if page in _RECORDING:
         said.append(texts.OTHER_DAY_RECORDED.format(day=day))
     st.warning(" ".join(said))
     st.button(texts.BACK_TO_TODAY, key="back_to_today",

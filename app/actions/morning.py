@@ -13,10 +13,10 @@ from ..show import day, report
 from ..state import (
     browser,
     chosen_day,
+    menu,
     morning,
     notices,
     plot_source,
-    rooms,
     widget_memory,
     work_day,
 )
@@ -144,12 +144,12 @@ def _look_back(choices: Choices, _: DayPlan, step: Step) -> None:
     if (left := morning.left_unsaid(choices)) is not None:
         _button(step, texts.STEP_BUTTONS[RECORD], _record_of, left)
     else:
-        _button(step, texts.STEP_BUTTONS[LOOK_BACK], rooms.turn_to, "season")
+        _button(step, texts.STEP_BUTTONS[LOOK_BACK], menu.turn_to, "season")
 
 
 def _record_of(on: date) -> None:
     work_day.choose(plot_source.chosen(), on)
-    rooms.open_part("record")
+    menu.open_page("record")
 
 
 def _plan(choices: Choices, plan: DayPlan, step: Step) -> None:
@@ -184,9 +184,9 @@ def _send(choices: Choices, plan: DayPlan, step: Step) -> None:
 
 def _record(_: Choices, __: DayPlan, step: Step) -> None:
     if browser.is_phone():
-        _button(step, texts.START_SCOUTING, rooms.open_part, "scout")
+        _button(step, texts.START_SCOUTING, menu.open_page, "scout")
     else:
-        _button(step, texts.STEP_BUTTONS[RECORD], rooms.open_part, "record")
+        _button(step, texts.STEP_BUTTONS[RECORD], menu.open_page, "record")
 
 
 def _report(choices: Choices, _: DayPlan, step: Step) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES
 from fieldmon.monitoring import season_log
-from fieldmon.monitoring.day_ahead import DayAhead, Part
+from fieldmon.monitoring.day_ahead import DayAhead, WorkPart
 from fieldmon.monitoring.findings import CLOCK_IS_WRONG
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.scouts import overlapping, scouts_on
@@ -102,7 +102,7 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
     out = []
     for who in dict.fromkeys([*coded, *team]):
         code = coded.get(who)
-        part = Part(None, team[who]) if code is None else Part(code.rows, code.name)
+        part = WorkPart(None, team[who]) if code is None else WorkPart(code.rows, code.name)
         heard = max(filter(None, (sent.get(who, ("",))[0], photos.get(who, ""))), default="")
         out.append(
             ScoutOut(

@@ -14,7 +14,7 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.closures import closed_in_words
-from fieldmon.monitoring.day_ahead import Part, plan_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, plan_ahead
 from fieldmon.monitoring.plant_states import hot_spots_on, shown_apart
 from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import left_out_in_words
@@ -141,7 +141,7 @@ class DayFacts:
         """
         with season.one_moment():
             first = "".join([one.name for one in season.planned_by(on).team][:1])
-            plan = plan_ahead(season, on, Part(name=first))
+            plan = plan_ahead(season, on, WorkPart(name=first))
             route = plan.route
             worked = day_was_worked(season, on, route, today)
             settings = season.settings_on(on) if worked else season.planned_by(on)

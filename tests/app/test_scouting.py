@@ -18,7 +18,7 @@ from app.state.scout_page import invitation
 from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season, photos, scouts
-from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, planned_again, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import row_label
@@ -326,10 +326,10 @@ def test_a_newer_plan_is_said_and_loaded_by_whoever_wants_it(season, line, phone
     page = phone.page
     page.locator(SENT).wait_for()
     plant = plant_of(page)
-    ahead = [one for one in route_ahead(season, BEGINS, Part(name="Dan")).plant if one != plant]
+    ahead = [one for one in route_ahead(season, BEGINS, WorkPart(name="Dan")).plant if one != plant]
     theirs = [a_finding(one, CLEAN, on=BEGINS, at=utc_now()) for one in ahead[:9]]
     take(season, scouts.let_in(season, "Ann"), theirs, utc_now())
-    plan = planned_again(season, BEGINS, Part(name="Dan"))
+    plan = planned_again(season, BEGINS, WorkPart(name="Dan"))
     closed = [{"rows": [1, int(season.label.line.max())], "until": "2999-04-06T07:00"}]
     monkeypatch.setattr(documents, "_closed", lambda *_: closed)
     page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due

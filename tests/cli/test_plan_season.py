@@ -12,7 +12,7 @@ from fieldmon.errors import ImportDoubt
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.day_ahead import Part, route_ahead, work_hours
+from fieldmon.monitoring.day_ahead import WorkPart, route_ahead, work_hours
 from fieldmon.reports.day import DayFacts
 from tests.cli.estate import BEGINS, ZIP, filled_in
 
@@ -41,7 +41,7 @@ def test_a_day_from_plan_to_status(run, season, tmp_path):
 def test_command_report_and_phone_say_the_same_route_and_hours_after_any_record(
     run, season, tmp_path
 ):
-    kept, on, dana = Season(season), date.fromisoformat(BEGINS), Part(name="Dana")
+    kept, on, dana = Season(season), date.fromisoformat(BEGINS), WorkPart(name="Dana")
     scouts.let_in(kept, "Dana")
     given = route_ahead(kept, on, dana).plant
     for k, (who, result) in enumerate((("Dana", 0), ("", 0), ("Dana", 1), ("", 0))):

@@ -12,7 +12,7 @@ from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.closures import closed_in_words, closed_on, closed_plants, entry_waits
-from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, planned_again, route_ahead
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.planning.members import team_of
 from fieldmon.planning.wishes import Wishes
@@ -102,10 +102,12 @@ def test_one_plant_closes_its_row_for_the_way_to_the_others_passes_it(season):
 def test_a_plot_that_is_wholly_closed_has_an_empty_route(season):
     sprayed(season, np.unique(season.label.line), 48)
     assert len(season.plan(ON).route) == 0
-    assert len(route_ahead(season, ON, Part(name="Ann"))) == 0
+    assert len(route_ahead(season, ON, WorkPart(name="Ann"))) == 0
 
 
-@pytest.mark.parametrize("part", [Part(), Part(name="Ann"), Part((1, 6), "Ann"), Part((1, 6))])
+@pytest.mark.parametrize(
+    "part", [WorkPart(), WorkPart(name="Ann"), WorkPart((1, 6), "Ann"), WorkPart((1, 6))]
+)
 def test_a_route_kept_of_before_is_planned_anew_and_the_rest_goes_elsewhere(season, part):
     given = route_ahead(season, ON, part).plant
     plants = sprayed(season, [int(season.label.line[given[0]])], 48)
@@ -148,7 +150,7 @@ def test_what_is_closed_now_is_closed_to_a_plan_whose_times_are_over(season, mon
     assert len(season.closed(ON)) == 1
 
 
-@pytest.mark.parametrize("part", [Part(), Part(name="Ann")])
+@pytest.mark.parametrize("part", [WorkPart(), WorkPart(name="Ann")])
 def test_a_plan_kept_from_a_later_time_on_is_held_to_its_own_begin(season, part, monkeypatch):
     plants = sprayed(season, [1, 2], 22)  # until 07:00, and work begins at 06:00
     kept = season.plan(ON, time(7)).route.plant

@@ -24,7 +24,7 @@ from fieldmon.io.writers.csv import route_csv
 from fieldmon.io.writers.day_file import HandoffPlan
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.day_ahead import Part, route_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.scouts_out import scouts_out
@@ -72,7 +72,7 @@ def test_the_day_is_what_the_season_says(served, scout):
     season = served.season
     day = json.loads(day_document(season, scout, BEGINS))
     jsonschema.validate(day, description.DAY)
-    route = route_ahead(season, BEGINS, Part(name="Ann"))
+    route = route_ahead(season, BEGINS, WorkPart(name="Ann"))
     assert day["route"]["plants"] == route.plant.tolist()
     seconds = np.cumsum(np.array(day["route"]["walk_s"]) + day["robot"]["visit_s"])
     assert seconds == pytest.approx(route.leave_s, abs=0.1 * len(route))

@@ -87,8 +87,8 @@ def test_of_a_team_or_of_parts_one_person_is_to_take_each(tmp_path):
     nobodys = min({*range(n)} - {*ann.tolist()} - {*ben.tolist()})
     for plant in (ann[0], ben[0], nobodys):
         ask_photo(season, int(plant))
-    to_take = {name: [one.plant for one in DayAhead.of(season, BEGINS).asked_of(WorkPart(name=name))]
-               for name in ("Ann", "Ben")}  # fmt: skip
+    asked = DayAhead.of(season, BEGINS).asked_of
+    to_take = {name: [one.plant for one in asked(WorkPart(name=name))] for name in ("Ann", "Ben")}
     assert to_take == {"Ann": [ann[0], nobodys], "Ben": [ben[0]]}
     low = int(season.label.line[ann[0]])
     rows = DayAhead.of(season, BEGINS).asked_of(WorkPart(rows=(low, low), name="Cem"))

@@ -75,7 +75,7 @@ def _show_codes(choices: Choices) -> None:
 
 def _ends(season: Season) -> tuple[int, int]:
     """Return the first and the last row of a season's plot."""
-    return int(season.label.line.min()), int(season.label.line.max())
+    return int(season.plant_numbers.line.min()), int(season.plant_numbers.line.max())
 
 
 def _show_out(choices: Choices) -> None:

@@ -73,7 +73,7 @@ def plot_document(season: Season) -> tuple[str, bytes]:
         "plants": {
             "lon": lonlat[:, 0].tolist(),
             "lat": lonlat[:, 1].tolist(),
-            "number": season.label.number.tolist(),
+            "number": season.plant_numbers.number.tolist(),
         },
     }
     made = _json(document)
@@ -222,7 +222,7 @@ def _closed(season: Season, ahead: DayAhead, on: date, part: WorkPart) -> list[d
 
     With which of their plants, as runs of numbers, and how many of these are somebody's own.
     """
-    closed, line, mine = [], season.label.line, ahead.own(part)
+    closed, line, mine = [], season.plant_numbers.line, ahead.own(part)
     for one in season.closed(on, ahead.works_as(part)):
         rows = np.unique(line[one.plants])
         for run in run_ends(rows).tolist():

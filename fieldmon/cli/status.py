@@ -87,8 +87,8 @@ def _contradicting(season: Season, on: date) -> Iterator[str]:
             f"{RESULT_NAMES[result]} ({who})" if who else RESULT_NAMES[result]
             for result, who in zip(of.result.tolist(), of.who, strict=True)
         )
-        row = season.plot.grid.row_signs[int(season.label.line[plant])]
-        place = f"row {row}, plant {season.label.number[plant]}"
+        row = season.plot.grid.row_signs[int(season.plant_numbers.line[plant])]
+        place = f"row {row}, plant {season.plant_numbers.number[plant]}"
         yield f"  contradiction          {place}: {each}"
     if (more := len(plants) - _CONTRADICTING) > 0:
         yield f"  {'':22} and {more} more"

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
-    from fieldmon.plot.grid import RowLabel
+    from fieldmon.plot.grid import PlantNumbers
     from fieldmon.samplers.base import Scene
 
     Plants = NDArray[np.int32]
@@ -86,7 +86,7 @@ class DayAhead:
 
     Parameters
     ----------
-    label
+    plant_numbers
         Row and number of every plant.
     settings
         What is chosen.
@@ -98,7 +98,7 @@ class DayAhead:
         The photos that are asked for.
     """
 
-    label: RowLabel
+    plant_numbers: PlantNumbers
     settings: MonitoringSettings
     scouts: tuple[Scout, ...]
     last: dict[str, KeptRoute]
@@ -112,7 +112,7 @@ class DayAhead:
             last = routes.kept_last(db, settings.day(on))
             plants = {who: routes.plants(db, kept) for who, kept in last.items()}
             people, asked = scouts_in(db), photos_asked_in(db)
-        return cls(season.label, settings, people, last, plants, asked)
+        return cls(season.plant_numbers, settings, people, last, plants, asked)
 
     def kept(self, who: str = "") -> Plants:
         """Return the plants of somebody's route; nobody named: of the first of the team."""
@@ -190,8 +190,8 @@ class DayAhead:
     def own(self, part: WorkPart) -> NDArray[np.bool_]:
         """Return ``(n,)`` which plants are somebody's to inspect; none where no route can be."""
         if not self.has_route(part):
-            return np.zeros(len(self.label.line), np.bool_)
-        return inside(self.label, self.rows(part))
+            return np.zeros(len(self.plant_numbers.line), np.bool_)
+        return inside(self.plant_numbers, self.rows(part))
 
     def is_others(self, part: WorkPart, left: Plants) -> bool:
         """Return whether a route was made for other rows, or others who share them have of it."""
@@ -223,7 +223,7 @@ class DayAhead:
         return tuple(sorted({one.plant for one in self.asked if mine[one.plant]}))
 
     def _lines(self, rows: tuple[int, int] | None) -> tuple[int, int]:
-        return rows or (int(self.label.line.min()), int(self.label.line.max()))
+        return rows or (int(self.plant_numbers.line.min()), int(self.plant_numbers.line.max()))
 
 
 def plan_ahead(

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import sqlite3
 
     from fieldmon.monitoring.settings import MonitoringSettings
-    from fieldmon.plot.grid import PlantGrid, RowLabel
+    from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
 SOURCE = "added by another program"
 # by the index of digests that count, which is small where nothing waits
@@ -75,7 +75,7 @@ def any_waiting(db: sqlite3.Connection) -> bool:
 
 def read(
     db: sqlite3.Connection,
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     held: Inspections,
 ) -> list[Draft]:
@@ -108,7 +108,7 @@ def read(
 def keep(
     db: sqlite3.Connection,
     taken: list[Draft],
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     batch: int,
 ) -> Inspections:

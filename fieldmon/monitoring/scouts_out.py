@@ -96,7 +96,7 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
         photos = {person_key(who): at for who, at in db.execute(_LAST_PHOTO)}
         given = {one.digest: one.at for one in season_log.given_out(db) if one.date == str(on)}
         finds = _finds_since(db, min(given.values(), default=""), day) if given else []
-    codes = ahead.scouts, ahead.settings, int(season.label.line.max())
+    codes = ahead.scouts, ahead.settings, int(season.plant_numbers.line.max())
     coded = {person_key(one.name): one for one in ahead.scouts}
     team = {person_key(one.name): one.name for one in ahead.settings.team}
     out = []

@@ -251,7 +251,7 @@ class SeasonPlans(OpenSeason):
         theirs = np.zeros(len(plants), np.bool_)
         for name, rows in codes.items():
             if person_key(name) in out:
-                theirs |= scouts.inside(self.label, rows)[plants]
+                theirs |= scouts.inside(self.plant_numbers, rows)[plants]
         return plants[~theirs]
 
     def _unused_routes(
@@ -338,7 +338,7 @@ class SeasonPlans(OpenSeason):
             kept = [
                 (today, who)
                 for today, who in named
-                if routes.keep(db, settings, self.label, today, who)
+                if routes.keep(db, settings, self.plant_numbers, today, who)
             ]
             for today, who in kept:
                 season_log.append(db, "planned", who, by=by, **routes.in_words(settings, today))

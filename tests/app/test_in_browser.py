@@ -32,7 +32,7 @@ from fieldmon.io.writers import FORMATS
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import scout
 from tests.app.driving import until, zipped
@@ -464,10 +464,10 @@ def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
     x, y = free(page)
     plant = int(np.argmin(np.hypot(*(place - [x - box["x"], y - box["y"]]).T)))
     page.mouse.move(box["x"] + place[plant][0], box["y"] + place[plant][1])
-    label = row_label(plot.grid, np.array([plant]))
+    numbered = plant_numbers(plot.grid, np.array([plant]))
     tip = page.locator(f"{MAP} .tip")
     tip.wait_for()
-    said = f"row {label.line[0]}, plant {label.number[0]}"
+    said = f"row {numbered.line[0]}, plant {numbered.number[0]}"
     assert tip.inner_text().startswith(said)
     of_it = today.chance[[plant]]
     low, high = first_level_range(plot.grid, today.chance).of(of_it)
@@ -503,8 +503,8 @@ def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(asked_sc
     box = page.locator(MAP).bounding_box()
     plant = int(np.argmin(np.hypot(*(place - [x - box["x"], y - box["y"]]).T)))
     click(page, place[plant], says=texts.HISTORY)
-    label = row_label(plot.grid, np.array([plant]))
-    until(lambda: history(page) == (str(label.line[0]), str(label.number[0])))
+    numbered = plant_numbers(plot.grid, np.array([plant]))
+    until(lambda: history(page) == (str(numbered.line[0]), str(numbered.number[0])))
     image = becomes(
         page, lambda now: share_near(now, place[[plant]], (255, 190, 0), reach=45) == 1, "the ring"
     )

@@ -63,7 +63,7 @@ def test_a_plant_that_was_pulled_out_is_recorded_by_file_and_no_treatment_stands
     kept, first = Season(season), date.fromisoformat(BEGINS)
     kept.record(Inspections.of(np.arange(3), np.ones(3, int), np.datetime64(first)), "x")
     after = first + timedelta(days=1)
-    line, number = (of[:3].tolist() for of in kept.label)
+    line, number = (of[:3].tolist() for of in kept.plant_numbers)
     (tmp_path / "gone.csv").write_text(
         f"row,number,found,date,who\n{line[1]},{number[1]},pulled out,{after},Ana\n"
     )
@@ -110,7 +110,7 @@ def test_it_is_said_by_what_a_past_day_is_planned_and_how_to_plan_it_otherwise(r
 
 def test_plants_where_people_may_not_be_yet_are_left_out_and_that_is_said(run, season):
     kept, words = Season(season), ["plan", season, "--date", BEGINS, "--no-bound"]
-    on, line = date.fromisoformat(BEGINS), kept.label.line
+    on, line = date.fromisoformat(BEGINS), kept.plant_numbers.line
 
     def sprayed(rows):
         waits = Application("Acarol", reentry_hours=24.0, ended=time(5))

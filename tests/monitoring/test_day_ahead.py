@@ -108,19 +108,19 @@ def test_where_none_was_given_out_one_is(tmp_path):
 def test_a_part_has_stops_in_its_rows_only_and_is_given_out_to_nobody_else(season):
     given = season.kept_route(BEGINS)
     route = planned_again(season, BEGINS, WorkPart((1, 3)))
-    assert inside(season.label, (1, 3))[route.plant].all()
+    assert inside(season.plant_numbers, (1, 3))[route.plant].all()
     assert len(route)
     assert season.kept_route(BEGINS).tolist() == given.tolist()
     ahead = route_ahead(season, BEGINS, WorkPart((1, 3)))
-    assert inside(season.label, (1, 3))[ahead.plant].all()
+    assert inside(season.plant_numbers, (1, 3))[ahead.plant].all()
 
 
 def test_a_part_is_all_plants_of_its_rows_and_no_others(season):
-    line = season.label.line.tolist()
+    line = season.plant_numbers.line.tolist()
     for rows in ((1, 3), (2, 2), (4, 400), (3, 2)):
         wanted = [rows[0] <= one <= rows[1] for one in line]
-        assert inside(season.label, rows).tolist() == wanted
-    assert inside(season.label, None).all()
+        assert inside(season.plant_numbers, rows).tolist() == wanted
+    assert inside(season.plant_numbers, None).all()
 
 
 def test_the_rest_planned_again_fits_what_is_left_of_the_hours(season):
@@ -137,7 +137,7 @@ def test_the_hours_of_each_run_from_the_first_inspection_of_that_person(tmp_path
     late = np.array([15.5, 16.5]) * 3600.0
     first_s = fresh.plan(BEGINS).route.leave_s[0]
     fresh.record(Inspections.of(plants[:2], np.zeros(2, np.int8), BEGINS, second=late), "f", "Ann")
-    rows = (1, int(fresh.label.line.max()))
+    rows = (1, int(fresh.plant_numbers.line.max()))
     ann, ben = (work_hours(fresh, BEGINS, WorkPart(rows, who)) for who in ("Ann", "Ben"))
     assert ann.left_s == pytest.approx(day_s - 3600 - first_s)
     assert ben.left_s == day_s
@@ -190,12 +190,12 @@ def test_each_scout_has_a_whole_day_in_their_own_rows_and_goes_on_from_where_the
         scouts.let_in(fresh, part.name, part.rows)
     routes = {part: route_ahead(fresh, BEGINS, part) for part in (ann, dan)}
     for part, route in routes.items():
-        assert inside(fresh.label, part.rows)[route.plant].all()
+        assert inside(fresh.plant_numbers, part.rows)[route.plant].all()
         assert 0.9 * fresh.settings.robot.day_s < route.end_s <= fresh.settings.robot.day_s
         assert route_ahead(fresh, BEGINS, part).plant.tolist() == route.plant.tolist()
     told(fresh, "Ann", routes[ann].plant[:5], 21_700.0)
     told(fresh, "Dan", routes[dan].plant[:5], 22_000.0)
-    line = fresh.label.line
+    line = fresh.plant_numbers.line
     for again in (route_ahead, lambda *of: planned_again(*of, seconds_left=1200.0)):
         for part, route in routes.items():
             rest = again(fresh, BEGINS, part)
@@ -230,7 +230,7 @@ def test_a_code_with_other_rows_is_a_full_day_in_these(tmp_path):
     for rows in (None, (1, 8), (11, 19)):
         scouts.let_in(fresh, "Dan", rows)
         route = route_ahead(fresh, BEGINS, WorkPart(rows, "Dan"))
-        assert inside(fresh.label, rows)[route.plant].all()
+        assert inside(fresh.plant_numbers, rows)[route.plant].all()
         assert 0.9 * fresh.settings.robot.day_s < route.end_s <= fresh.settings.robot.day_s
         again = route_ahead(fresh, BEGINS, WorkPart(rows, "Dan"))
         assert again.plant.tolist() == route.plant.tolist()
@@ -261,7 +261,7 @@ def test_a_name_beside_the_team_has_its_own_rows_or_nothing(tmp_path):
     assert len(route_ahead(fresh, BEGINS, WorkPart(name="Anna"))) == 0
     own = route_ahead(fresh, BEGINS, WorkPart((1, 12), "Anna"))
     assert len(own)
-    assert inside(fresh.label, (1, 12))[own.plant].all()
+    assert inside(fresh.plant_numbers, (1, 12))[own.plant].all()
     assert not {*own.plant} & team
 
 

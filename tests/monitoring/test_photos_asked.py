@@ -69,7 +69,7 @@ def test_the_route_given_out_leads_by_what_is_asked_for(tmp_path):
     missed = next(k for k in range(len(season.plot.grid)) if k not in plain)
     ask_photo(season, missed)
     assert missed in route_ahead(season, BEGINS).plant
-    low = int(season.label.line[missed])
+    low = int(season.plant_numbers.line[missed])
     far = WorkPart(rows=(low + 2, low + 3))
     assert missed not in planned_again(season, BEGINS, far).plant, "a part is a part"
 
@@ -90,9 +90,9 @@ def test_of_a_team_or_of_parts_one_person_is_to_take_each(tmp_path):
     asked = DayAhead.of(season, BEGINS).asked_of
     to_take = {name: [one.plant for one in asked(WorkPart(name=name))] for name in ("Ann", "Ben")}
     assert to_take == {"Ann": [ann[0], nobodys], "Ben": [ben[0]]}
-    low = int(season.label.line[ann[0]])
+    low = int(season.plant_numbers.line[ann[0]])
     rows = DayAhead.of(season, BEGINS).asked_of(WorkPart(rows=(low, low), name="Cem"))
-    assert {int(season.label.line[one.plant]) for one in rows} == {low}
+    assert {int(season.plant_numbers.line[one.plant]) for one in rows} == {low}
 
 
 def test_copies_that_are_merged_ask_for_all_that_neither_took_back(path, tmp_path):

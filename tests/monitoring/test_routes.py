@@ -97,7 +97,7 @@ def test_a_route_has_the_digest_that_season_files_hold(season):
 def test_each_field_of_a_kept_route_and_of_its_stops_is_what_the_route_says(season):
     season.plan(BEGINS)
     today = season.plan(BEGINS)
-    route, grid, label = today.route, season.plot.grid, season.label
+    route, grid, numbered = today.route, season.plot.grid, season.plant_numbers
     kept = season.path.with_name("read.gpkg")
     season.store.back_up(kept)
     frame = pyogrio.read_dataframe(kept, layer="routes").set_index("revision").loc[2]
@@ -117,8 +117,8 @@ def test_each_field_of_a_kept_route_and_of_its_stops_is_what_the_route_says(seas
     plants = route.plant
     assert stops.get_coordinates().to_numpy() == pytest.approx(grid.lonlat()[plants])
     for name, values in (
-        ("stop", range(1, len(route) + 1)), ("plant", plants), ("line", label.line[plants]),
-        ("number", label.number[plants]), ("arrive_s", route.arrive_s), ("chance", route.chance),
+        ("stop", range(1, len(route) + 1)), ("plant", plants), ("line", numbered.line[plants]),
+        ("number", numbered.number[plants]), ("arrive_s", route.arrive_s), ("chance", route.chance),
     ):  # fmt: skip
         assert stops[name].tolist() == list(values), name
     clock = [(begin + timedelta(seconds=round(s))).isoformat() for s in route.arrive_s.tolist()]

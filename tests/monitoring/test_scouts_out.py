@@ -46,7 +46,7 @@ def test_it_says_who_has_which_rows_and_how_far_they_are(fresh):
 
 def test_what_is_ahead_of_who_has_other_rows_now_lies_in_these(fresh):
     scouts.let_in(fresh, "Dan", (1, 8))
-    line = fresh.label.line[route_ahead(fresh, BEGINS, WorkPart((1, 8), "Dan")).plant]
+    line = fresh.plant_numbers.line[route_ahead(fresh, BEGINS, WorkPart((1, 8), "Dan")).plant]
     scouts.let_in(fresh, "Dan", (7, 12))
     assert of(fresh, "Dan").ahead == int((line >= 7).sum())
     route = route_ahead(fresh, BEGINS, WorkPart((7, 12), "Dan"))

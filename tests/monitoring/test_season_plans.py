@@ -336,7 +336,7 @@ def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
 def test_a_code_for_some_rows_leaves_the_rest_of_the_days_plan_as_it_is(tmp_path):
     season = a_season(tmp_path / "rows.gpkg")
     own = season.plan(BEGINS).route.plant
-    line, day = season.label.line, np.datetime64(BEGINS)
+    line, day = season.plant_numbers.line, np.datetime64(BEGINS)
     rows, last = (int(line[own[0]]),) * 2, int(line.max())
     scouts.let_in(season, "Ann", rows)
     ann = route_ahead(season, BEGINS, WorkPart(rows, "Ann"))

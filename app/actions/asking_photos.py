@@ -49,7 +49,7 @@ def _show_asking(choices: Choices, plants: tuple[int, ...]) -> None:
 def _show_one(choices: Choices, one: AskedPhoto) -> None:
     numbered = choices.open_season.plant_numbers
     said, ends = st.columns([3, 1], vertical_alignment="center")
-    row = choices.open_season.plot.grid.row_signs[int(numbered.line[one.plant])]
+    row = choices.open_season.plot.grid.line_signs[int(numbered.line[one.plant])]
     plant = numbered.number[one.plant]
     note = texts.isolated(one.note)
     said.markdown(texts.ASKED_PHOTO.format(row=row, plant=plant, note=note))

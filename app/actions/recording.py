@@ -427,7 +427,7 @@ def show_said_otherwise(choices: Choices) -> None:
     said = choices.open_season.contradicting(choices.on)
     if not len(said):
         return
-    numbered, signs = choices.open_season.plant_numbers, choices.plot.grid.row_signs
+    numbered, signs = choices.open_season.plant_numbers, choices.plot.grid.line_signs
     lines = []
     for plant in dict.fromkeys(said.plant.tolist()):
         of = said.take(said.plant == plant)

@@ -32,7 +32,7 @@ def show(choices: Choices) -> None:
     if choices.season is None or ahead or not plants:
         return
     numbered = plant_numbers(choices.plot.grid, np.array(plants))
-    row = choices.plot.grid.row_signs[int(numbered.line[0])]
+    row = choices.plot.grid.line_signs[int(numbered.line[0])]
     st.markdown(texts.HERE.format(row=row, plant=int(numbered.number[0])))
     with st.container(horizontal=True, key="record_here"):
         for result in (FOUND, CLEAN):

@@ -65,8 +65,8 @@ def plot_document(season: Season) -> tuple[str, bytes]:
         "plant_spacing_m": grid.plant_spacing_m,
         "rows": {
             "start": grid.unbroken_start.tolist(),
-            "row": grid.row_number[rows].tolist(),
-            "sign": [grid.row_signs[row] for row in grid.row_number[rows].tolist()],
+            "row": grid.row_line_number[rows].tolist(),
+            "sign": [grid.line_signs[row] for row in grid.row_line_number[rows].tolist()],
             "aisle": grid.corridor[rows].tolist(),
             "side": (-grid.side[rows]).tolist(),
         },

@@ -61,7 +61,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
 
 def row_column(grid: PlantGrid, line: NDArray[np.int64]) -> dict[str, object]:
     """Return the column of a table that says the row: numbers, or texts where rows have names."""
-    named = [grid.row_signs[k] for k in line.tolist()] if grid.row_names else line
+    named = [grid.line_signs[k] for k in line.tolist()] if grid.row_names else line
     return {texts.COLUMN_ROW: named} if grid.in_rows else {}
 
 
@@ -248,7 +248,7 @@ def _risen(choices: Choices, since: str) -> str:
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
     rises = [texts.isolated(f"+{number(100 * rise[k], '.1f')}") for k in top]
     return listed(
-        f"{grid.row_signs[int(grid.line_number[k])]}\u00a0({said})"
+        f"{grid.line_signs[int(grid.line_number[k])]}\u00a0({said})"
         for k, said in zip(top, rises, strict=True)
     )
 

@@ -48,7 +48,7 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
         plant,
         lonlat,
         (texts.NEXT_PLACE if grid.in_rows else texts.NEXT_ALONE).format(
-            row=grid.row_signs[int(numbered.line[0])], plant=numbered.number[0]
+            row=grid.line_signs[int(numbered.line[0])], plant=numbered.number[0]
         ),
         texts.NEXT_WAY.format(
             metres=units.metres(drive_m), compass=texts.COMPASS[sector],

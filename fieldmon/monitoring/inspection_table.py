@@ -96,7 +96,7 @@ def _day(
         (line,), (number,) = plant_numbers(grid, plants[[dates.index(on)]])
         said = worded(
             "Row {line}, plant {number}: {said}",
-            line=grid.row_signs[int(line)], number=int(number), said=error.args[0],
+            line=grid.line_signs[int(line)], number=int(number), said=error.args[0],
         )  # fmt: skip
         raise SettingError(said) from None
 

@@ -61,7 +61,7 @@ class Contradictions:
         sentences: list[str] = []
         for line, number, date, was, now, together in zip(*(v.tolist() for v in told), strict=True):
             values = {
-                "line": grid.row_signs[line],
+                "line": grid.line_signs[line],
                 "number": number,
                 "date": date,
                 "result_names": worded(RESULT_NAMES[was]),

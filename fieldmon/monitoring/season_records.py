@@ -324,7 +324,7 @@ class SeasonRecords(OpenSeason):
                     inspection=inspection,
                 )
             )
-        signs = self.plot.grid.row_signs
+        signs = self.plot.grid.line_signs
         with self._lock, self.store.writing() as db:
             if inspection is None:
                 number, before = batches.to_undo(db, batch)
@@ -349,7 +349,7 @@ class SeasonRecords(OpenSeason):
         """
         with self._lock, self.store.writing() as db:
             but = season_log.left_out_of(db, batch)
-            changed, said = batches.redo(db, batch, but, self.plot.grid.row_signs)
+            changed, said = batches.redo(db, batch, but, self.plot.grid.line_signs)
             told = phone_tables.undo_as_told(db)
             changed |= {number for number, _ in told}
             for one in changed:

@@ -179,7 +179,7 @@ def _write_grid(db: sqlite3.Connection, grid: PlantGrid) -> None:
 
 def _write_plant_layers(db: sqlite3.Connection, grid: PlantGrid) -> None:
     lonlat, numbered = grid.lonlat(), plant_numbers(grid)
-    numbers, counts = grid.row_number[grid.unbroken], np.diff(grid.unbroken_start)
+    numbers, counts = grid.row_line_number[grid.unbroken], np.diff(grid.unbroken_start)
     lines = zip(row_corners(grid), numbers, counts, strict=True)
     rows = [
         (blob(LineString(grid.frame.lonlat(corners))), int(line), int(n))

@@ -65,7 +65,8 @@ def _told_finds(
     for find, around in zip(which[few].tolist(), count[few].tolist(), strict=True):
         line, number = (int(part[0]) for part in plant_numbers(scene.grid, finds[[find]]))
         words: dict[str, Any] = {
-            "plants": counted(around, "plant"), "row": scene.grid.row_signs[line], "number": number,
+            "plants": counted(around, "plant"), "row": scene.grid.line_signs[line],
+            "number": number,
         }  # fmt: skip
         if not scene.grid.in_rows:
             sentence = worded("{plants} around the find at plant {number}.", **words)

@@ -306,7 +306,7 @@ class PlantGrid:
         return {k: name for k, name, odd in own if odd and name and "\n" not in name}
 
     @cached_property
-    def row_signs(self) -> dict[int, str]:
+    def line_signs(self) -> dict[int, str]:
         """Return how each line is shown to people, by its number: that, and a name that says more.
 
         All lines, in their order on the ground.
@@ -315,7 +315,7 @@ class PlantGrid:
         return {k: f"{k} · {names[k]}" if k in names else f"{k}" for k in self.line_number.tolist()}
 
     @property
-    def row_number(self) -> NDArray[np.int64]:
+    def row_line_number(self) -> NDArray[np.int64]:
         """Number of each row's line as people count or name them, ``(r,)``."""
         return self.line_number[self.row_line]
 
@@ -386,7 +386,7 @@ def plant_numbers(grid: PlantGrid, plants: NDArray[np.integer] | None = None) ->
     along a line that is cut into pieces. Both faces of a plant share their numbers.
     """
     chosen = np.arange(len(grid)) if plants is None else np.asarray(plants)
-    line = grid.row_number[grid.row[chosen]]
+    line = grid.row_line_number[grid.row[chosen]]
     if grid.plant_called is not None:
         return PlantNumbers(line, grid.plant_called[chosen])
     return PlantNumbers(line, chosen - _line_faces(grid)[grid.row[chosen]] + 1)
@@ -484,16 +484,18 @@ def row_ends(grid: PlantGrid, line: NDArray[np.integer]) -> tuple[str, str]:
     beyond = [k for k in rows if k in grid.rows_beyond]
     own = [k for k in rows if k not in beyond] or beyond[:1]
     last = [*own[1:][-1:], *(k for k in beyond if k != own[0])] or own
-    return grid.row_signs[own[0]], ", ".join(grid.row_signs[k] for k in last)
+    return grid.line_signs[own[0]], ", ".join(grid.line_signs[k] for k in last)
 
 
 def rows_listed(grid: PlantGrid, line: NDArray[np.integer]) -> str:
     """Return which lines these are: ``1–12, 101 · 5A``."""
     rows = np.unique(line).tolist()
     if len(rows) == 1:
-        return grid.row_signs[rows[0]]
+        return grid.line_signs[rows[0]]
     own = runs(k for k in rows if k not in grid.rows_beyond)
-    return ", ".join([own] * bool(own) + [grid.row_signs[k] for k in rows if k in grid.rows_beyond])
+    return ", ".join(
+        [own] * bool(own) + [grid.line_signs[k] for k in rows if k in grid.rows_beyond]
+    )
 
 
 def _ends_in(name: str, number: int) -> bool:

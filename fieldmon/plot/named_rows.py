@@ -71,7 +71,7 @@ def place_in_words(grid: PlantGrid, plants: NDArray[np.bool_]) -> Worded:
     """Return where plants ``(n,)`` stand: the rows that they fill, or how many of which rows."""
     if plants.all():
         return worded("the whole plot")
-    line = grid.row_number[grid.row]
+    line = grid.row_line_number[grid.row]
     if not grid.in_rows or np.isin(line[~plants], line[plants]).any():
         return plants_in_words(grid, plants)
     rows = rows_listed(grid, line[plants])
@@ -84,7 +84,7 @@ def plants_in_words(grid: PlantGrid, plants: NDArray[np.bool_]) -> Worded:
     which = counted(int(np.count_nonzero(plants)), "plant")
     if not grid.in_rows:
         return which
-    line = grid.row_number[grid.row[plants]]
+    line = grid.row_line_number[grid.row[plants]]
     rows = rows_listed(grid, line)
     if len(np.unique(line)) == 1:
         return worded("{plants} in row {row}", plants=which, row=rows)
@@ -105,7 +105,7 @@ def plant_meant(grid: PlantGrid, row: str, plant: int) -> int:
                 "their numbers or by their names in the file of plants. Tap the plant on the map.",
                 name=plant,
                 some=runs(meant),
-                row=grid.row_signs[line],
+                row=grid.line_signs[line],
             )
         )
     return plant_at(grid, line, next(iter(meant), plant))

@@ -207,7 +207,7 @@ def _rows_out_of_order(grid: PlantGrid) -> str:
     block = block_number(grid, grid.row_start[first])
     odd = odd | (np.bincount(grid.row_line[grid.row]) < _TELLS)  # of strays others tell
     some: list[str] = []
-    signs = list(grid.row_signs.values())
+    signs = list(grid.line_signs.values())
     for k in range(1, grid.n_blocks + 1):
         lines = np.flatnonzero((block == k) & ~odd)
         for at in out_of_order([keys[line] for line in lines.tolist()]):
@@ -323,7 +323,7 @@ def _plants_out_of_order(grid: PlantGrid) -> str:
     if not wrong.any() or n_in_order < max(_LEAST_IN_ORDER, _IN_ORDER * np.count_nonzero(asked)):
         return ""
     some = []
-    signs = list(grid.row_signs.values())
+    signs = list(grid.line_signs.values())
     for row in np.flatnonzero(wrong)[:_NAMED].tolist():
         at = int(np.flatnonzero(back & (line[1:] == row))[0])
         near = range(max(at - 1, 0), min(at + 3, len(line)))
@@ -362,7 +362,7 @@ def _rows_from_the_other_end(grid: PlantGrid) -> str:
             wrong += lines[asked[odd]].tolist()
     if not wrong:
         return ""
-    signs = list(grid.row_signs.values())
+    signs = list(grid.line_signs.values())
     some = [signs[line] for line in wrong[:_NAMED]]
     n = len(wrong)
     return worded(

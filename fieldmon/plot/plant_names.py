@@ -282,7 +282,7 @@ def _doubt_of_plants(grid: PlantGrid) -> str:
     line = plant_numbers(grid).line[wrong].tolist()
     names = grid.plant_named[wrong].tolist()
     some = [
-        worded("{name} in row {row}", name=name or "?", row=grid.row_signs.get(row, row))
+        worded("{name} in row {row}", name=name or "?", row=grid.line_signs.get(row, row))
         for name, row in dict.fromkeys(zip(names, line, strict=True))
     ]
     where = (

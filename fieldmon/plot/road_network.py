@@ -237,7 +237,7 @@ def _called(grid: PlantGrid, narrow: _Narrow | None = None) -> Callable[[Index],
     """Return what names rows by their places among those that must be reached."""
     if not grid.in_rows:
         return lambda trees: numbers_listed(plant_numbers(grid, trees).number.tolist())
-    number = grid.row_number if narrow is None else grid.row_number[~narrow.rows]
+    number = grid.row_line_number if narrow is None else grid.row_line_number[~narrow.rows]
     return lambda rows: rows_listed(grid, number[rows])
 
 

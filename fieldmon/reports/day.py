@@ -344,7 +344,7 @@ def _stops(facts: DayFacts) -> Table:
         own = numbered.number[numbered.line == line].tolist()
         rows.append(
             (
-                grid.row_signs[line] if grid.in_rows else NO_ROW,
+                grid.line_signs[line] if grid.in_rows else NO_ROW,
                 _clock(facts, facts.route.arrive_s[k]),
                 f"{len(own)}",
                 which(own, _WHICH[flow]),
@@ -392,7 +392,7 @@ def _found(facts: DayFacts) -> Table:
     numbered = plant_numbers(grid, facts.found)
     rows = tuple(
         (
-            grid.row_signs[line] if grid.in_rows else NO_ROW,
+            grid.line_signs[line] if grid.in_rows else NO_ROW,
             runs(numbered.number[numbered.line == line].tolist()),
         )
         for line in np.unique(numbered.line).tolist()
@@ -405,7 +405,7 @@ def _found(facts: DayFacts) -> Table:
 
 def _every_stop(facts: DayFacts) -> TickList:
     """Return every stop with a box to tick or, once the day is over, with its result."""
-    route, signs = facts.route, facts.route.aisles.grid.row_signs
+    route, signs = facts.route, facts.route.aisles.grid.line_signs
     numbered = plant_numbers(route.aisles.grid, route.plant)
     said = [
         words.RESULTS[facts.results.get(plant, -1)] if facts.worked else "☐"

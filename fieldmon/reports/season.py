@@ -215,7 +215,7 @@ def _share_found(status: Status) -> KeyFigure:
 
 def _rows_seen(facts: _Facts) -> Iterator[str]:
     """Yield which rows nobody was in, ever or for a week."""
-    line = facts.season.plot.grid.row_number
+    line = facts.season.plot.grid.row_line_number
     lines = np.unique(line)
     days = np.array([_least(facts.status.days_since[line == one]) for one in lines.tolist()])
     never, late = lines[np.isinf(days)], lines[np.isfinite(days) & (days >= _LATE_DAYS)]
@@ -316,7 +316,7 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     rows = []
     for line in np.unique(numbered.line).tolist():
         own = numbered.number[numbered.line == line].tolist()
-        row = grid.row_signs[line] if grid.in_rows else NO_ROW
+        row = grid.line_signs[line] if grid.in_rows else NO_ROW
         rows.append((row, f"{len(own)}", which(own, _FINDS_LONG)))
     yield Table(
         words.FINDS_BY_ROW, words.FINDS_COLUMNS, tuple(rows), (0.12, 0.12, 0.76), flow=2,

@@ -32,7 +32,7 @@ def labels(plot):
 
 def signs(plot):
     """Return what stands at each row of a plot on maps."""
-    return list(plot.grid.row_signs.values())
+    return list(plot.grid.line_signs.values())
 
 
 def test_names_say_of_how_many_plants_they_are():
@@ -99,7 +99,7 @@ def test_a_row_without_a_number_of_its_own_is_beyond_those_of_all_blocks():
     block = np.where(ROW < 3, "east", "west")
     plot = named([["1", "2", "5A", "2", "1", "Top"][k] for k in ROW], None, block)
     assert labels(plot)[0] == [[1, 2, 101, 4, 3, 102][k] for k in ROW]
-    assert list(plot.grid.row_signs.values()) == ["1", "2", "101 · 5A", "4", "3", "102 · Top"]
+    assert list(plot.grid.line_signs.values()) == ["1", "2", "101 · 5A", "4", "3", "102 · Top"]
     assert "5A is row 101, Top is row 102" in said_of_numbers(plot.grid)[-1]
 
 

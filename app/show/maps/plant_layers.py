@@ -63,7 +63,7 @@ def plants(
     arrays = {"places": _places(grid), "ranks": shade.rank.tobytes()}
     tips: dict[str, object] = {"text": texts.TIP_PLANT if grid.in_rows else texts.TIP_ALONE}
     if grid.row_names:
-        tips["rows"] = grid.row_signs
+        tips["rows"] = grid.line_signs
     if notes.chance is not None:
         arrays["values"] = notes.chance.astype("<f4").tobytes()
         tips["values"] = texts.TIP_CHANCE

@@ -51,7 +51,7 @@ def test_plants_are_where_they_are_with_their_rows(served):
     assert plot["plants"]["number"] == numbered.number.tolist()
     start, row = plot["rows"]["start"], plot["rows"]["row"]
     assert np.repeat(row, np.diff(start)).tolist() == numbered.line.tolist()
-    assert plot["rows"]["sign"] == [grid.row_signs[k] for k in row]
+    assert plot["rows"]["sign"] == [grid.line_signs[k] for k in row]
     assert plot["zone"] == "Asia/Jerusalem"
     _tells_where_the_aisles_are(served.season, plot)
     assert plot_document(served.season) == (name, made)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import (
     Contact,
     Feature,
@@ -26,10 +26,10 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.preparing import believed, prepared
+from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import known
 from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.times import day, day_on
-from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, PAIRED
 from fieldmon.errors import SettingError
 from fieldmon.samplers import USUAL, kind_of

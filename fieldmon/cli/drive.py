@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fieldmon.cli.messages import tell_assumed, tell_past_midnight
-from fieldmon.cli.numbers import refusing, within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import refusing, within
 from fieldmon.cli.options import (
     Every,
     Feature,

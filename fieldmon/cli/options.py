@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.named_values import Options, chosen, chosen_of_file
-from fieldmon.cli.numbers import of_robot, within
+from fieldmon.cli.option_ranges import of_robot, within
 from fieldmon.cli.raster_options import RasterFiles
 from fieldmon.compute.ranges import CHANCE, DAYS, SEED, SHARE
 from fieldmon.errors import SettingError

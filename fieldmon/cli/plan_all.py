@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from fieldmon.cli.messages import assumed_in_words, tell_assumed_of_plots
+from fieldmon.cli.progress import progress
 from fieldmon.cli.season_files import refuse_unrecorded
-from fieldmon.cli.waiting import progress
 from fieldmon.compute.cores import cores
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fieldmon.cli.named_values import named_values
-from fieldmon.cli.numbers import within
+from fieldmon.cli.option_ranges import within
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:

@@ -15,10 +15,10 @@ from fieldmon.cli.messages import (
 )
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import MoveMinutes, Robots, StartTime, WorkDate, WorkerOptions
+from fieldmon.cli.progress import progress
 from fieldmon.cli.season_files import opened
 from fieldmon.cli.team_files import members_of, tell_member
 from fieldmon.cli.times import clock, day, day_on
-from fieldmon.cli.waiting import progress
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 

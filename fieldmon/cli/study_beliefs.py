@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.compute.ranges import SEASONS, AllowedRange

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fieldmon.cli.messages import Terminal, tell_assumed
-from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import of_robot, within
 from fieldmon.cli.options import (
     Bearing,
     BothFaces,
@@ -22,10 +22,10 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.preparing import estate
+from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import OWN
 from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.cli.times import day, day_on
-from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, DAYS, SEASONS, SEED, SHARE
 from fieldmon.samplers import COMPARED
 

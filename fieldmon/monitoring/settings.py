@@ -27,7 +27,7 @@ from fieldmon.pests.pest import seen_by_pest, tells_detection
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ, person_key
 from fieldmon.plot.robot import ROBOT_TIMES, Robot, Viewpoints
 from fieldmon.samplers import USUAL, sampler
-from fieldmon.samplers.answers import must_detect
+from fieldmon.samplers.checked_sampler import must_detect
 
 if TYPE_CHECKING:
     from fieldmon.pests.pest import Pest

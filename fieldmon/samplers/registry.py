@@ -177,7 +177,7 @@ def sampler_or_name(given: str | Sampler) -> Sampler:
         )
     if type(given).__module__.startswith("fieldmon."):
         return given
-    from fieldmon.samplers.answers import Checked  # noqa: PLC0415 - it has a loop to compile
+    from fieldmon.samplers.checked_sampler import Checked  # noqa: PLC0415 - it has a loop to compile
 
     return Checked(given)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring import routes
+from fieldmon.monitoring import kept_routes
 from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.history import BEGINS_OTHERWISE_S
 from fieldmon.monitoring.photos_asked import photos_asked_in
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.monitoring.kept_routes import KeptRoute
     from fieldmon.monitoring.photos_asked import AskedPhoto
-    from fieldmon.monitoring.routes import KeptRoute
     from fieldmon.monitoring.scouts import Scout
     from fieldmon.monitoring.season_file import Season
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -109,8 +109,8 @@ class DayAhead:
     def of(cls, season: Season, on: date) -> DayAhead:
         """Return it of the day `on`."""
         with season.reading() as (db, settings):
-            last = routes.kept_last(db, settings.day(on))
-            plants = {who: routes.plants(db, kept) for who, kept in last.items()}
+            last = kept_routes.kept_last(db, settings.day(on))
+            plants = {who: kept_routes.plants(db, kept) for who, kept in last.items()}
             people, asked = scouts_in(db), photos_asked_in(db)
         return cls(season.plant_numbers, settings, people, last, plants, asked)
 
@@ -271,7 +271,7 @@ def by_the_clock(season: Season, on: date, part: WorkPart, plan: DayPlan) -> Day
         fit = replace(plan, scene=scene)
     if notes is None:
         return fit
-    notes = replace(notes, start=routes.begins(season.planned_by(on), fit, hours.begins_s))
+    notes = replace(notes, start=kept_routes.begins(season.planned_by(on), fit, hours.begins_s))
     return replace(fit, route=replace(fit.route, notes=notes))
 
 
@@ -280,7 +280,7 @@ def _given_last(season: Season, on: date, ahead: DayAhead, wishes: Wishes) -> Da
 
     None holds that leads to plants that are closed by now, or not where it is wished.
     """
-    if not routes.is_last(ahead.last) or not season.holds_still(on, ahead.last[""].digest):
+    if not kept_routes.is_last(ahead.last) or not season.holds_still(on, ahead.last[""].digest):
         return None
     with season.entering_treated():
         scene = season.scene(on)
@@ -295,7 +295,7 @@ def _given_last(season: Season, on: date, ahead: DayAhead, wishes: Wishes) -> Da
     begins = ahead.last[""].begins
     if len(season.worked(on)):  # a second more or less is no stop less
         given = _fitting(scene, left, scene.seconds_left + 1.0)
-        begins = routes.begins(season.planned_by(on), given, season.begun_s(on))
+        begins = kept_routes.begins(season.planned_by(on), given, season.begun_s(on))
     else:
         given = through(scene, left)
     notes = RouteNotes(season.plot.field.name, ahead.settings.sampler, begins)

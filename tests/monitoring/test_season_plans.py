@@ -11,7 +11,7 @@ from fieldmon.infestation.inspections import CLEAN, SKIPPED, Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.day_ahead import WorkPart, route_ahead
 from fieldmon.monitoring.history import Besides
-from fieldmon.monitoring.routes import kept_last
+from fieldmon.monitoring.kept_routes import kept_last
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import person_key, team_of
 from fieldmon.planning.wishes import Wishes

@@ -7,7 +7,7 @@ import pyogrio
 import pytest
 import shapely
 
-from fieldmon.monitoring import Season, routes
+from fieldmon.monitoring import Season, kept_routes
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot
@@ -134,15 +134,15 @@ def test_the_route_of_one_of_a_team_begins_when_that_one_does(tmp_path):
     for today, name in zip(days, ("Ann", "Ben"), strict=True):
         assert season.kept_route(BEGINS, name).tolist() == today.route.plant.tolist()
         with season.store.reading() as db:
-            assert routes.is_kept(db, today, name)
-            assert not routes.is_kept(db, today, "")
+            assert kept_routes.is_kept(db, today, name)
+            assert not kept_routes.is_kept(db, today, "")
 
 
 def test_all_plans_of_a_day_are_told_with_the_last_apart(season):
     rest = season.plan(BEGINS)
     with season.store.reading() as db:
-        (kept,) = routes.of_day(db, 0)
-        assert routes.of_day(db, 1) == []
+        (kept,) = kept_routes.of_day(db, 0)
+        assert kept_routes.of_day(db, 1) == []
     assert kept.last.tolist() == rest.route.plant.tolist()
     assert {*kept.last} < {*kept.of_all}
     assert kept.hours() <= ROBOT.hours

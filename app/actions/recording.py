@@ -17,7 +17,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.io.parse import result_words
-from fieldmon.monitoring.brought_findings import read_brought, record_saved
+from fieldmon.monitoring.inspection_import import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, plant_numbers
 from fieldmon.plot.local_clock import local_clock
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from fieldmon.io.import_report import ImportMessage
     from fieldmon.monitoring.batches import Batch, BatchContents, Recorded
-    from fieldmon.monitoring.brought_findings import BroughtFile
+    from fieldmon.monitoring.inspection_import import BroughtFile
 
     from ..state.choices import Choices
 

@@ -20,10 +20,10 @@ from fieldmon.monitoring import (
     outside_changes,
     rows_that_count,
 )
+from fieldmon.monitoring.contradictions import Contradictions, corrected_against
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.inspection_table import time_text
 from fieldmon.monitoring.outside_changes import OutsideChange
-from fieldmon.monitoring.recorded_before import Contradictions, corrected_against
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.parse.result_words import GONE, gone_note
 from fieldmon.monitoring import inspection_lots, inspection_table, repeated_recordings
+from fieldmon.monitoring.contradictions import contradictions, said_before
 from fieldmon.monitoring.geopackage import beside_plot, geometry, touch
-from fieldmon.monitoring.recorded_before import contradictions, said_before
 from fieldmon.monitoring.schema import INSPECTIONS
 
 if TYPE_CHECKING:

@@ -33,16 +33,16 @@ from fieldmon.monitoring import (
     treatments,
 )
 from fieldmon.monitoring.batches import Recorded, Undone, more_in_words
-from fieldmon.monitoring.merging import Merged
-from fieldmon.monitoring.open_season import OpenSeason, settings_of
-from fieldmon.monitoring.people import as_written, names_written, written_in
-from fieldmon.monitoring.recorded_before import (
+from fieldmon.monitoring.contradictions import (
     Contradictions,
     contradicting,
     contradictions,
     known_before,
     said_before,
 )
+from fieldmon.monitoring.merging import Merged
+from fieldmon.monitoring.open_season import OpenSeason, settings_of
+from fieldmon.monitoring.people import as_written, names_written, written_in
 from fieldmon.monitoring.settings import seconds
 from fieldmon.monitoring.told_detection import said_now
 from fieldmon.monitoring.transactions import Store

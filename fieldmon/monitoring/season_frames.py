@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fieldmon.compute.kinds import checked
+from fieldmon.monitoring.certifier_tables import inspections_table, treatments_table
 from fieldmon.monitoring.day_figures import DayFigures
-from fieldmon.monitoring.record_tables import inspections_table, treatments_table
 from fieldmon.monitoring.season_estimates import SeasonEstimates
 from fieldmon.monitoring.season_records import SeasonRecords
 from fieldmon.monitoring.season_treatments import SeasonTreatments

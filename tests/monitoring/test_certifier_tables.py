@@ -14,7 +14,7 @@ from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Application, Season
-from fieldmon.monitoring.record_tables import (
+from fieldmon.monitoring.certifier_tables import (
     csv_bytes,
     inspections_table,
     log_table,

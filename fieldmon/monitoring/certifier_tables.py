@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.open_season import OpenSeason
-    from fieldmon.monitoring.season_records import SeasonRecords
+    from fieldmon.monitoring.season_inspections import SeasonInspections
     from fieldmon.monitoring.season_treatments import SeasonTreatments
 
 #: what stands in each line, by column
@@ -113,7 +113,7 @@ def _treatments(season: SeasonTreatments) -> Iterator[dict[str, object]]:
         yield dict(zip(_TREATMENT, values, strict=True))
 
 
-def inspections_table(season: SeasonRecords) -> Table:
+def inspections_table(season: SeasonInspections) -> Table:
     """Return a line for each inspection that counts: recorded again, they change nothing."""
     with season.one_moment():
         done, corrected = season.history.inspections, season.corrected_by()

@@ -71,7 +71,7 @@ _GONE = (
 
 
 @checked
-class SeasonRecords(OpenSeason):
+class SeasonInspections(OpenSeason):
     """The inspections of a season, whoever brings them; each batch can be undone."""
 
     def contradictions(self, inspections: Inspections) -> Contradictions:

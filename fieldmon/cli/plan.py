@@ -30,7 +30,7 @@ from fieldmon.errors import SettingError
 from fieldmon.samplers.own import label_of
 
 if TYPE_CHECKING:
-    from fieldmon.io.sources import PlotRequest
+    from fieldmon.io.plot_request import PlotRequest
 
 # how far below what no route can exceed a plan says that another one may find more
 _FAR_BELOW = 0.05

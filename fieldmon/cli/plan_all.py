@@ -22,8 +22,8 @@ from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.compute.cores import cores
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole
+from fieldmon.io.plot_request import PlantingChoices
 from fieldmon.io.prepare import lay
-from fieldmon.io.sources import PlantingChoices
 from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name

@@ -15,7 +15,7 @@ def plots(
     import numpy as np
 
     from fieldmon.io.parse.geometry import areas_m2
-    from fieldmon.io.sources import PlotRequest, PlotSources
+    from fieldmon.io.plot_request import PlotRequest, PlotSources
 
     options = plot_options(None, crs, layer, plot_option)
     listed = estate(PlotRequest(PlotSources(plot, options))).fields

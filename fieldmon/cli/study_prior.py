@@ -160,7 +160,7 @@ def site_of(file: Path, feature: str | None, observations: Path | None) -> Site:
     from fieldmon.infestation.prior import prior_chance
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.io.options import PlotOptions
-    from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
+    from fieldmon.io.plot_request import PlotRequest, PlotSources, RecordSource
     from fieldmon.studies.thesis.chapter5.sites import Site
 
     sources = PlotSources(file, PlotOptions(feature=feature))

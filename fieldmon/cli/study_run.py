@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-    from fieldmon.io.sources import PlantingChoices
+    from fieldmon.io.plot_request import PlantingChoices
     from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.field import Field
     from fieldmon.simulation.design import Design
@@ -127,7 +127,7 @@ class StudyOptions:
 
     def planting(self) -> PlantingChoices:
         """Return what was said of the rows."""
-        from fieldmon.io.sources import PlantingChoices
+        from fieldmon.io.plot_request import PlantingChoices
 
         spacings = self.row_spacing, self.plant_spacing, self.headland
         return PlantingChoices(self.bearing, *spacings, 2 if self.both_faces else None)
@@ -137,7 +137,7 @@ class StudyOptions:
         import numpy as np
 
         from fieldmon.io.options import PlotOptions
-        from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
+        from fieldmon.io.plot_request import PlotRequest, PlotSources, RecordSource
         from fieldmon.plot.plot import planting_of
         from fieldmon.simulation.results import first_day
         from fieldmon.simulation.study_plot import StudyPlot

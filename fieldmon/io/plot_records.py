@@ -25,10 +25,10 @@ from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fieldmon.io.readers.places import Plants
-    from fieldmon.io.sources import (
+    from fieldmon.io.plot_request import (
         RecordSource,
     )
+    from fieldmon.io.readers.places import Plants
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot

@@ -14,8 +14,8 @@ from shapely import LineString, MultiLineString, MultiPolygon
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.io.drawn_rows import blocks_of_each, blocks_on, cut_each, guess_each, rows_of_each
 from fieldmon.io.options import PlotOptions
+from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources
 from fieldmon.io.prepare import prepare, prepare_estate
-from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import block_number

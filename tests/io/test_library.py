@@ -9,8 +9,8 @@ import pytest
 from fieldmon.errors import ChoiceNeeded, ImportDoubt, SettingError
 from fieldmon.io import library, read
 from fieldmon.io.options import PlotOptions, ReadOptions, Upload
+from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources
 from fieldmon.io.prepare import prepare
-from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
 from tests.paths import SAMPLE_DATA
 
 ESTATE = SAMPLE_DATA / "paran_estate.zip"

@@ -7,12 +7,12 @@ import shapely
 from fieldmon.errors import ChoiceNeeded, FileProblem, ObservationError, PlotError
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.plot_records import records_on
-from fieldmon.io.prepare import lay, prepare, prepare_estate
-from fieldmon.io.sources import (
+from fieldmon.io.plot_request import (
     PlotRequest,
     PlotSources,
     RecordSource,
 )
+from fieldmon.io.prepare import lay, prepare, prepare_estate
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import nearest_plants, plant_numbers
 from fieldmon.plot.plot import Plot

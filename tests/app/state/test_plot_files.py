@@ -13,8 +13,8 @@ from app.state.brought_files import File
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.options import Upload
+from fieldmon.io.plot_request import PlotRequest, PlotSources, RecordSource
 from fieldmon.io.prepare import prepare
-from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
 from fieldmon.plot.grid import plant_at, plant_numbers
 from fieldmon.plot.plot import Plot
 from tests.app.driving import (

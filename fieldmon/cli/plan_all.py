@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
-    from fieldmon.io.prepared import Estate, EstateRecords
+    from fieldmon.io.prepared_plots import Estate, EstateRecords
     from fieldmon.planning.many_plots import Orders, Task
 
 SUMMARY = "summary.csv"

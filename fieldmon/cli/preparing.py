@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.io.plot_request import PlotRequest
-    from fieldmon.io.prepared import Estate, Prepared
+    from fieldmon.io.prepared_plots import Estate, Prepared
 
 
 def prepared(request: PlotRequest, terminal: Terminal | None = None) -> Prepared:

@@ -13,7 +13,7 @@ from fieldmon.errors import ChoiceNeeded, FieldmonError, ObservationError, PlotE
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful
 from fieldmon.io.options import source_name
-from fieldmon.io.prepared import EstateRecords, Laid
+from fieldmon.io.prepared_plots import EstateRecords, Laid
 from fieldmon.io.read import (
     read_records,
     read_records_by_plot,

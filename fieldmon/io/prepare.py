@@ -25,7 +25,14 @@ from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import source_name
 from fieldmon.io.plot_records import MOST_NAMED, records_of, records_on
 from fieldmon.io.plot_request import PlantingChoices
-from fieldmon.io.prepared import Estate, EstateRecords, Laid, Listener, Prepared, SourceMessage
+from fieldmon.io.prepared_plots import (
+    Estate,
+    EstateRecords,
+    Laid,
+    Listener,
+    Prepared,
+    SourceMessage,
+)
 from fieldmon.io.read import (
     read_crews,
     read_lines,

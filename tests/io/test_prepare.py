@@ -22,7 +22,7 @@ from fieldmon.io.plot_request import (
     RiskSource,
 )
 from fieldmon.io.prepare import lay, one_of, prepare, prepare_estate
-from fieldmon.io.prepared import Laid
+from fieldmon.io.prepared_plots import Laid
 from fieldmon.io.read import read_plots
 from tests.io.three_parcels import (
     DAY,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.files_to_plot import believed, prepared
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import (
@@ -25,7 +26,6 @@ from fieldmon.cli.options import (
     WorkerOptions,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
-from fieldmon.cli.preparing import believed, prepared
 from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import known
 from fieldmon.cli.study_output import can_be_folder, going_on, write_all

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fieldmon.cli.files_to_plot import prepared
 from fieldmon.cli.messages import tell_assumed, tell_past_midnight
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import refusing, within
@@ -24,7 +25,6 @@ from fieldmon.cli.options import (
     WorkerOptions,
     sampler_of,
 )
-from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import OneSampler
 from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.times import day, day_on

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.files_to_plot import prepared
 from fieldmon.cli.messages import tell_unusable
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
@@ -28,7 +29,6 @@ from fieldmon.cli.options import (
     sampler_settings,
 )
 from fieldmon.cli.pest_options import SAYS_ITSELF, PestOptions, prior_of
-from fieldmon.cli.preparing import prepared
 from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.sampler_names import OneSampler
 from fieldmon.cli.team_files import members_of

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from fieldmon.cli.files_to_plot import believed, prepared
 from fieldmon.cli.messages import tell_assumed
 from fieldmon.cli.outputs import write_chance_map
 from fieldmon.cli.pest_options import prior_of
-from fieldmon.cli.preparing import believed, prepared
 from fieldmon.cli.progress import counting
 from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.cli.team_files import (

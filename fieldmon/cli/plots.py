@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import typer
 
+from fieldmon.cli.files_to_plot import estate
 from fieldmon.cli.options import Crs, Layer, PlotChoices, PlotFile, plot_options
-from fieldmon.cli.preparing import estate
 
 
 def plots(

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.files_to_plot import prepared
 from fieldmon.cli.messages import Terminal
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import StudySeed
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
-from fieldmon.cli.preparing import prepared
 from fieldmon.cli.progress import counting
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.compute.ranges import SEASONS

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fieldmon.cli.files_to_plot import estate
 from fieldmon.cli.messages import Terminal, tell_assumed
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import of_robot, within
@@ -21,7 +22,6 @@ from fieldmon.cli.options import (
     VisitEvery,
 )
 from fieldmon.cli.pest_options import PestOptions
-from fieldmon.cli.preparing import estate
 from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import OWN
 from fieldmon.cli.study_output import can_be_folder, going_on

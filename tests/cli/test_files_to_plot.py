@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.cli.preparing import estate, prepared
+from fieldmon.cli.files_to_plot import estate, prepared
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.options import PlotOptions, RecordOptions, Upload
 from fieldmon.io.plot_request import PlotRequest, PlotSources, RecordSource

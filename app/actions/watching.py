@@ -14,7 +14,7 @@ from fieldmon.errors import FieldmonError
 from ..state import cached_simulations, widget_memory
 from ..words import texts
 from ..words.language import of_error
-from . import background
+from . import background_work
 
 if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene
@@ -43,7 +43,7 @@ def robot(key: str, scene: Scene) -> LiveDrive | None:
         st.error(of_error(error))
         return None
     live = cached_simulations.live_drive(key, broker, name, scene)
-    at_work = background.buttons(live, texts.DRIVE_WATCH, key="drive_watch", over=False)
+    at_work = background_work.buttons(live, texts.DRIVE_WATCH, key="drive_watch", over=False)
     st.fragment(_standing, run_every=1.0 if at_work else None)(live, at_work=at_work)
     return live
 

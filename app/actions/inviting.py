@@ -12,7 +12,7 @@ from fieldmon.planning.members import person_key
 from fieldmon.plot.named_rows import rows_meant
 
 from ..show import qr_code, who_is_out
-from ..state import morning, notices, phone_address, scout_page
+from ..state import morning_steps, notices, phone_address, scout_page
 from ..words import language, texts
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def _invite(choices: Choices) -> str:
     rows = rows_meant(choices.plot.grid, first, last)
     before = {person_key(one.name) for one in scouts.scouts_of(choices.open_season)}
     state[_SHOWN] = name, let_in(choices, name, None if whole else rows)
-    morning.note(choices, morning.SEND)
+    morning_steps.note(choices, morning_steps.SEND)
     return _what_follows(choices, name, had_code=person_key(name) in before)
 
 

@@ -15,7 +15,7 @@ from fieldmon.monitoring.settings import MOST_DAYS
 from fieldmon.pests.pest import seen_by_pest
 from fieldmon.plot import robot as robots
 from fieldmon.plot.local_clock import local_clock
-from fieldmon.samplers import USUAL
+from fieldmon.samplers import USUAL_SAMPLER
 
 from ..state import (
     assumptions,
@@ -295,7 +295,7 @@ def _work(work: Work) -> tuple[Robot, str]:
             base = robot_boxes.of_files(base)
         sampler = widget_memory.show(
             st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
-            default=USUAL, **changing_strategy.named(),
+            default=USUAL_SAMPLER, **changing_strategy.named(),
         )  # fmt: skip
         st.caption(sampler_does(sampler))
     return replace(base, hours=float(day_h), look_s=float(inspection_s)), sampler

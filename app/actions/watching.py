@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.drive.vda5050.mqtt import Broker, RobotName
-from fieldmon.drive.vda5050.versions import USUAL, VERSIONS
+from fieldmon.drive.vda5050.versions import USUAL_VERSION, VERSIONS
 from fieldmon.drive.vda5050.watcher import FAILED, LOST, PAUSED, WAITING
 from fieldmon.errors import FieldmonError
 
@@ -33,8 +33,8 @@ def robot(key: str, scene: Scene) -> LiveDrive | None:
     )
     serial = show(second.text_input, texts.DRIVE_SERIAL, key="drive_serial", default="robot1")
     version = show(
-        st.segmented_control, texts.DRIVE_VDA, list(VERSIONS), key="drive_vda", default=USUAL,
-        required=True,
+        st.segmented_control, texts.DRIVE_VDA, list(VERSIONS), key="drive_vda",
+        default=USUAL_VERSION, required=True,
     )  # fmt: skip
     try:
         name, broker = RobotName(maker, serial, version), Broker.of(where)

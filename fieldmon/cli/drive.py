@@ -30,7 +30,7 @@ from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import SettingError
-from fieldmon.samplers import USUAL
+from fieldmon.samplers import USUAL_SAMPLER
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -121,7 +121,7 @@ class DriveOptions:
     ] = None
     observations: Records = None
     feature: Feature = None
-    sampler: OneSampler = USUAL
+    sampler: OneSampler = USUAL_SAMPLER
     every: Every = None
     on: WorkDate = None
     infested: Annotated[

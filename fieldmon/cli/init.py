@@ -36,7 +36,7 @@ from fieldmon.cli.times import WorkStart, clock, day
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError
-from fieldmon.samplers import USUAL
+from fieldmon.samplers import USUAL_SAMPLER
 
 if TYPE_CHECKING:
     from datetime import datetime, time
@@ -56,7 +56,7 @@ class InitOptions:
     plot: MaybePlotFile = None
     observations: Records = None
     feature: Feature = None
-    sampler: OneSampler = USUAL
+    sampler: OneSampler = USUAL_SAMPLER
     every: Every = None
     begins: Annotated[
         str | None, typer.Option(help="First day of the season, YYYY-MM-DD; default: today.")

@@ -71,8 +71,8 @@ class Infestations(NamedTuple):
     seen: Ints
 
     @classmethod
-    def room(cls, places: int) -> Infestations:
-        """Return places for so many."""
+    def empty(cls, places: int) -> Infestations:
+        """Return places for so many, none taken."""
         ints = np.zeros((7, places), np.int64)
         ints[3] = NOBODY
         plant, begins, ends, parent, children, earliest, seen = ints
@@ -85,7 +85,7 @@ class Infestations(NamedTuple):
 
     def copied(self, places: int) -> Infestations:
         """Return the same with so many places more."""
-        wider = Infestations.room(len(self.plant) + places)
+        wider = Infestations.empty(len(self.plant) + places)
         for mine, own in zip(wider, self, strict=True):
             mine[: len(own)] = own
         return wider

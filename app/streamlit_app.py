@@ -25,7 +25,7 @@ from fieldmon.errors import FieldmonError  # noqa: E402 - after the path is righ
 
 from .show import field_map  # noqa: E402
 from .startup import first_screen, preload  # noqa: E402
-from .state import browser, button_presses, chosen_language, plot_source, rooms, widget_memory  # noqa: E402
+from .state import browser, button_presses, chosen_language, menu, plot_source, widget_memory  # noqa: E402
 from .words import language, texts  # noqa: E402
 from .words.language import of_error  # noqa: E402
 
@@ -62,10 +62,10 @@ def view(name: str) -> ModuleType:
 
 
 def links() -> None:
-    """Show the way to the other rooms where the window is too narrow for them at the top."""
+    """Show the menu where the window is too narrow for it at the top."""
     with st.container(key="links", horizontal=True):
-        for name, page in ROOM_PAGES.items():
-            st.page_link(page, label=texts.ROOMS[name], icon=f":material/{rooms.ROOMS[name].icon}:")
+        for name, page in MENU_PAGES.items():
+            st.page_link(page, label=texts.MENU[name], icon=f":material/{menu.MENU[name].icon}:")
 
 
 def load(*, map_sent: bool = False) -> None:
@@ -92,10 +92,10 @@ def place_of(key: str, name: str) -> DeltaGenerator:
 
 
 def page_of(name: str) -> st.Page:
-    """Return the page of a room: what was chosen in the panel, or how to begin."""
+    """Return the page of an item of the menu: what was chosen in the panel, or how to begin."""
 
     def run() -> None:
-        with place_of("panel", name), st.container(key=f"room_{name}"):
+        with place_of("panel", name), st.container(key=f"item_{name}"):
             if name == "plots":
                 links()
                 load()
@@ -104,13 +104,13 @@ def page_of(name: str) -> st.Page:
                 in_panel(name)
 
     return page(
-        run, title=texts.ROOMS[name], icon=f":material/{rooms.ROOMS[name].icon}:",
+        run, title=texts.MENU[name], icon=f":material/{menu.MENU[name].icon}:",
         url_path=name, default=name == "today",
     )  # fmt: skip
 
 
 def in_panel(name: str) -> None:
-    """Show a room in the panel: where and when, its parts, and who works."""
+    """Show an item of the menu in the panel: where and when, its pages, and who works."""
     notice, head, day, said, body, foot = (
         st.container(key=f"panel_{k}") for k in ("notice", "head", "day", "said", "body", "foot")
     )
@@ -129,22 +129,22 @@ def in_panel(name: str) -> None:
         with ways:
             ways_in.show()
 
-    rooms.take_from_address(name)
-    part = rooms.shown_part(name)
-    is_planned = part == "today"
+    menu.take_from_address(name)
+    page = menu.shown_page(name)
+    is_planned = page == "today"
     chosen = choose(head, foot, waiting.wait, day if is_planned else None)
     with notice:
         notices.show()
     with said:
         if chosen.choices is not None:
-            mark_day(chosen.choices, part)
+            mark_day(chosen.choices, page)
             show_left_out(chosen.choices)
     with body:
-        if chosen.choices is None or (part == "plot" and drawn_plot.is_open()):
+        if chosen.choices is None or (page == "plot" and drawn_plot.is_open()):
             view("plot").bring(chosen.problem)
         else:
             try:
-                view("rooms").show(name, chosen.choices, view)
+                view("menu").show(name, chosen.choices, view)
             except FieldmonError as error:
                 st.error(of_error(error))
     with foot:
@@ -182,10 +182,10 @@ def page_prior() -> None:
 plot_source.begin_from_address()
 field_map.clear()
 map_place = st.container(key="map_place")
-ROOM_PAGES = {name: page_of(name) for name in rooms.ROOMS}
+MENU_PAGES = {name: page_of(name) for name in menu.MENU}
 turned = st.navigation(
     {
-        "": [*ROOM_PAGES.values()],
+        "": [*MENU_PAGES.values()],
         texts.RESEARCH: [
             page(page_study, title=texts.STUDY, icon=":material/science:", url_path="study"),
             page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
@@ -194,8 +194,8 @@ turned = st.navigation(
     position="top",
 )
 widget_memory.turn(turned.url_path)
-if (room := rooms.turned_to()) is not None:
-    st.switch_page(ROOM_PAGES[room])
+if (item := menu.turned_to()) is not None:
+    st.switch_page(MENU_PAGES[item])
 with ExitStack() as FILES:
     # as a part of this script: of what stands on a page of its own Streamlit sends nothing with the
     # turn to another, and drops what was sent of it a moment before

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
         read_records,
         read_weather,
     )
-    from fieldmon.io.sources import PlantingChoices
+    from fieldmon.io.plot_request import PlantingChoices
     from fieldmon.monitoring.advice import AdviceSettings
     from fieldmon.monitoring.applications import Application
     from fieldmon.monitoring.history import BeliefSettings
@@ -138,7 +138,7 @@ _MODULES = {
     "simulation.start": ("Start",),
     "simulation.statistics": ("Ratio",),
     "simulation.treating": ("TreatmentRule",),
-    "io.sources": ("PlantingChoices",),
+    "io.plot_request": ("PlantingChoices",),
 }
 #: names that are modules themselves
 _AS_MODULES = {"routes": "planning.routes"}

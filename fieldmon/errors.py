@@ -47,7 +47,7 @@ class ChoiceNeeded(FieldmonError):  # noqa: N818 - a question, not an error
     choices
         The possible answers, best first, as they can be handed back.
     role
-        Which file asks, where a plot is prepared from several (`fieldmon.io.sources.Role`).
+        Which file asks, where a plot is prepared from several (`fieldmon.io.plot_request.Role`).
 
     Examples
     --------

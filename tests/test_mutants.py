@@ -162,9 +162,9 @@ def test_a_fault_is_put_in_where_a_function_stands_and_taken_out_again(tmp_path,
 
 
 LOOPS = """
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inner_loop, loop
 
-@part
+@inner_loop
 def twice(x):
     return 2 * x
 

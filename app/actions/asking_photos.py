@@ -47,10 +47,10 @@ def _show_asking(choices: Choices, plants: tuple[int, ...]) -> None:
 
 
 def _show_one(choices: Choices, one: AskedPhoto) -> None:
-    label = choices.open_season.label
+    numbered = choices.open_season.plant_numbers
     said, ends = st.columns([3, 1], vertical_alignment="center")
-    row = choices.open_season.plot.grid.row_signs[int(label.line[one.plant])]
-    plant = label.number[one.plant]
+    row = choices.open_season.plot.grid.line_signs[int(numbered.line[one.plant])]
+    plant = numbered.number[one.plant]
     note = texts.isolated(one.note)
     said.markdown(texts.ASKED_PHOTO.format(row=row, plant=plant, note=note))
     ends.button(texts.ASK_NO_MORE, key=f"no photo {one.id}", on_click=_ask_no_more,

@@ -15,7 +15,7 @@ from fieldmon.monitoring.settings import MOST_DAYS
 from fieldmon.pests.pest import seen_by_pest
 from fieldmon.plot import robot as robots
 from fieldmon.plot.local_clock import local_clock
-from fieldmon.samplers import USUAL
+from fieldmon.samplers import USUAL_SAMPLER
 
 from ..state import (
     assumptions,
@@ -234,15 +234,15 @@ def whose_day(choices: Choices) -> None:
         )  # fmt: skip
 
 
-def mark_day(choices: Choices, part: str) -> None:
-    """Say above a part of a room that its day is not today, with the way back."""
+def mark_day(choices: Choices, page: str) -> None:
+    """Say above a page that its day is not today, with the way back."""
     if choices.is_today:
         return
     today = choices.today or choices.on
     day, now = (choices.units.said_day(on, today) for on in (choices.day, today))
     # below each other: beside the sentence there is no room for the button's words
     said = [texts.OTHER_DAY.format(day=day, today=now)]
-    if part in _RECORDING:
+    if page in _RECORDING:
         said.append(texts.OTHER_DAY_RECORDED.format(day=day))
     st.warning(" ".join(said))
     st.button(texts.BACK_TO_TODAY, key="back_to_today",
@@ -295,7 +295,7 @@ def _work(work: Work) -> tuple[Robot, str]:
             base = robot_boxes.of_files(base)
         sampler = widget_memory.show(
             st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
-            default=USUAL, **changing_strategy.named(),
+            default=USUAL_SAMPLER, **changing_strategy.named(),
         )  # fmt: skip
         st.caption(sampler_does(sampler))
     return replace(base, hours=float(day_h), look_s=float(inspection_s)), sampler

@@ -12,7 +12,7 @@ from fieldmon.drive.simulated_robots import CHARGED, MUJOCO, MadeUp
 from ..state import cached_simulations, widget_memory
 from ..words import texts
 from ..words.language import of_error
-from . import background
+from . import background_work
 
 if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene
@@ -35,7 +35,7 @@ def run(choices: Choices, scene: Scene, key: str) -> DriveRun:
     made_up = MadeUp(share / 100)
     made = cached_simulations.drive_run(key, kind, made_up, choices.plot, scene, choices.decides)
     over = made.day is not None
-    at_work = background.buttons(made, texts.DRIVE_RUN, key="drive_run", over=over)
+    at_work = background_work.buttons(made, texts.DRIVE_RUN, key="drive_run", over=over)
     st.fragment(_progress, run_every=0.5 if at_work else None)(made, at_work=at_work)
     return made
 

@@ -16,7 +16,7 @@ from fieldmon.plot.planting import Planting
 from ..show import field_map, map_layers
 from ..show.map_view import Drawable, MapAnswers, MapContent
 from ..show.maps import colours, deck, legends, marks, plant_layers
-from ..state import cached, notices, rooms, row_settings, widget_memory
+from ..state import cached, menu, notices, row_settings, widget_memory
 from ..state.chosen_units import units
 from ..state.folds import fold
 from ..state.plot_edits import CUT, GATE, NO_GO, PATH, ROW, Edit, points_of
@@ -147,7 +147,7 @@ def tools(choices: Choices) -> None:
 def set_gate() -> None:
     """Turn to the map on which the gate is set with a click (for callbacks)."""
     st.session_state["draw_kind"] = "gate"
-    rooms.turn_to_part("plot")
+    menu.turn_to_page("plot")
 
 
 def _of_records(records: Observations, choices: Choices) -> list[legends.LegendPart]:

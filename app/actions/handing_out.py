@@ -14,7 +14,7 @@ from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import day_ahead, scouts
 
 from ..show import qr_code
-from ..state import chosen_day, morning, notices, phone_address, wishes
+from ..state import chosen_day, morning_steps, notices, phone_address, wishes
 from ..words import language, texts
 from . import inviting
 
@@ -48,7 +48,7 @@ def _taken(choices: Choices) -> str:
     """Note that a route is taken along as a file."""
     if choices.season is not None:
         give_out(choices)
-    morning.note(choices, morning.SEND)
+    morning_steps.note(choices, morning_steps.SEND)
     return ""
 
 

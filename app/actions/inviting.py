@@ -12,7 +12,7 @@ from fieldmon.planning.members import person_key
 from fieldmon.plot.named_rows import rows_meant
 
 from ..show import qr_code, who_is_out
-from ..state import morning, notices, phone_address, scout_page
+from ..state import morning_steps, notices, phone_address, scout_page
 from ..words import language, texts
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def _show_codes(choices: Choices) -> None:
 
 def _ends(season: Season) -> tuple[int, int]:
     """Return the first and the last row of a season's plot."""
-    return int(season.label.line.min()), int(season.label.line.max())
+    return int(season.plant_numbers.line.min()), int(season.plant_numbers.line.max())
 
 
 def _show_out(choices: Choices) -> None:
@@ -115,7 +115,7 @@ def _invite(choices: Choices) -> str:
     rows = rows_meant(choices.plot.grid, first, last)
     before = {person_key(one.name) for one in scouts.scouts_of(choices.open_season)}
     state[_SHOWN] = name, let_in(choices, name, None if whole else rows)
-    morning.note(choices, morning.SEND)
+    morning_steps.note(choices, morning_steps.SEND)
     return _what_follows(choices, name, had_code=person_key(name) in before)
 
 

@@ -17,9 +17,9 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.io.parse import result_words
-from fieldmon.monitoring.brought_findings import read_brought, record_saved
+from fieldmon.monitoring.inspection_import import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
-from fieldmon.plot.grid import plant_at, row_label
+from fieldmon.plot.grid import plant_at, plant_numbers
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.named_rows import plant_meant
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from fieldmon.io.import_report import ImportMessage
     from fieldmon.monitoring.batches import Batch, BatchContents, Recorded
-    from fieldmon.monitoring.brought_findings import BroughtFile
+    from fieldmon.monitoring.inspection_import import BroughtFile
 
     from ..state.choices import Choices
 
@@ -83,10 +83,12 @@ def show(choices: Choices) -> None:
 def take_plant(choices: Choices, layer: str, index: int) -> None:
     """Take the plant that was tapped as the one to be recorded; nothing is recorded by it."""
     if layer.startswith("plants"):
-        label = row_label(choices.plot.grid, np.array([min(index, len(choices.plot.grid) - 1)]))
+        numbered = plant_numbers(
+            choices.plot.grid, np.array([min(index, len(choices.plot.grid) - 1)])
+        )
         boxes = FreshBoxes(_ONE, choices)
         boxes.empty()  # a result that was said of another plant is none of this one
-        row, number = int(label.line[0]), int(label.number[0])
+        row, number = int(numbered.line[0]), int(numbered.number[0])
         typed = f"{row}" if choices.plot.grid.row_names else row
         boxes.put("one_row", typed)
         boxes.put("one_plant", number)
@@ -187,12 +189,12 @@ class _Marks:
         self, choices: Choices, plants: np.ndarray, *, value: list[int], key: str
     ) -> list[int]:
         """Show the stops, those of `value` marked already; return those marked now."""
-        label, stops = row_label(choices.plot.grid, plants), np.arange(len(plants)) + 1
+        numbered, stops = plant_numbers(choices.plot.grid, plants), np.arange(len(plants)) + 1
         self._begun = frozenset(value)
         table = pd.DataFrame(
             {
-                **day.row_column(choices.plot.grid, label.line),
-                texts.COLUMN_PLANT: label.number,
+                **day.row_column(choices.plot.grid, numbered.line),
+                texts.COLUMN_PLANT: numbered.number,
                 texts.LEGEND_STATES["found"]: np.isin(stops, value),
             },
             index=pd.Index(stops, name=texts.STOP_NUMBER),
@@ -446,7 +448,7 @@ def show_said_otherwise(choices: Choices) -> None:
     said = choices.open_season.contradicting(choices.on)
     if not len(said):
         return
-    label, signs = choices.open_season.label, choices.plot.grid.row_signs
+    numbered, signs = choices.open_season.plant_numbers, choices.plot.grid.line_signs
     lines = []
     for plant in dict.fromkeys(said.plant.tolist()):
         of = said.take(said.plant == plant)
@@ -455,7 +457,7 @@ def show_said_otherwise(choices: Choices) -> None:
             texts.HISTORY_RESULTS[result]
             for result, who in zip(of.result.tolist(), of.who, strict=True)
         ]  # fmt: skip
-        place = {"row": signs[int(label.line[plant])], "plant": label.number[plant]}
+        place = {"row": signs[int(numbered.line[plant])], "plant": numbered.number[plant]}
         lines.append(f"- {texts.SAID_BY.format(said=', '.join(each), **place)}")
     st.info("\n".join([texts.SAID_OTHERWISE, "", *lines[:_MOST]]))
 

@@ -8,7 +8,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 
 from ..show import plant_history, recorded_batches
 from ..state import notices
@@ -31,9 +31,9 @@ def show(choices: Choices) -> None:
     ahead = choices.today is not None and choices.on > choices.today
     if choices.season is None or ahead or not plants:
         return
-    label = row_label(choices.plot.grid, np.array(plants))
-    row = choices.plot.grid.row_signs[int(label.line[0])]
-    st.markdown(texts.HERE.format(row=row, plant=int(label.number[0])))
+    numbered = plant_numbers(choices.plot.grid, np.array(plants))
+    row = choices.plot.grid.line_signs[int(numbered.line[0])]
+    st.markdown(texts.HERE.format(row=row, plant=int(numbered.number[0])))
     with st.container(horizontal=True, key="record_here"):
         for result in (FOUND, CLEAN):
             st.button(texts.HERE_RESULTS[result], key=f"here_{result}", on_click=_record,

@@ -11,7 +11,7 @@ import streamlit as st
 from streamlit.delta_generator import DeltaGenerator
 
 from fieldmon.io.writers.geojson import route_geojson
-from fieldmon.monitoring.estate_routes import TABLE, plan_table, stems
+from fieldmon.monitoring.estate_routes import PLAN_TABLE, plan_table, stems
 
 from ..state import shared_plots, widget_memory
 from ..state.shared_plots import EstateCrew, SharedPlots
@@ -124,7 +124,7 @@ def packed(made: SharedPlots) -> bytes:
         for file, one in files.items():
             archive.writestr(file, route_geojson(one.route, one.notes))
         archive.writestr(
-            TABLE, plan_table(files, {one.name: () for one in made.waiting}, made.free)
+            PLAN_TABLE, plan_table(files, {one.name: () for one in made.waiting}, made.free)
         )
     return out.getvalue()
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.drive.vda5050.mqtt import Broker, RobotName
-from fieldmon.drive.vda5050.versions import USUAL, VERSIONS
+from fieldmon.drive.vda5050.versions import USUAL_VERSION, VERSIONS
 from fieldmon.drive.vda5050.watcher import FAILED, LOST, PAUSED, WAITING
 from fieldmon.errors import FieldmonError
 
 from ..state import cached_simulations, widget_memory
 from ..words import texts
 from ..words.language import of_error
-from . import background
+from . import background_work
 
 if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene
@@ -33,8 +33,8 @@ def robot(key: str, scene: Scene) -> LiveDrive | None:
     )
     serial = show(second.text_input, texts.DRIVE_SERIAL, key="drive_serial", default="robot1")
     version = show(
-        st.segmented_control, texts.DRIVE_VDA, list(VERSIONS), key="drive_vda", default=USUAL,
-        required=True,
+        st.segmented_control, texts.DRIVE_VDA, list(VERSIONS), key="drive_vda",
+        default=USUAL_VERSION, required=True,
     )  # fmt: skip
     try:
         name, broker = RobotName(maker, serial, version), Broker.of(where)
@@ -43,7 +43,7 @@ def robot(key: str, scene: Scene) -> LiveDrive | None:
         st.error(of_error(error))
         return None
     live = cached_simulations.live_drive(key, broker, name, scene)
-    at_work = background.buttons(live, texts.DRIVE_WATCH, key="drive_watch", over=False)
+    at_work = background_work.buttons(live, texts.DRIVE_WATCH, key="drive_watch", over=False)
     st.fragment(_standing, run_every=1.0 if at_work else None)(live, at_work=at_work)
     return live
 

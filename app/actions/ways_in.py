@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..state import plot_source, rooms, seasons_folder
+from ..state import menu, plot_source, seasons_folder
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -49,14 +49,14 @@ def _season() -> None:
         _choose(names[0])
     else:
         st.session_state[_CHOSEN] = True
-        rooms.turn_to("plots")
+        menu.turn_to("plots")
 
 
 def _choose(source: str) -> None:
-    """Open it at the day's plan, whatever part of the room was shown before."""
+    """Open it at the day's plan, whatever page of the menu was shown before."""
     st.session_state[_CHOSEN] = True
     plot_source.open_season(source)
-    rooms.turn_to_part("today")
+    menu.turn_to_page("today")
 
 
 def _say_where() -> None:

@@ -21,7 +21,7 @@ from fieldmon.infestation.observations import ABSENT, PRESENT
 from fieldmon.monitoring import kept_open
 from fieldmon.monitoring.day_ahead import (
     DayAhead,
-    Part,
+    WorkPart,
     planned_again,
     route_ahead,
     work_hours,
@@ -65,15 +65,15 @@ def plot_document(season: Season) -> tuple[str, bytes]:
         "plant_spacing_m": grid.plant_spacing_m,
         "rows": {
             "start": grid.unbroken_start.tolist(),
-            "row": grid.row_number[rows].tolist(),
-            "sign": [grid.row_signs[row] for row in grid.row_number[rows].tolist()],
+            "row": grid.row_line_number[rows].tolist(),
+            "sign": [grid.line_signs[row] for row in grid.row_line_number[rows].tolist()],
             "aisle": grid.corridor[rows].tolist(),
             "side": (-grid.side[rows]).tolist(),
         },
         "plants": {
             "lon": lonlat[:, 0].tolist(),
             "lat": lonlat[:, 1].tolist(),
-            "number": season.label.number.tolist(),
+            "number": season.plant_numbers.number.tolist(),
         },
     }
     made = _json(document)
@@ -90,7 +90,7 @@ def day_document(season: Season, scout: Scout, on: date | None, has: int | None 
 
 
 def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[str, Any]:
-    part = Part(scout.rows, scout.name)
+    part = WorkPart(scout.rows, scout.name)
     route, history = route_ahead(season, on, part), season.history
     ahead = DayAhead.of(season, on)
     settings, plan, member = ahead.settings, ahead.plan_of(part), ahead.member(part)
@@ -149,7 +149,7 @@ def rest_document(
 ) -> bytes:
     """Return the rest of a day, planned anew with all that is known."""
     with kept_open():
-        on, part = _day(season, on), Part(scout.rows, scout.name)
+        on, part = _day(season, on), WorkPart(scout.rows, scout.name)
         route = planned_again(season, on, part, seconds_left)
         plan = DayAhead.of(season, on).plan_of(part)
         told = _route(route, season.reads(on, scout.name))
@@ -217,12 +217,12 @@ def _said(inspections: Inspections) -> list[dict[str, Any]]:
     ]
 
 
-def _closed(season: Season, ahead: DayAhead, on: date, part: Part) -> list[dict[str, Any]]:
+def _closed(season: Season, ahead: DayAhead, on: date, part: WorkPart) -> list[dict[str, Any]]:
     """Return rows with plants that nobody may come to after a treatment, and until when.
 
     With which of their plants, as runs of numbers, and how many of these are somebody's own.
     """
-    closed, line, mine = [], season.label.line, ahead.own(part)
+    closed, line, mine = [], season.plant_numbers.line, ahead.own(part)
     for one in season.closed(on, ahead.works_as(part)):
         rows = np.unique(line[one.plants])
         for run in run_ends(rows).tolist():
@@ -239,7 +239,7 @@ def _closed(season: Season, ahead: DayAhead, on: date, part: Part) -> list[dict[
 
 
 def _left_out(
-    season: Season, ahead: DayAhead, of: tuple[date, Part], route: Route
+    season: Season, ahead: DayAhead, of: tuple[date, WorkPart], route: Route
 ) -> list[dict[str, Any]]:
     """Return which plants are on no route though they are open, why, and how many are one's own."""
     on, part = of

@@ -14,7 +14,7 @@ from pydeck import Layer
 
 from fieldmon.compute.wording import chance_figure, share_figure
 from fieldmon.io.spray_rate import litres_figure
-from fieldmon.plot.grid import row_ends, row_label
+from fieldmon.plot.grid import plant_numbers, row_ends
 
 from ..state import assumptions, cached
 from ..words import texts
@@ -100,14 +100,14 @@ def _height(advice: Advice) -> int | Literal["content"]:
 
 def table(advice: Advice) -> pd.DataFrame:
     """Return a row a zone."""
-    label, zone = row_label(advice.grid), advice.zones.zone
+    numbered, zone = plant_numbers(advice.grid), advice.zones.zone
     mine = [np.flatnonzero(zone == k) for k in range(len(advice.zones))]
     said = advice.said.zones
     return pd.DataFrame(
         {
             texts.DECIDE_ZONE: [k + 1 for k in range(len(mine))],
-            texts.DECIDE_ROWS: [_rows(advice.grid, label.line[plants]) for plants in mine],
-            texts.DECIDE_PLANTS: [_span(label.number[plants]) for plants in mine],
+            texts.DECIDE_ROWS: [_rows(advice.grid, numbered.line[plants]) for plants in mine],
+            texts.DECIDE_PLANTS: [_span(numbered.number[plants]) for plants in mine],
             texts.DECIDE_INFESTED: [in_words(share_figure(one.share)) for one in said],
             texts.DECIDE_ITSELF: [texts.DECIDE_VERDICTS[one.verdict] for one in said],
             texts.DECIDE_WRONG: [in_words(chance_figure(one.wrong, drawn=True)) for one in said],

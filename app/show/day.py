@@ -16,7 +16,7 @@ from fieldmon.monitoring.day_figures import flagged_said
 from fieldmon.planning.bound_wording import PROVED, share_above
 from fieldmon.planning.explain import explain
 from fieldmon.planning.skips import nothing_left_in_words
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.reports import sentences
 
 from ..state import assumptions, chosen_day
@@ -45,11 +45,11 @@ _WEEK = 7
 def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
     """Return the stops of a day's route in order, as a table."""
     route = shown.route
-    label = row_label(choices.plot.grid, route.plant)
+    numbered = plant_numbers(choices.plot.grid, route.plant)
     columns = {
         texts.COLUMN_ARRIVE: [f"{shown.at(s):%H:%M:%S}" for s in route.arrive_s.tolist()],
-        **row_column(choices.plot.grid, label.line),
-        texts.COLUMN_PLANT: label.number,
+        **row_column(choices.plot.grid, numbered.line),
+        texts.COLUMN_PLANT: numbered.number,
         texts.COLUMN_CHANCE: [in_words(chance_figure(p, 1)) for p in route.believed.tolist()],
     }
     if shown.worked:
@@ -61,7 +61,7 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
 
 def row_column(grid: PlantGrid, line: NDArray[np.int64]) -> dict[str, object]:
     """Return the column of a table that says the row: numbers, or texts where rows have names."""
-    named = [grid.row_signs[k] for k in line.tolist()] if grid.row_names else line
+    named = [grid.line_signs[k] for k in line.tolist()] if grid.row_names else line
     return {texts.COLUMN_ROW: named} if grid.in_rows else {}
 
 
@@ -248,7 +248,7 @@ def _risen(choices: Choices, since: str) -> str:
     top = [k for k in np.argsort(-rise)[:3] if rise[k] > 0.001]
     rises = [texts.isolated(f"+{number(100 * rise[k], '.1f')}") for k in top]
     return listed(
-        f"{grid.row_signs[int(grid.line_number[k])]}\u00a0({said})"
+        f"{grid.line_signs[int(grid.line_number[k])]}\u00a0({said})"
         for k, said in zip(top, rises, strict=True)
     )
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .maps.plant_layers import Known
 
 #: the layers of each switch
-PARTS = {
+LAYERS_OF_SWITCH = {
     "route": ("casing", "route", "arrows"),
     "hot": ("hot", "hot-edge"),
     "treated": ("treated", "treated-edge"),
@@ -105,7 +105,7 @@ def switches(
     there = {layer.id for layer in layers}
     return tuple(
         Switch(name, texts.MAP_LAYERS[name], ids, name not in off)
-        for name, ids in PARTS.items()
+        for name, ids in LAYERS_OF_SWITCH.items()
         if there.intersection(ids) or name in written
     )
 

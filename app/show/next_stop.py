@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import chance_figure
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 
 from ..words import texts
 from ..words.language import in_words
@@ -38,7 +38,7 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
     """Return where to go next, from where the last result was noted; `done` stops are done."""
     route, scene = plan.route, plan.scene
     grid, plant = scene.aisles.grid, int(route.plant[0])
-    label = row_label(grid, route.plant[:1])
+    numbered = plant_numbers(grid, route.plant[:1])
     sector, lonlat = _heading(scene, plant)
     line_m = route.line_m[: int(route.line_stop[0]) + 1]
     drive_m = float(np.hypot(*np.diff(line_m, axis=0).T).sum())
@@ -48,7 +48,7 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
         plant,
         lonlat,
         (texts.NEXT_PLACE if grid.in_rows else texts.NEXT_ALONE).format(
-            row=grid.row_signs[int(label.line[0])], plant=label.number[0]
+            row=grid.line_signs[int(numbered.line[0])], plant=numbered.number[0]
         ),
         texts.NEXT_WAY.format(
             metres=units.metres(drive_m), compass=texts.COMPASS[sector],

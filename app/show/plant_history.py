@@ -16,7 +16,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import photos
 from fieldmon.pests.weather import DAY_S
-from fieldmon.plot.grid import plant_at, row_label
+from fieldmon.plot.grid import plant_at, plant_numbers
 from fieldmon.plot.named_rows import plant_meant
 
 from ..state import chosen_day, widget_memory
@@ -64,8 +64,8 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
     """Take the plant that was tapped as the one whose history is shown."""
     if layer.startswith("plants"):
         grid = choices.plot.grid
-        label = row_label(grid, np.array([min(index, len(grid) - 1)]))
-        row, number = int(label.line[0]), int(label.number[0])
+        numbered = plant_numbers(grid, np.array([min(index, len(grid) - 1)]))
+        row, number = int(numbered.line[0]), int(numbered.number[0])
         st.session_state[_row_box(grid)] = f"{row}" if grid.row_names else row
         st.session_state[_PLANT] = number
         st.session_state[_TAPPED_AT] = f"{row}", number
@@ -143,9 +143,9 @@ def _plant(grid: PlantGrid, row: str, number: int) -> int:
 
 def _lowest(grid: PlantGrid) -> tuple[int, int]:
     """Return the lowest row, and the lowest plant in it, that there is on a plot."""
-    label = row_label(grid)
-    row = int(label.line.min())
-    return row, int(label.number[label.line == row].min())
+    numbered = plant_numbers(grid)
+    row = int(numbered.line.min())
+    return row, int(numbered.number[numbered.line == row].min())
 
 
 def _show_photos(choices: Choices, plant: int) -> None:

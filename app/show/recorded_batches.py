@@ -74,7 +74,7 @@ def why_to_ask(choices: Choices, batch: Batch, said: BatchContents | None) -> li
 
 def _row(choices: Choices, said: BatchContents) -> str:
     """Return the row of the only inspection, with its name if that says more than its number."""
-    return choices.plot.grid.row_signs.get(said.row, f"{said.row}")
+    return choices.plot.grid.line_signs.get(said.row, f"{said.row}")
 
 
 def _result(said: BatchContents) -> str:

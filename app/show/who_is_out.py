@@ -49,7 +49,7 @@ def lines(choices: Choices) -> tuple[OutLine, ...]:
 def _line(choices: Choices, one: ScoutOut, asked: LastHeard | None) -> OutLine:
     title = texts.isolated(one.name)
     if one.rows is not None:
-        signs = choices.plot.grid.row_signs
+        signs = choices.plot.grid.line_signs
         low, high = (signs.get(row, row) for row in one.rows)
         title = texts.INVITED.format(name=title, low=low, high=high)
     made = texts.OUT_NO_CODE

@@ -164,9 +164,9 @@ def season_plan_now(
     return day_ahead.by_the_clock(_season, on, part, plan)
 
 
-def _day_of(of: tuple[str, str | None]) -> tuple[date, day_ahead.Part]:
+def _day_of(of: tuple[str, str | None]) -> tuple[date, day_ahead.WorkPart]:
     day, who = of
-    return date.fromisoformat(day), day_ahead.Part(name=who or "")
+    return date.fromisoformat(day), day_ahead.WorkPart(name=who or "")
 
 
 @st.cache_resource(max_entries=FEW)

@@ -25,17 +25,17 @@ if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, Source
-    from fieldmon.io.rasters.values import Backdrop, RasterOptions
-    from fieldmon.io.readers.places import Plants
-    from fieldmon.io.readers.points_and_lines import DrawnBlocks
-    from fieldmon.io.readers.weather_options import WeatherOptions
-    from fieldmon.io.sources import (
+    from fieldmon.io.plot_request import (
         CanopySource,
         PlantingChoices,
         PlotSources,
         RecordSource,
         RiskSource,
     )
+    from fieldmon.io.rasters.values import Backdrop, RasterOptions
+    from fieldmon.io.readers.places import Plants
+    from fieldmon.io.readers.points_and_lines import DrawnBlocks
+    from fieldmon.io.readers.weather_options import WeatherOptions
     from fieldmon.pests.weather import Weather
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot

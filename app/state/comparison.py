@@ -22,7 +22,7 @@ from fieldmon.simulation.team_season import Team
 from fieldmon.simulation.team_worth import marginal_gains
 from fieldmon.simulation.worker import LaidPlot, simulated_season
 
-from .background import BackgroundWork
+from .background_work import BackgroundWork
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

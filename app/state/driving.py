@@ -19,7 +19,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.monitor import Monitor
 
-from .background import BackgroundWork
+from .background_work import BackgroundWork
 
 if TYPE_CHECKING:
     import numpy as np

@@ -14,7 +14,7 @@ from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard, RobotWatcher
 from fieldmon.monitoring.history import BeliefSettings
 
-from .background import BackgroundWork
+from .background_work import BackgroundWork
 from .driving import DayInTime
 
 if TYPE_CHECKING:

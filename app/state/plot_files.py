@@ -15,9 +15,9 @@ from fieldmon.infestation.observations import Observations
 from fieldmon.io.drawn_rows import parted
 from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
+from fieldmon.io.plot_request import PlantingChoices, PlotSources, RecordSource
 from fieldmon.io.prepare import with_plants
-from fieldmon.io.prepared import Laid
-from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
+from fieldmon.io.prepared_plots import Laid
 from fieldmon.io.unused_row_settings import unused_of
 
 from . import brought_files, cached, cached_files, rasters, sample_estate

@@ -8,8 +8,8 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.raster_risk import RELATIVE, RiskSettings
+from fieldmon.io.plot_request import CanopySource, RiskSource
 from fieldmon.io.rasters.values import RasterOptions
-from fieldmon.io.sources import CanopySource, RiskSource
 
 from . import cached, cached_files, widget_memory
 from .brought_files import brought, messages_of, settled

@@ -13,7 +13,7 @@ BLOCK_LENGTHS = ("block_row_spacing", "block_plant_spacing")
 
 
 class RowSettings(TypedDict):
-    """What was said of rows, as `fieldmon.io.sources.PlantingChoices` has it."""
+    """What was said of rows, as `fieldmon.io.plot_request.PlantingChoices` has it."""
 
     row_bearing_deg: float | None
     row_spacing_m: float | None

@@ -16,7 +16,7 @@ from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot, scout
-from fieldmon.samplers import USUAL, sampler
+from fieldmon.samplers import USUAL_SAMPLER, sampler
 
 from ..words import texts
 from ..words.language import in_words, of_error
@@ -183,9 +183,9 @@ def _of_files(plot: PlotState, number: int) -> _Ready:
     outline = plot_files.outline(files, lambda _file, _fields: number)
     made = plot_files.prepared(files, outline)
     on = sample_estate.LAST_DAY if is_sample else local_clock(made.plot.field).today()
-    settings = PlanSettings(Robot(hours=1), sampler(USUAL), assumptions.prior())
+    settings = PlanSettings(Robot(hours=1), sampler(USUAL_SAMPLER), assumptions.prior())
     known = made.records, made.risk
     chance = cached.chance_map(made.key, str(on), settings.prior, made.plot, known)
     scene = plan_from(made.plot, chance, settings).scene
     key = f"{made.key} {on} {settings.prior}"
-    return _Ready(plot, key, USUAL, EstatePlot(on, scene, settings.sampler))
+    return _Ready(plot, key, USUAL_SAMPLER, EstatePlot(on, scene, settings.sampler))

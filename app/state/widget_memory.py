@@ -32,14 +32,14 @@ def turn(page: str) -> None:
 
 
 @contextmanager
-def part(name: str) -> Iterator[None]:
-    """Show a part of the page: a box of several parts begins again, as on another page."""
-    page = st.session_state.get(_PAGE, "")
-    st.session_state[_PAGE] = f"{page} {name}"
+def page(name: str) -> Iterator[None]:
+    """Show a page of an item of the menu: a box that several pages have begins again on each."""
+    item = st.session_state.get(_PAGE, "")
+    st.session_state[_PAGE] = f"{item} {name}"
     try:
         yield
     finally:
-        st.session_state[_PAGE] = page
+        st.session_state[_PAGE] = item
 
 
 def first(key: str, value: object) -> None:

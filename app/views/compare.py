@@ -9,7 +9,7 @@ import streamlit as st
 
 from fieldmon.simulation.worker import LaidPlot
 
-from ..actions import background, changing_strategy, comparing
+from ..actions import background_work, changing_strategy, comparing
 from ..show import charts, field_map, map_layers, verdicts
 from ..state import cached_simulations, chosen_day, chosen_pest
 from ..state.comparison import WatchedComparison, curve, gains, outcomes
@@ -38,7 +38,7 @@ def show(choices: Choices) -> None:
     running = cached_simulations.comparison(key, settings, choices.robot, laid)
     label = texts.GO_ON if 0 < running.done < running.total else texts.RUN
     over = running.done == running.total
-    at_work = background.buttons(running, label, key="run", over=over)
+    at_work = background_work.buttons(running, label, key="run", over=over)
     st.fragment(_watch, run_every=_EVERY_S if at_work else None)(choices, running, at_work=at_work)
 
 
@@ -52,7 +52,7 @@ def _results(choices: Choices, running: WatchedComparison) -> None:
     if running.problem is not None:
         st.error(of_error(running.problem))
         return
-    background.show_progress(running)
+    background_work.show_progress(running)
     seasons = running.seasons()
     ranked = outcomes(seasons)
     if not ranked:

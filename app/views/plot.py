@@ -20,7 +20,7 @@ from ..actions import (
 )
 from ..show import assumed, field_map, plot_figures
 from ..show import records as records_shown
-from ..state import plot_before, plot_source, rooms
+from ..state import menu, plot_before, plot_source
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def bring(problem: FieldmonError | None) -> None:
 
 def show(choices: Choices) -> None:
     """Show the plot as it was understood, and change what was not."""
-    st.button(texts.TO_ROUTE, key="to_route", type="primary", on_click=rooms.turn_to_part,
+    st.button(texts.TO_ROUTE, key="to_route", type="primary", on_click=menu.turn_to_page,
               args=("today",))  # fmt: skip
     plot_figures.show(choices.plot, choices.units)
     before = plot_before.plot_before(choices) if choices.season is None else None

@@ -10,7 +10,7 @@ import streamlit as st
 from ..actions import sharing_plots, ways_in
 from ..show import estate_map, estate_table, field_map
 from ..show.map_view import MapAnswers
-from ..state import estate, rooms
+from ..state import estate, menu
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def _watch(held: list[str]) -> None:
 
 def _open(plot: PlotState) -> None:
     estate.open_plot(plot)
-    rooms.turn_to("today")
+    menu.turn_to("today")
 
 
 def _tapped(plots: list[PlotState], layer: str, index: int) -> None:

@@ -50,10 +50,10 @@ def _charts(choices: Choices, days: list[DayFigures], progress: Progress) -> Non
         st.altair_chart(charts.season_days(days, worked, named), alt=texts.FOUND_AXIS)
     st.altair_chart(charts.still_out(days, (day, out), named), alt=out)
     st.markdown(f"**{texts.ROW_AGES}**")
-    line = choices.plot.grid.row_number
+    line = choices.plot.grid.row_line_number
     rows, seen = (len(np.unique(of)) for of in (line, line[~np.isnan(progress.days_since)]))
     if progress.inspected:
-        signs, axes = choices.plot.grid.row_signs, (texts.ROW_AXIS, texts.DAYS_SINCE)
+        signs, axes = choices.plot.grid.line_signs, (texts.ROW_AXIS, texts.DAYS_SINCE)
         ages = charts.row_ages(progress.days_since, line, axes, signs)
         st.altair_chart(ages, alt=texts.ROW_AGES)
     st.caption(texts.NEVER_ROWS.format(n=rows - seen, all=rows) if seen < rows else texts.EVERY_ROW)

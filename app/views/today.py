@@ -13,7 +13,7 @@ from ..actions import (
     beginning,
     bringing_files,
     choosing,
-    morning,
+    morning_steps,
     picking,
     recording_here,
 )
@@ -60,7 +60,7 @@ def _work(choices: Choices, plan: DayPlan) -> None:
     day.say_of_day(choices, plan)
     cautions.show_today(choices, plan)
     beginning.ask(choices, "step")
-    morning.show(choices, plan)
+    morning_steps.show(choices, plan)
     bringing_files.show_doubts_of_records(choices)
     content = map_layers.day_map(choices, above=picking.layers(choices))
     picked = wishes.picked(choices.place)

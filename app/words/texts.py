@@ -28,11 +28,11 @@ def written(said: str) -> str:
 
 
 TITLE = "fieldmon"
-# rooms, and the parts of each
-ROOMS = {"plots": "Plots", "today": "Today", "season": "Season", "ahead": "Plan ahead",
+# the menu, and the pages of each item
+MENU = {"plots": "Plots", "today": "Today", "season": "Season", "ahead": "Plan ahead",
          "plot": "Plot & data"}  # fmt: skip
-PARTS_OF = "What to see here"
-PARTS = {
+PAGES_OF = "What to see here"
+PAGES = {
     "plots": "Plots", "plot": "Plot & data",
     "today": "Plan", "scout": "Scout", "record": "Record",
     "season": "How it goes", "decide": "Decide", "field": "Plants & hot spots", "report": "Report",

@@ -11,9 +11,9 @@ from typing import Annotated
 import typer
 
 from fieldmon.cli.app_package import app_package
-from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
-from fieldmon.cli.waiting import WAITING
+from fieldmon.cli.option_ranges import within
+from fieldmon.cli.progress import WAITING
 from fieldmon.errors import SettingError
 
 _GOODBYE_S = 10

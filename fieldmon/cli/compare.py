@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
+from fieldmon.cli.files_to_plot import believed, prepared
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import (
     Contact,
     Feature,
@@ -25,14 +26,13 @@ from fieldmon.cli.options import (
     WorkerOptions,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
-from fieldmon.cli.preparing import believed, prepared
+from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import known
 from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.times import day, day_on
-from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, PAIRED
 from fieldmon.errors import SettingError
-from fieldmon.samplers import USUAL, kind_of
+from fieldmon.samplers import USUAL_SAMPLER, kind_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -67,7 +67,7 @@ class CompareOptions:
         list[str] | None,
         typer.Option(
             help="What chooses the plants; repeat to compare numbers of robots with each. Default: "
-            f"{USUAL}.",
+            f"{USUAL_SAMPLER}.",
             callback=known,
         ),
     ] = None
@@ -212,7 +212,7 @@ def _settings(
     together = Teamwork(True, 60.0 * options.contact, options.least_gain, passing_m)
     apart = Teamwork(together=False, passing_m=passing_m)
     made = []
-    for name in options.sampler or [USUAL]:
+    for name in options.sampler or [USUAL_SAMPLER]:
         reads = kind_of(name).reads_chance
         ways = [*([together] if reads else []), *([apart] if options.sections or not reads else [])]
         for k in sizes:

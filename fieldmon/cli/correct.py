@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.times import clock, day
 from fieldmon.compute.ranges import NUMBER

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fieldmon.cli.files_to_plot import prepared
 from fieldmon.cli.messages import tell_assumed, tell_past_midnight
-from fieldmon.cli.numbers import refusing, within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import refusing, within
 from fieldmon.cli.options import (
     Every,
     Feature,
@@ -24,13 +25,12 @@ from fieldmon.cli.options import (
     WorkerOptions,
     sampler_of,
 )
-from fieldmon.cli.preparing import prepared
 from fieldmon.cli.sampler_names import OneSampler
 from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import SettingError
-from fieldmon.samplers import USUAL
+from fieldmon.samplers import USUAL_SAMPLER
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -121,7 +121,7 @@ class DriveOptions:
     ] = None
     observations: Records = None
     feature: Feature = None
-    sampler: OneSampler = USUAL
+    sampler: OneSampler = USUAL_SAMPLER
     every: Every = None
     on: WorkDate = None
     infested: Annotated[

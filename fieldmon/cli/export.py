@@ -63,7 +63,7 @@ def export(
 
 
 def _table(kept: list[Season], of: str) -> bytes:
-    from fieldmon.monitoring.record_tables import TABLES, csv_bytes
+    from fieldmon.monitoring.certifier_tables import TABLES, csv_bytes
 
     data = csv_bytes(TABLES[of](season) for season in kept)
     if not data:

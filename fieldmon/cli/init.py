@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.files_to_plot import prepared
 from fieldmon.cli.messages import tell_unusable
-from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import (
     Background,
     Contact,
@@ -28,7 +29,6 @@ from fieldmon.cli.options import (
     sampler_settings,
 )
 from fieldmon.cli.pest_options import SAYS_ITSELF, PestOptions, prior_of
-from fieldmon.cli.preparing import prepared
 from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.sampler_names import OneSampler
 from fieldmon.cli.team_files import members_of
@@ -36,7 +36,7 @@ from fieldmon.cli.times import WorkStart, clock, day
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError
-from fieldmon.samplers import USUAL
+from fieldmon.samplers import USUAL_SAMPLER
 
 if TYPE_CHECKING:
     from datetime import datetime, time
@@ -56,7 +56,7 @@ class InitOptions:
     plot: MaybePlotFile = None
     observations: Records = None
     feature: Feature = None
-    sampler: OneSampler = USUAL
+    sampler: OneSampler = USUAL_SAMPLER
     every: Every = None
     begins: Annotated[
         str | None, typer.Option(help="First day of the season, YYYY-MM-DD; default: today.")

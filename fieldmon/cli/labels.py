@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import SeasonFile
 from fieldmon.decisions.labels import WAITS_DAYS
 from fieldmon.errors import SettingError

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from fieldmon.cli.options import SeasonFile
-from fieldmon.cli.waiting import counting
+from fieldmon.cli.progress import counting
 
 AllMornings = Annotated[
     bool,

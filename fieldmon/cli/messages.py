@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.prior_settings import PriorSettings
-    from fieldmon.io.prepared import Laid, SourceMessage
+    from fieldmon.io.prepared_plots import Laid, SourceMessage
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.plot.assumed import Assumed

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.named_values import Options, chosen, chosen_of_file
-from fieldmon.cli.numbers import of_robot, within
+from fieldmon.cli.option_ranges import of_robot, within
 from fieldmon.cli.raster_options import RasterFiles
 from fieldmon.compute.ranges import CHANCE, DAYS, SEED, SHARE
 from fieldmon.errors import SettingError
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fieldmon.io.options import PlotOptions
+    from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources
     from fieldmon.io.rasters.values import RasterOptions
-    from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
 
@@ -367,7 +367,7 @@ class RowOptions:
 
     def choices(self) -> PlantingChoices:
         """Return what was said of the rows."""
-        from fieldmon.io.sources import PlantingChoices
+        from fieldmon.io.plot_request import PlantingChoices
 
         faces = 2 if self.both_faces else None
         spacings = self.row_spacing, self.plant_spacing, self.headland
@@ -399,7 +399,7 @@ class FileOptions:
     def sources(self, plot: Path | None, feature: str | None) -> PlotSources:
         """Return the plot's files, given the first of them."""
         from fieldmon.io.options import PlotOptions, ReadOptions
-        from fieldmon.io.sources import PlotSources
+        from fieldmon.io.plot_request import PlotSources
 
         if plot is None and self.plants is None and self.rows is None:
             raise SettingError(
@@ -443,7 +443,7 @@ class PlotFiles:
     ) -> PlotRequest:
         """Return what to prepare from the command's files."""
         from fieldmon.io.options import RecordOptions
-        from fieldmon.io.sources import PlotRequest, RecordSource
+        from fieldmon.io.plot_request import PlotRequest, RecordSource
 
         flags = "--record-option", "--observations"
         options = chosen_of_file(RecordOptions(), self.files.record_option, observations, flags)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from fieldmon.cli.files_to_plot import estate, prepared
 from fieldmon.cli.messages import tell_assumed, tell_unusable
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import (
@@ -24,13 +25,12 @@ from fieldmon.cli.pest_options import prior_of
 from fieldmon.cli.plan_options import PlanOptions
 from fieldmon.cli.plan_season import plan_season
 from fieldmon.cli.plan_team import plan_team
-from fieldmon.cli.preparing import estate, prepared
 from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.errors import SettingError
 from fieldmon.samplers.own import label_of
 
 if TYPE_CHECKING:
-    from fieldmon.io.sources import PlotRequest
+    from fieldmon.io.plot_request import PlotRequest
 
 # how far below what no route can exceed a plan says that another one may find more
 _FAR_BELOW = 0.05

@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from fieldmon.cli.messages import assumed_in_words, tell_assumed_of_plots
+from fieldmon.cli.progress import progress
 from fieldmon.cli.season_files import refuse_unrecorded
-from fieldmon.cli.waiting import progress
 from fieldmon.compute.cores import cores
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole
+from fieldmon.io.plot_request import PlantingChoices
 from fieldmon.io.prepare import lay
-from fieldmon.io.sources import PlantingChoices
 from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
-    from fieldmon.io.prepared import Estate, EstateRecords
+    from fieldmon.io.prepared_plots import Estate, EstateRecords
     from fieldmon.planning.many_plots import Orders, Task
 
 SUMMARY = "summary.csv"

@@ -26,7 +26,7 @@ from fieldmon.cli.outputs import ChanceMap
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.sampler_names import OneSamplerOrOwn
 from fieldmon.cli.times import WorkStart, clock, day
-from fieldmon.samplers import USUAL
+from fieldmon.samplers import USUAL_SAMPLER
 
 Now = Annotated[
     str | None,
@@ -64,7 +64,7 @@ class PlanOptions:
     output: Outputs = None
     observations: Records = None
     feature: Feature = None
-    sampler: OneSamplerOrOwn = USUAL
+    sampler: OneSamplerOrOwn = USUAL_SAMPLER
     every: Every = None
     on: WorkDate = None
     start: StartTime = "06:00"

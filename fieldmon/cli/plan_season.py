@@ -248,7 +248,7 @@ def _plan_team(
     settings: MonitoringSettings,
 ) -> None:
     """Plan what is left of a day for each of a team; write a file for each."""
-    from fieldmon.monitoring.day_ahead import Part, by_the_clock
+    from fieldmon.monitoring.day_ahead import WorkPart, by_the_clock
     from fieldmon.planning.route import with_forecast
 
     team = settings.team
@@ -256,7 +256,7 @@ def _plan_team(
     refuse_unrecorded(season, (file for each in files for file in each))
     days = season.plan_each(on, now)
     if now is None:
-        days = tuple(by_the_clock(season, on, Part(name=one.name), today)
+        days = tuple(by_the_clock(season, on, WorkPart(name=one.name), today)
                      for one, today in zip(team, days, strict=True))  # fmt: skip
     named = tuple(zip((one.name for one in team), days, strict=True))
     off = _LeftOff.of(season, on, named)

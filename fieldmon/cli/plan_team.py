@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from fieldmon.cli.files_to_plot import believed, prepared
 from fieldmon.cli.messages import tell_assumed
 from fieldmon.cli.outputs import write_chance_map
 from fieldmon.cli.pest_options import prior_of
-from fieldmon.cli.preparing import believed, prepared
+from fieldmon.cli.progress import counting
 from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.cli.team_files import (
     files_of_each,
@@ -19,7 +20,6 @@ from fieldmon.cli.team_files import (
     write_member,
 )
 from fieldmon.cli.times import WorkStart
-from fieldmon.cli.waiting import counting
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import typer
 
+from fieldmon.cli.files_to_plot import estate
 from fieldmon.cli.options import Crs, Layer, PlotChoices, PlotFile, plot_options
-from fieldmon.cli.preparing import estate
 
 
 def plots(
@@ -15,7 +15,7 @@ def plots(
     import numpy as np
 
     from fieldmon.io.parse.geometry import areas_m2
-    from fieldmon.io.sources import PlotRequest, PlotSources
+    from fieldmon.io.plot_request import PlotRequest, PlotSources
 
     options = plot_options(None, crs, layer, plot_option)
     listed = estate(PlotRequest(PlotSources(plot, options))).fields

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import typer
 
+from fieldmon.cli.progress import WAITING
 from fieldmon.cli.stopped import STOPPED, STOPPED_CODE
-from fieldmon.cli.waiting import WAITING
 from fieldmon.errors import FieldmonError
 
 if TYPE_CHECKING:

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from fieldmon.cli.named_values import named_values
-from fieldmon.cli.numbers import within
+from fieldmon.cli.option_ranges import within
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from fieldmon.infestation.raster_risk import RiskSettings
+    from fieldmon.io.plot_request import CanopySource, RiskSource
     from fieldmon.io.rasters.values import How, RasterOptions
-    from fieldmon.io.sources import CanopySource, RiskSource
 
 Risk = Annotated[
     Path | None,
@@ -68,7 +68,7 @@ class RasterFiles:
             raise SettingError(
                 "Missing plants are found with both --canopy FILE and --canopy-below X: give both."
             )
-        from fieldmon.io.sources import CanopySource
+        from fieldmon.io.plot_request import CanopySource
 
         options, how = _options(dict(named_values(self.canopy_option, "--canopy-option")))
         return CanopySource(self.canopy, self.canopy_below, options, how)
@@ -81,7 +81,7 @@ class RasterFiles:
                     "--risk-option says how to read a raster: give it with --risk FILE."
                 )
             return None
-        from fieldmon.io.sources import RiskSource
+        from fieldmon.io.plot_request import RiskSource
 
         given = dict(named_values(self.risk_option, "--risk-option"))
         settings = _risk_settings(given)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.brought_findings import BroughtFile
+    from fieldmon.monitoring.inspection_import import BroughtFile
 
 FindingFiles = Annotated[
     list[Path],
@@ -117,7 +117,7 @@ def _read(
 ) -> list[BroughtFile]:
     """Return what is in files, all of them before any is recorded: nothing is left half-done."""
     from fieldmon.io.readers.other_plots import left_out
-    from fieldmon.monitoring.brought_findings import read_brought
+    from fieldmon.monitoring.inspection_import import read_brought
 
     read = []
     for k, file in enumerate(files):
@@ -168,7 +168,7 @@ def _record(season: Season, read: list[BroughtFile], flags: RecordFlags) -> date
 
 def _take_saved(season: Season, name: str, saved: PhoneFile, who: str) -> None:
     """Record what a phone saved, as what it sends."""
-    from fieldmon.monitoring.brought_findings import record_saved
+    from fieldmon.monitoring.inspection_import import record_saved
 
     done, said = record_saved(season, _saved_of(who, season, saved, name), who)
     typer.echo(f"{name}: {done.new} new, {done.known} known already")

@@ -199,7 +199,7 @@ def _results_in(file: Path, season: Season) -> tuple[Inspections, str]:
     """
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.io.readers.other_plots import left_out
-    from fieldmon.monitoring.brought_findings import read_findings
+    from fieldmon.monitoring.inspection_import import read_findings
 
     try:
         read = read_findings(season, file)

@@ -15,10 +15,10 @@ from fieldmon.cli.messages import (
 )
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import MoveMinutes, Robots, StartTime, WorkDate, WorkerOptions
+from fieldmon.cli.progress import progress
 from fieldmon.cli.season_files import opened
 from fieldmon.cli.team_files import members_of, tell_member
 from fieldmon.cli.times import clock, day, day_on
-from fieldmon.cli.waiting import progress
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 
@@ -243,7 +243,7 @@ def _write(
 ) -> None:
     """Write the routes and their table."""
     from fieldmon.io.atomic_write import write_whole
-    from fieldmon.monitoring.estate_routes import TABLE, plan_table, stems
+    from fieldmon.monitoring.estate_routes import PLAN_TABLE, plan_table, stems
 
     folder.mkdir(parents=True, exist_ok=True)
     files, routes = {}, [one for _, one in made.turns]
@@ -252,9 +252,9 @@ def _write(
         written = [path for end in endings for path in route.to_file(folder / f"{stem}{end}")]
         files[" ".join(dict.fromkeys(path.name for path in written))] = one
     nobody = {plots[k].name: made.closed[k] for k in made.nobody}
-    write_whole(folder / TABLE, plan_table(files, nobody, made.free))
+    write_whole(folder / PLAN_TABLE, plan_table(files, nobody, made.free))
     plants = sum(len(one.route) for one in routes)
     typer.echo(
-        f"{counted(len(routes), 'plot')}, {counted(plants, 'plant')}. Routes and {TABLE} in "
+        f"{counted(len(routes), 'plot')}, {counted(plants, 'plant')}. Routes and {PLAN_TABLE} in "
         f"{folder}"
     )

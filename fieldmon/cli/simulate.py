@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
+from fieldmon.cli.files_to_plot import believed, prepared
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import (
     Every,
     Feature,
@@ -24,7 +25,6 @@ from fieldmon.cli.options import (
     refuse_idle_every,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
-from fieldmon.cli.preparing import believed, prepared
 from fieldmon.cli.sampler_names import OWN, known_or_own
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED, SHARE

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from fieldmon.cli.drive import BrokerName, Maker, Version
-from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import of_robot, within
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.plot.robot import KM_H
 

@@ -89,8 +89,8 @@ def _contradicting(season: Season, on: date) -> Iterator[str]:
             f"{RESULT_NAMES[result]} ({who})" if who else RESULT_NAMES[result]
             for result, who in zip(of.result.tolist(), of.who, strict=True)
         )
-        row = season.plot.grid.row_signs[int(season.label.line[plant])]
-        place = f"row {row}, plant {season.label.number[plant]}"
+        row = season.plot.grid.line_signs[int(season.plant_numbers.line[plant])]
+        place = f"row {row}, plant {season.plant_numbers.number[plant]}"
         yield f"  contradiction          {place}: {each}"
     if (more := len(plants) - _CONTRADICTING) > 0:
         yield f"  {'':22} and {more} more"
@@ -111,7 +111,7 @@ def _show_batches(kept: Season) -> None:
         if said is not None and batch.kind == "treatment":
             what = f"  {counted(said.n, 'plant')}, {said.first}"
         elif said is not None and said.n == batch.rows == 1:
-            row = kept.plot.grid.row_signs.get(said.row, said.row)
+            row = kept.plot.grid.line_signs.get(said.row, said.row)
             what = f"  row {row}, plant {said.plant}: {said.called}"
         elif said is not None and (batch.undone or said.counting == batch.rows):
             what = f"  {said.found} found"
@@ -313,10 +313,10 @@ def _show_rows(season: Season, now: Status) -> None:
     from fieldmon.compute.wording import counted
 
     grid = season.plot.grid
-    of_plant, signs = grid.row_number, grid.row_signs
+    lines, signs = grid.row_line_number, grid.line_signs
     wide = max(4, *map(len, signs.values()))
-    for line in np.unique(of_plant):
-        days = now.days_since[of_plant == line]
+    for line in np.unique(lines):
+        days = now.days_since[lines == line]
         known = days[~np.isnan(days)]
         said = f"{counted(round(known.min()), 'day')} ago" if len(known) else "never"
         typer.echo(f"  row {signs[line]:>{wide}}  {said}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.compute.ranges import SEASONS, AllowedRange
@@ -59,7 +59,7 @@ def beliefs(
     from fieldmon.samplers import sampler as named
     from fieldmon.studies.samplers.calibration import (
         BELIEFS,
-        OF_PESTS,
+        BELIEFS_OF_PESTS,
         calibration,
         report_html,
     )
@@ -79,7 +79,7 @@ def beliefs(
         raise SettingError(f"A scenario must begin with {scenario!r}, but none does.")
     made, inspects = {}, named(sampler)
     visited = replace(chosen, visit_every=visit_every)
-    for name, believe in (BELIEFS if pest_in_weather is None else OF_PESTS).items():
+    for name, believe in (BELIEFS if pest_in_weather is None else BELIEFS_OF_PESTS).items():
         made[name] = c = calibration([visited], inspects, believe, seeds, _DAYS)
         typer.echo(
             f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "

@@ -8,12 +8,12 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import StudySeed
 from fieldmon.cli.pest_options import PestName, check_no_pest
+from fieldmon.cli.progress import counting
 from fieldmon.cli.study_output import can_be_folder, write_all
-from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import SEASONS
 from fieldmon.errors import FileProblem
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.files_to_plot import prepared
 from fieldmon.cli.messages import Terminal
-from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import StudySeed
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
-from fieldmon.cli.preparing import prepared
+from fieldmon.cli.progress import counting
 from fieldmon.cli.study_output import can_be_folder, write_all
-from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import SEASONS
 from fieldmon.errors import SettingError
 
@@ -160,7 +160,7 @@ def site_of(file: Path, feature: str | None, observations: Path | None) -> Site:
     from fieldmon.infestation.prior import prior_chance
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.io.options import PlotOptions
-    from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
+    from fieldmon.io.plot_request import PlotRequest, PlotSources, RecordSource
     from fieldmon.studies.thesis.chapter5.sites import Site
 
     sources = PlotSources(file, PlotOptions(feature=feature))

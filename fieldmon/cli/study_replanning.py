@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.numbers import of_robot, within
-from fieldmon.cli.waiting import progress
+from fieldmon.cli.option_ranges import of_robot, within
+from fieldmon.cli.progress import progress
 from fieldmon.compute.ranges import CHANCE, PAIRED
 
 

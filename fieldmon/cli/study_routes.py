@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import within
+from fieldmon.cli.progress import progress
 from fieldmon.cli.study_output import can_be_folder, write_all
-from fieldmon.cli.waiting import progress
 from fieldmon.compute.ranges import SEED
 from fieldmon.errors import FileProblem, SettingError
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from fieldmon.cli.files_to_plot import estate
 from fieldmon.cli.messages import Terminal, tell_assumed
-from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import of_robot, within
 from fieldmon.cli.options import (
     Bearing,
     BothFaces,
@@ -21,11 +22,10 @@ from fieldmon.cli.options import (
     VisitEvery,
 )
 from fieldmon.cli.pest_options import PestOptions
-from fieldmon.cli.preparing import estate
+from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import OWN
 from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.cli.times import day, day_on
-from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import CHANCE, DAYS, SEASONS, SEED, SHARE
 from fieldmon.samplers import COMPARED
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-    from fieldmon.io.sources import PlantingChoices
+    from fieldmon.io.plot_request import PlantingChoices
     from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.field import Field
     from fieldmon.simulation.design import Design
@@ -127,7 +127,7 @@ class StudyOptions:
 
     def planting(self) -> PlantingChoices:
         """Return what was said of the rows."""
-        from fieldmon.io.sources import PlantingChoices
+        from fieldmon.io.plot_request import PlantingChoices
 
         spacings = self.row_spacing, self.plant_spacing, self.headland
         return PlantingChoices(self.bearing, *spacings, 2 if self.both_faces else None)
@@ -137,7 +137,7 @@ class StudyOptions:
         import numpy as np
 
         from fieldmon.io.options import PlotOptions
-        from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
+        from fieldmon.io.plot_request import PlotRequest, PlotSources, RecordSource
         from fieldmon.plot.plot import planting_of
         from fieldmon.simulation.results import first_day
         from fieldmon.simulation.study_plot import StudyPlot

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import VisitEvery
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
+from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import OWN
 from fieldmon.cli.study_output import can_be_folder, going_on, write_all
-from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import PAIRED
 from fieldmon.errors import SettingError
 

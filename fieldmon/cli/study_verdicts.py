@@ -8,10 +8,10 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
+from fieldmon.cli.progress import counting
 from fieldmon.cli.study_output import can_be_folder, going_on
-from fieldmon.cli.waiting import counting
 from fieldmon.compute.ranges import PAIRED
 
 # 1.96 standard deviations of a share of one half

@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.pest_options import PestName, tell_pest
-from fieldmon.cli.waiting import counting
+from fieldmon.cli.progress import counting
 from fieldmon.compute.ranges import DAYS, PAIRED
 
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.messages import how_to_say_wait, tell_not_come
-from fieldmon.cli.numbers import within
 from fieldmon.cli.option_groups import with_options
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import SeasonFile, TheDate
 from fieldmon.cli.times import clock, day, day_on
 from fieldmon.compute.ranges import CHANCE

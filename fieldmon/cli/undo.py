@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.numbers import within
+from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import SeasonFile
 from fieldmon.compute.ranges import NUMBER
 from fieldmon.errors import SettingError

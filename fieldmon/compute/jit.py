@@ -208,7 +208,7 @@ def loop(function: F) -> F:
     return kept(compiled)
 
 
-def part(function: F) -> F:
+def inner_loop(function: F) -> F:
     """Compile a function likewise that only other loops call.
 
     What Python would need to call it is left out (it would crash), which is nearly half of what a

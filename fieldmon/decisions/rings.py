@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.sparse import csr_array, vstack
 
-from fieldmon.compute.jit import part, routine
+from fieldmon.compute.jit import inner_loop, routine
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -197,7 +197,7 @@ def _choose(
             return
 
 
-@part
+@inner_loop
 def _best_near(
     rings: _Rings, r: int, pays: tuple[Floats, float], chosen: Mask, times: NDArray[np.int32]
 ) -> int:
@@ -214,7 +214,7 @@ def _best_near(
     return best
 
 
-@part
+@inner_loop
 def _adds(rings: _Rings, r: int, pays: tuple[Floats, float], times: NDArray[np.int32]) -> float:
     """Return what a ring gains by the plants that no other sprays yet."""
     gain, per_zone = pays
@@ -228,7 +228,7 @@ def _adds(rings: _Rings, r: int, pays: tuple[Floats, float], times: NDArray[np.i
     return total - per_zone if first else total
 
 
-@part
+@inner_loop
 def _put(rings: _Rings, r: int, by: int, times: NDArray[np.int32]) -> None:
     for k in range(rings.start[r], rings.start[r + 1]):
         times[rings.plant[k]] += by

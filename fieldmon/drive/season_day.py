@@ -141,7 +141,9 @@ class SeasonDay(AskedDay):
         """Return what people want but for the plants that are left to somebody."""
         if not self.left_out:
             return wishes
-        theirs = np.any([inside(self._season.label, rows) for rows in self.left_out], axis=0)
+        theirs = np.any(
+            [inside(self._season.plant_numbers, rows) for rows in self.left_out], axis=0
+        )
         return (wishes or Wishes()).never(tuple(np.flatnonzero(theirs).tolist()))
 
     def _plan(self) -> None:
@@ -205,7 +207,7 @@ def left_of_plan(
     plants = ahead.plants[name]
     is_left = scene.are_open(plants)
     for rows in left_out:
-        is_left &= ~inside(season.label, rows)[plants]
+        is_left &= ~inside(season.plant_numbers, rows)[plants]
     left = through(scene, plants[is_left])
     fits = left.route.end_s <= scene.seconds_left + REPLAN_AFTER_S
     return left if fits and (since == CLEAN).all() else None

@@ -17,7 +17,7 @@ from fieldmon.drive.day_tables import STOP_COLUMNS
 from fieldmon.drive.recording import Noted, Recording
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring.history import BeliefSettings
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -168,8 +168,8 @@ def _stop_of(line: dict[str, str], number: int, aisles: Aisles) -> tuple[int, fl
             )
         ) from error
     if 0 <= plant < len(aisles.grid):
-        label = row_label(aisles.grid, np.array([plant]))
-        if (int(label.line[0]), int(label.number[0])) == names and np.isfinite(done_s):
+        numbered = plant_numbers(aisles.grid, np.array([plant]))
+        if (int(numbered.line[0]), int(numbered.number[0])) == names and np.isfinite(done_s):
             return plant, done_s, found
     raise FileProblem(
         worded(

@@ -146,7 +146,7 @@ class Ancestry:
     last_find: NDArray[np.int64]
     new: tuple[int, ...]
     taken: NDArray[np.float16]
-    infestations: Infestations = field(default_factory=lambda: Infestations.room(_LEAST_ROOM))
+    infestations: Infestations = field(default_factory=lambda: Infestations.empty(_LEAST_ROOM))
     rates: Rates = field(default_factory=Rates.at_first)
     at_start: Floats = field(default_factory=lambda: np.full(3, np.nan))
     arrived: float = 0.0
@@ -259,7 +259,7 @@ class Ancestry:
         left[list(self.new)] = False
         left[list(self.new_left)] = True
         plants = np.flatnonzero(left & (chance > KNOWN))
-        made = Infestations.room(max(_LEAST_ROOM, len(plants)))
+        made = Infestations.empty(max(_LEAST_ROOM, len(plants)))
         known = slice(0, len(plants))
         made.plant[known] = plants
         made.begins[known] = made.ends[known] = made.earliest[known] = BEFORE

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import part
+from fieldmon.compute.jit import inner_loop
 from fieldmon.infestation.cell_squares import (
     AFTER,
     CELL,
@@ -71,8 +71,8 @@ class Infestations(NamedTuple):
     seen: Ints
 
     @classmethod
-    def room(cls, places: int) -> Infestations:
-        """Return places for so many."""
+    def empty(cls, places: int) -> Infestations:
+        """Return places for so many, none taken."""
         ints = np.zeros((7, places), np.int64)
         ints[3] = NOBODY
         plant, begins, ends, parent, children, earliest, seen = ints
@@ -85,7 +85,7 @@ class Infestations(NamedTuple):
 
     def copied(self, places: int) -> Infestations:
         """Return the same with so many places more."""
-        wider = Infestations.room(len(self.plant) + places)
+        wider = Infestations.empty(len(self.plant) + places)
         for mine, own in zip(wider, self, strict=True):
             mine[: len(own)] = own
         return wider
@@ -182,7 +182,7 @@ class Worked(NamedTuple):
 _REMOVABLE, _NEAR, OPEN = range(3)
 
 
-@part
+@inner_loop
 def begin(infestations: Infestations, weights: Weights, worked: Worked) -> int:
     """Note where infestations stand and what may change; return how many were not found."""
     hidden = 0
@@ -202,7 +202,7 @@ def begin(infestations: Infestations, weights: Weights, worked: Worked) -> int:
     return hidden
 
 
-@part
+@inner_loop
 def _children(infestations: Infestations, i: int, weights: Weights, worked: Worked) -> int:
     """List the children of an infestation; return the last morning on which it may have begun."""
     latest, k, j = int(infestations.seen[i]), 0, worked.first_child[i]
@@ -214,7 +214,7 @@ def _children(infestations: Infestations, i: int, weights: Weights, worked: Work
     return latest
 
 
-@part
+@inner_loop
 def move(infestations: Infestations, i: int, weights: Weights, worked: Worked) -> None:
     """Draw another beginning and parent of an infestation.
 
@@ -235,7 +235,7 @@ def move(infestations: Infestations, i: int, weights: Weights, worked: Worked) -
     _date(infestations, i, begins, weights, worked)
 
 
-@part
+@inner_loop
 def put_in(
     infestations: Infestations,
     i: int,
@@ -288,7 +288,7 @@ def put_in(
     _hang(infestations, i, place, worked)
 
 
-@part
+@inner_loop
 def take_out(
     infestations: Infestations, at: Ints, weights: Weights, worked: Worked, takes: float
 ) -> None:
@@ -323,7 +323,7 @@ def take_out(
     at[plant] = NOBODY
 
 
-@part
+@inner_loop
 def try_others(
     infestations: Infestations,
     i: int,
@@ -366,7 +366,7 @@ def try_others(
     return sum_of
 
 
-@part
+@inner_loop
 def go_to_one(
     infestations: Infestations,
     i: int,
@@ -400,7 +400,7 @@ def go_to_one(
     _hang(infestations, i, parent, worked)
 
 
-@part
+@inner_loop
 def _weigh(
     when: tuple[int, int, int, int],
     without: tuple[int, int],
@@ -441,7 +441,7 @@ def _weigh(
     return float(total + by_none[latest + 1])
 
 
-@part
+@inner_loop
 def _of_parent(parent: int, worked: Worked) -> float:
     """Return how much of what was weighed is due to one parent."""
     of = before = 0.0
@@ -453,7 +453,7 @@ def _of_parent(parent: int, worked: Worked) -> float:
     return of
 
 
-@part
+@inner_loop
 def _draw_origin(
     infestations: Infestations,
     total: float,
@@ -477,7 +477,7 @@ def _draw_origin(
     return NOBODY, begins
 
 
-@part
+@inner_loop
 def _when_by(
     infestations: Infestations,
     parent: int,
@@ -497,7 +497,7 @@ def _when_by(
     return int(begins)
 
 
-@part
+@inner_loop
 def _date(
     infestations: Infestations, i: int, begins: int, weights: Weights, worked: Worked
 ) -> None:
@@ -507,7 +507,7 @@ def _date(
     places[i, SINCE], places[i, UNTIL] = weights.grown[begins] + 1, infestations.ends[i] + 1
 
 
-@part
+@inner_loop
 def _explained(
     infestations: Infestations, i: int, without: int, weights: Weights, worked: Worked
 ) -> float:
@@ -518,14 +518,14 @@ def _explained(
     return float(total / weights.lasting[row, begins])
 
 
-@part
+@inner_loop
 def _row(infestations: Infestations, i: int, weights: Weights) -> int:
     """Return the line of an infestation in `Weights.lasting`."""
     plant = int(infestations.plant[i])
     return weights.roots.shape[0] + i if infestations.found[i] else plant
 
 
-@part
+@inner_loop
 def _came_from(weights: Weights, plant: int) -> tuple[int, int]:
     """Return a plant from which something may have come to this one, drawn by the kernel.
 
@@ -544,7 +544,7 @@ def _came_from(weights: Weights, plant: int) -> tuple[int, int]:
     return int(cells.plant[np.random.randint(first, end)]), int(end - first)  # noqa: NPY002
 
 
-@part
+@inner_loop
 def _hang(infestations: Infestations, i: int, parent: int, worked: Worked) -> None:
     """Give an infestation another parent."""
     before = infestations.parent[i]
@@ -561,7 +561,7 @@ def _hang(infestations: Infestations, i: int, parent: int, worked: Worked) -> No
         _note_removable(infestations, parent, worked)
 
 
-@part
+@inner_loop
 def _join(worked: Worked, parent: int, i: int) -> None:
     """Put an infestation before the other children of a parent."""
     after = worked.first_child[parent]
@@ -571,7 +571,7 @@ def _join(worked: Worked, parent: int, i: int) -> None:
     worked.first_child[parent] = i
 
 
-@part
+@inner_loop
 def _part_with(worked: Worked, parent: int, i: int) -> None:
     """Take an infestation from the children of its parent."""
     after, before = worked.siblings[0, i], worked.siblings[1, i]
@@ -583,7 +583,7 @@ def _part_with(worked: Worked, parent: int, i: int) -> None:
         worked.siblings[1, after] = before
 
 
-@part
+@inner_loop
 def _note_removable(infestations: Infestations, j: int, worked: Worked) -> None:
     """Keep the list of those that are only there for a single child."""
     many, rank = worked.many[_REMOVABLE], worked.rank[j]
@@ -598,20 +598,20 @@ def _note_removable(infestations: Infestations, j: int, worked: Worked) -> None:
         worked.many[_REMOVABLE] = many - 1
 
 
-@part
+@inner_loop
 def _hangs_on_one(infestations: Infestations, j: int) -> bool:
     """Tell whether an infestation is only there for a single child."""
     return bool(not infestations.found[j] and infestations.children[j] == 1)
 
 
-@part
+@inner_loop
 def _only_child(infestations: Infestations, i: int) -> bool:
     """Tell whether an infestation is all that its parent is there for."""
     parent = infestations.parent[i]
     return bool(parent >= 0 and _hangs_on_one(infestations, parent))
 
 
-@part
+@inner_loop
 def _free(infestations: Infestations) -> int:
     """Return a place that is not taken, or `NOBODY`."""
     place = NOBODY

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, part
+from fieldmon.compute.jit import inlined, inner_loop
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,7 +44,7 @@ def no_inspections(chance: Floats | None = None) -> Floats:
     return sums
 
 
-@part
+@inner_loop
 def note_inspection(sums: Floats, chance: float, found: bool) -> None:  # noqa: FBT001 - a result
     """Add an inspection of a plant that was given a chance to the sums ``(6,)``, in place."""
     if chance > _KNOWN:

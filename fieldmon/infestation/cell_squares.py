@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import part, routine
+from fieldmon.compute.jit import inner_loop, routine
 from fieldmon.infestation.cells import cell_of
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def empty_squares(cells: Cells, places: int, reach: int) -> Squares:
     )  # fmt: skip
 
 
-@part
+@inner_loop
 def stand(squares: Squares, cells: Cells, plant: int, place: int) -> None:
     """Let a place stand at a plant."""
     y, x = cell_of(cells, plant)
@@ -76,7 +76,7 @@ def stand(squares: Squares, cells: Cells, plant: int, place: int) -> None:
     squares.first[y // _SIDE, x // _SIDE] = place
 
 
-@part
+@inner_loop
 def leave(squares: Squares, place: int) -> None:
     """Let a place stand nowhere."""
     before, after = squares.before[place], squares.places[place, AFTER]
@@ -88,7 +88,7 @@ def leave(squares: Squares, place: int) -> None:
         squares.before[after] = before
 
 
-@part
+@inner_loop
 def within(squares: Squares, y: int, x: int, reach: int) -> tuple[int, int, int, int]:
     """Return which squares have cells within so many of one: from and to, across and along."""
     across, along = squares.first.shape
@@ -98,7 +98,7 @@ def within(squares: Squares, y: int, x: int, reach: int) -> tuple[int, int, int,
     )  # fmt: skip
 
 
-@part
+@inner_loop
 def by_cells_apart(squares: Squares, kernel: Floats, table: Floats) -> None:
     """Write a kernel ``(d, d)`` to a table by the numbers of two cells, see `apart`."""
     d, half, width = kernel.shape[0], kernel.shape[0] // 2, squares.width

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import part
+from fieldmon.compute.jit import inner_loop
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -68,14 +68,14 @@ class Cells(NamedTuple):
         return sums.reshape(self.shape)
 
 
-@part
+@inner_loop
 def cell_of(cells: Cells, plant: int) -> tuple[int, int]:
     """Return in which cell a plant stands, across and along."""
     cell, along = cells.of_plant[plant], cells.shape[1]
     return cell // along, cell % along
 
 
-@part
+@inner_loop
 def in_one_cell(cells: Cells, plant: int) -> int:
     """Return how many plants stand in the cell of one."""
     cell = cells.of_plant[plant]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, loop, part
+from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.infestation.chance_bounds import bounded_pair_chance
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def leaning(evidence: NDArray[np.float64]) -> float:
     return float(lean / total)
 
 
-@part
+@inner_loop
 def update_clusters(
     morning: tuple[NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,
@@ -157,7 +157,7 @@ def _update_evidence(
         clusters.evidence[k] += _TEMPER * np.log(likely)
 
 
-@part
+@inner_loop
 def clustering_scale(clusters: ClusterEstimate) -> float:
     """Return by how much infested plants stand closer together than believed in the morning."""
     return float(
@@ -165,7 +165,7 @@ def clustering_scale(clusters: ClusterEstimate) -> float:
     )
 
 
-@part
+@inner_loop
 def scale_clustering(
     believed: tuple[NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import part, routine
+from fieldmon.compute.jit import inner_loop, routine
 from fieldmon.infestation.ancestry_moves import (
     OPEN,
     TRIED,
@@ -145,7 +145,7 @@ def draw_ancestries(
     return max(sweeps - left_out, 0)
 
 
-@part
+@inner_loop
 def _sweep(
     infestations: Infestations,
     found_at: tuple[Ints, Ints],
@@ -168,7 +168,7 @@ def _sweep(
             put_in(infestations, i, found_at, weights, worked, takes)
 
 
-@part
+@inner_loop
 def _go_elsewhere(
     infestations: Infestations,
     found_at: tuple[Ints, Ints],
@@ -187,7 +187,7 @@ def _go_elsewhere(
             go_to_one(infestations, i, found_at, weights, worked, total)
 
 
-@part
+@inner_loop
 def _sum_up(infestations: Infestations, weights: Weights, worked: Worked, drawn: DrawnSums) -> None:
     """Add an ancestry to the sums."""
     season = weights.season

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, loop, part
+from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.infestation.chance_bounds import bounded_chance, greater, lesser
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def _find_escapes(
         morning[i] = bounded_chance(1.0 - (1.0 - chance[i]) * stays)
 
 
-@part
+@inner_loop
 def _escape_any(
     i: int,
     believed: tuple[NDArray[np.float64], NDArray[np.float64]],

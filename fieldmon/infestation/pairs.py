@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
-from fieldmon.compute.jit import inlined, loop, part
+from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.infestation.chance_bounds import (
     LEAST_CHANCE,
     MOST_CHANCE,
@@ -165,7 +165,7 @@ class Neighbourhood(NamedTuple):
         return cls(np.empty(n, np.int64), np.zeros(n, np.int64), np.empty(n), alone)
 
 
-@part
+@inner_loop
 def update_neighbourhood(
     believed: tuple[NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,

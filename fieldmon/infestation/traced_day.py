@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inner_loop, loop
 from fieldmon.infestation.calibration_slope import note_inspection
 from fieldmon.infestation.chance_bounds import KNOWN, lesser
 from fieldmon.infestation.origins import (
@@ -101,7 +101,7 @@ def learn_day(
             traces.unseen[i] *= 1.0 - detects[k]
 
 
-@part
+@inner_loop
 def _count(day: TracedDay, i: int, found: bool, expected: float) -> None:  # noqa: FBT001 - a result
     """Count what an inspection found and was expected to find, origin by origin.
 
@@ -115,7 +115,7 @@ def _count(day: TracedDay, i: int, found: bool, expected: float) -> None:  # noq
         day.expected[o] += expected * day.shares[i, o]
 
 
-@part
+@inner_loop
 def _share(day: TracedDay, chance: Floats, j: int) -> None:
     """Ascribe what a plant's chance has risen by to the plant beside it."""
     more = chance[j] - day.before[j]
@@ -126,7 +126,7 @@ def _share(day: TracedDay, chance: Floats, j: int) -> None:
     day.before[j] = chance[j]
 
 
-@part
+@inner_loop
 def _share_traced(
     day: TracedDay, traces: Traces, room: KernelRoom, find: tuple[int, float, float], t: int
 ) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled, as_seen
-from fieldmon.compute.jit import inlined, loop, part
+from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.cells import Cells
 from fieldmon.infestation.chance_bounds import bounded_chance, lesser
@@ -89,7 +89,7 @@ class Raised(NamedTuple):
         return cls(np.empty(n, np.int64), np.empty(n))
 
 
-@part
+@inner_loop
 def trace(
     believed: tuple[Floats, Floats],
     linked: Linked,

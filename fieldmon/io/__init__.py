@@ -1,1 +1,1 @@
-"""The doors: files of others in, files for others out."""
+"""Files of others in, files for others out."""

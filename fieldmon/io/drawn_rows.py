@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
     from fieldmon.io.import_report import ImportMessage
     from fieldmon.io.options import Source
+    from fieldmon.io.plot_request import PlantingChoices, PlotSources, Role
     from fieldmon.io.rasters.values import RasterOptions
     from fieldmon.io.readers.points_and_lines import DrawnBlocks
-    from fieldmon.io.sources import PlantingChoices, PlotSources, Role
     from fieldmon.plot.block import Block
     from fieldmon.plot.field import Field
 

@@ -10,7 +10,7 @@ from fieldmon.plot.plot import planting_of
 
 if TYPE_CHECKING:
     from fieldmon.io.import_report import ImportMessage
-    from fieldmon.io.sources import PlantingChoices
+    from fieldmon.io.plot_request import PlantingChoices
     from fieldmon.plot.field import Field
     from fieldmon.plot.outline_bearing import OutlineBearing
 

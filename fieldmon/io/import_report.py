@@ -1,6 +1,6 @@
 """What an import saw, repaired, guessed, dropped or doubts, for people and for programs.
 
-A message with a remedy can be answered. The remedy names an option of the door (`options`) and the
+A message with a remedy can be answered. The remedy names an option of reading (`options`) and the
 values that can be chosen for it, the likeliest first:
 
 - a page shows a button for each of `remedy.choices` and reads again with

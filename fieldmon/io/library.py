@@ -26,6 +26,7 @@ from fieldmon.io.options import (
     yes_or_no,
 )
 from fieldmon.io.plot_records import records_on
+from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources, RecordSource
 from fieldmon.io.prepare import prepare
 from fieldmon.io.read import read_plots as read_fields
 from fieldmon.io.read import read_weather as read_weather_file
@@ -33,7 +34,6 @@ from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections as read_on_grid
 from fieldmon.io.readers.pest_file import pest_of
 from fieldmon.io.readers.weather_options import WeatherOptions
-from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources, RecordSource
 from fieldmon.plot.local_clock import utc_now
 from fieldmon.plot.plot import must_be_plot
 

@@ -13,7 +13,7 @@ from fieldmon.errors import ChoiceNeeded, FieldmonError, ObservationError, PlotE
 from fieldmon.infestation.observations import Observations
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful
 from fieldmon.io.options import source_name
-from fieldmon.io.prepared import EstateRecords, Laid
+from fieldmon.io.prepared_plots import EstateRecords, Laid
 from fieldmon.io.read import (
     read_records,
     read_records_by_plot,
@@ -25,10 +25,10 @@ from fieldmon.io.readers.places import NamedPlaces, labelled, plots_called
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fieldmon.io.readers.places import Plants
-    from fieldmon.io.sources import (
+    from fieldmon.io.plot_request import (
         RecordSource,
     )
+    from fieldmon.io.readers.places import Plants
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot

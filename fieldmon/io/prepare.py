@@ -24,7 +24,15 @@ from fieldmon.io.import_report import ImportMessage, WrongRows, gathered, guesse
 from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import source_name
 from fieldmon.io.plot_records import MOST_NAMED, records_of, records_on
-from fieldmon.io.prepared import Estate, EstateRecords, Laid, Listener, Prepared, SourceMessage
+from fieldmon.io.plot_request import PlantingChoices
+from fieldmon.io.prepared_plots import (
+    Estate,
+    EstateRecords,
+    Laid,
+    Listener,
+    Prepared,
+    SourceMessage,
+)
 from fieldmon.io.read import (
     read_crews,
     read_lines,
@@ -33,7 +41,6 @@ from fieldmon.io.read import (
     read_rows,
 )
 from fieldmon.io.readers.nearby import plants_on
-from fieldmon.io.sources import PlantingChoices
 from fieldmon.io.unused_row_settings import unused_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.planting import Planting
@@ -48,14 +55,14 @@ if TYPE_CHECKING:
 
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
-    from fieldmon.io.readers.places import Plants
-    from fieldmon.io.sources import (
+    from fieldmon.io.plot_request import (
         CanopySource,
         PlotRequest,
         PlotSources,
         RiskSource,
         Role,
     )
+    from fieldmon.io.readers.places import Plants
     from fieldmon.plot.field import Field
 
 T = TypeVar("T")

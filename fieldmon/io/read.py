@@ -1,4 +1,4 @@
-"""The doors in: everything that is read from a file comes through one of these.
+"""Everything that is read from a file is read by one of these.
 
 A source is a path, an `Upload`, or several of them that belong together. What a file leaves open
 is asked by `ChoiceNeeded`; what is unusable is a `FileProblem`; all else that there is to say
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.field import Field
 
 
-def _read(task: str, source: Source, *arguments: Any) -> Any:  # noqa: ANN401 - each door says
+def _read(task: str, source: Source, *arguments: Any) -> Any:  # noqa: ANN401 - each caller says
     # the reading process may have been started in another folder than the one we are in by now
     if isinstance(source, str | Path):
         source = Path(source).absolute()

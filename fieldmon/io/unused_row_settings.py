@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from fieldmon.io.import_report import ImportMessage
-    from fieldmon.io.sources import PlantingChoices
+    from fieldmon.io.plot_request import PlantingChoices
     from fieldmon.plot.field import Field
 
 _CALLED = {

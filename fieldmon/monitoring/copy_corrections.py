@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from fieldmon.monitoring.outside_changes import OutsideChange
     from fieldmon.monitoring.settings import MonitoringSettings
-    from fieldmon.plot.grid import PlantGrid, RowLabel
+    from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
 
 def waiting(theirs: sqlite3.Connection) -> tuple[OutsideChange, ...]:
@@ -33,7 +33,7 @@ def waiting(theirs: sqlite3.Connection) -> tuple[OutsideChange, ...]:
 def take(
     db: sqlite3.Connection,
     theirs: sqlite3.Connection,
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     said: tuple[str, str],
 ) -> tuple[str, ...]:
@@ -124,7 +124,7 @@ def _rewrite(
     db: sqlite3.Connection,
     theirs: sqlite3.Connection,
     one: OutsideChange,
-    how: tuple[tuple[PlantGrid, RowLabel], MonitoringSettings, int],
+    how: tuple[tuple[PlantGrid, PlantNumbers], MonitoringSettings, int],
 ) -> OutsideChange:
     """Correct what a row says, and return what was done to which one of ours."""
     (digest,) = theirs.execute(

@@ -20,17 +20,17 @@ from fieldmon.monitoring import (
     outside_changes,
     rows_that_count,
 )
+from fieldmon.monitoring.contradictions import Contradictions, corrected_against
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.inspection_table import time_text
 from fieldmon.monitoring.outside_changes import OutsideChange
-from fieldmon.monitoring.recorded_before import Contradictions, corrected_against
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
 
 if TYPE_CHECKING:
     import sqlite3
 
     from fieldmon.monitoring.settings import MonitoringSettings
-    from fieldmon.plot.grid import PlantGrid, RowLabel
+    from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
 _OTHERWISE = (
     f"SELECT fid, {INSPECTED} FROM inspections AS old WHERE plant = ? AND date = ? "  # noqa: S608 - ours
@@ -49,7 +49,7 @@ _WAS = f"SELECT {INSPECTED} FROM inspections AS old WHERE fid = ?"  # noqa: S608
 def take(
     db: sqlite3.Connection,
     inspections: Inspections,
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     said: tuple[str, str],
 ) -> tuple[str, ...]:
@@ -94,7 +94,7 @@ def retime(
     db: sqlite3.Connection,
     row: int,
     when: tuple[date | None, float | None],
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     who: str,
 ) -> tuple[str, ...]:
@@ -144,7 +144,7 @@ def _changed(
     db: sqlite3.Connection,
     stood: tuple[int, str],
     says: tuple[str, tuple[object, ...]],
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     taken: tuple[MonitoringSettings, int],
 ) -> OutsideChange:
     """Let a row say something else, for a batch of corrections; what it said is kept."""

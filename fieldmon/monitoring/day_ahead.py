@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring import routes
+from fieldmon.monitoring import kept_routes
 from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.history import BEGINS_OTHERWISE_S
 from fieldmon.monitoring.photos_asked import photos_asked_in
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.monitoring.kept_routes import KeptRoute
     from fieldmon.monitoring.photos_asked import AskedPhoto
-    from fieldmon.monitoring.routes import KeptRoute
     from fieldmon.monitoring.scouts import Scout
     from fieldmon.monitoring.season_file import Season
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
-    from fieldmon.plot.grid import RowLabel
+    from fieldmon.plot.grid import PlantNumbers
     from fieldmon.samplers.base import Scene
 
     Plants = NDArray[np.int32]
@@ -44,7 +44,7 @@ _NO_PLANTS: Plants = np.empty(0, np.int32)
 
 
 @dataclass(frozen=True)
-class Part:
+class WorkPart:
     """Whose part of a day's work it is.
 
     Parameters
@@ -59,7 +59,7 @@ class Part:
     name: str = ""
 
 
-WHOLE = Part()
+WHOLE = WorkPart()
 
 
 class WorkHours(NamedTuple):
@@ -86,7 +86,7 @@ class DayAhead:
 
     Parameters
     ----------
-    label
+    plant_numbers
         Row and number of every plant.
     settings
         What is chosen.
@@ -98,7 +98,7 @@ class DayAhead:
         The photos that are asked for.
     """
 
-    label: RowLabel
+    plant_numbers: PlantNumbers
     settings: MonitoringSettings
     scouts: tuple[Scout, ...]
     last: dict[str, KeptRoute]
@@ -109,25 +109,25 @@ class DayAhead:
     def of(cls, season: Season, on: date) -> DayAhead:
         """Return it of the day `on`."""
         with season.reading() as (db, settings):
-            last = routes.kept_last(db, settings.day(on))
-            plants = {who: routes.plants(db, kept) for who, kept in last.items()}
+            last = kept_routes.kept_last(db, settings.day(on))
+            plants = {who: kept_routes.plants(db, kept) for who, kept in last.items()}
             people, asked = scouts_in(db), photos_asked_in(db)
-        return cls(season.label, settings, people, last, plants, asked)
+        return cls(season.plant_numbers, settings, people, last, plants, asked)
 
     def kept(self, who: str = "") -> Plants:
         """Return the plants of somebody's route; nobody named: of the first of the team."""
         named = self.settings.at_work(who)
         return self.plants.get(person_key(who if named is None else named.name), _NO_PLANTS)
 
-    def member(self, part: Part) -> TeamMember | None:
+    def member(self, part: WorkPart) -> TeamMember | None:
         """Return the one of the team whose part it is, or None."""
         return self.settings.named(part.name)
 
-    def rows(self, part: Part) -> tuple[int, int] | None:
+    def rows(self, part: WorkPart) -> tuple[int, int] | None:
         """Return the rows of a part; None: the plot, or what the team's plan gives one of it."""
         return None if self.member(part) is not None else part.rows
 
-    def crew(self, part: Part) -> tuple[str, ...]:
+    def crew(self, part: WorkPart) -> tuple[str, ...]:
         """Return who shares a part's plants: all who have a code for these rows, beside the team.
 
         They have aisles of their own, as a team has. Whose part it is comes last without a code.
@@ -141,26 +141,26 @@ class DayAhead:
         names.setdefault(person_key(part.name), part.name)
         return tuple(names.values())
 
-    def others(self, part: Part) -> tuple[str, ...]:
+    def others(self, part: WorkPart) -> tuple[str, ...]:
         """Return who else shares a part's plants."""
         return tuple(one for one in self.crew(part) if person_key(one) != person_key(part.name))
 
-    def kept_as(self, part: Part) -> str:
+    def kept_as(self, part: WorkPart) -> str:
         """Return by which name a part's route is kept; empty: it is the season's own."""
         member = self.member(part)
         return self.works_as(part) if member is None else member.name
 
-    def plan_of(self, part: Part) -> int | None:
+    def plan_of(self, part: WorkPart) -> int | None:
         """Return the number of the route kept last of a part as a plan; None: none is kept."""
         kept = self.last.get(person_key(self.kept_as(part)))
         return None if kept is None else kept.plan
 
-    def mark(self, part: Part) -> str:
+    def mark(self, part: WorkPart) -> str:
         """Return the digest of the route kept last of a part; empty: none is kept."""
         kept = self.last.get(person_key(self.kept_as(part)))
         return "" if kept is None else kept.digest
 
-    def is_seasons(self, part: Part) -> bool:
+    def is_seasons(self, part: WorkPart) -> bool:
         """Return whether a part's day is the season's own: that of who works alone on the plot.
 
         What anybody inspected is then part of its work.
@@ -169,31 +169,31 @@ class DayAhead:
             return False
         return not part.name or not self.others(part)
 
-    def works_as(self, part: Part) -> str:
+    def works_as(self, part: WorkPart) -> str:
         """Return by whose inspections a part's hours are counted; empty: everybody's."""
         return "" if self.is_seasons(part) else part.name
 
-    def route(self, part: Part) -> Plants:
+    def route(self, part: WorkPart) -> Plants:
         """Return the plants of the route kept of a part, wherever they lie."""
         return self.kept(self.kept_as(part))
 
-    def given(self, part: Part) -> Plants:
+    def given(self, part: WorkPart) -> Plants:
         """Return the plants of the route kept of a part that are in it."""
         kept = self.route(part)
         return kept[self.own(part)[kept]]
 
-    def has_route(self, part: Part) -> bool:
+    def has_route(self, part: WorkPart) -> bool:
         """Return whether somebody can have a route: beside the team rows are needed for it."""
         is_beside = bool(self.settings.team and part.name) and self.member(part) is None
         return not is_beside or part.rows is not None
 
-    def own(self, part: Part) -> NDArray[np.bool_]:
+    def own(self, part: WorkPart) -> NDArray[np.bool_]:
         """Return ``(n,)`` which plants are somebody's to inspect; none where no route can be."""
         if not self.has_route(part):
-            return np.zeros(len(self.label.line), np.bool_)
-        return inside(self.label, self.rows(part))
+            return np.zeros(len(self.plant_numbers.line), np.bool_)
+        return inside(self.plant_numbers, self.rows(part))
 
-    def is_others(self, part: Part, left: Plants) -> bool:
+    def is_others(self, part: WorkPart, left: Plants) -> bool:
         """Return whether a route was made for other rows, or others who share them have of it."""
         if self.member(part) is not None:
             return False
@@ -201,7 +201,7 @@ class DayAhead:
             return True
         return any(np.isin(left, self.kept(one)).any() for one in self.others(part))
 
-    def asked_of(self, part: Part) -> tuple[AskedPhoto, ...]:
+    def asked_of(self, part: WorkPart) -> tuple[AskedPhoto, ...]:
         """Return the photos asked for that are somebody's to take: none is taken by two.
 
         Those in a part's rows; of several who share them those on one's own route, and the first
@@ -217,17 +217,17 @@ class DayAhead:
                     mine[self.kept(one)] = False
         return tuple(one for one in self.asked if mine[one.plant])
 
-    def wanted(self, part: Part) -> tuple[int, ...]:
+    def wanted(self, part: WorkPart) -> tuple[int, ...]:
         """Return the plants of a part of which a photo is asked for."""
         mine = self.own(part)
         return tuple(sorted({one.plant for one in self.asked if mine[one.plant]}))
 
     def _lines(self, rows: tuple[int, int] | None) -> tuple[int, int]:
-        return rows or (int(self.label.line.min()), int(self.label.line.max()))
+        return rows or (int(self.plant_numbers.line.min()), int(self.plant_numbers.line.max()))
 
 
 def plan_ahead(
-    season: Season, on: date, part: Part = WHOLE, *, wishes: Wishes | None = None,
+    season: Season, on: date, part: WorkPart = WHOLE, *, wishes: Wishes | None = None,
     keep: bool = False, anew: bool = False,
 ) -> DayPlan:  # fmt: skip
     """Return what is left of the season's own day, or of that of one of its team, as of now.
@@ -240,7 +240,7 @@ def plan_ahead(
 
 
 def planned(
-    season: Season, on: date, part: Part = WHOLE, *, wishes: Wishes | None = None,
+    season: Season, on: date, part: WorkPart = WHOLE, *, wishes: Wishes | None = None,
     keep: bool = False, anew: bool = False,
 ) -> DayPlan:  # fmt: skip
     """Return what is left of a day after the last inspection, planned with all that is known.
@@ -257,7 +257,7 @@ def planned(
     return season.plan(on, keep=keep, wishes=wishes, who=who)
 
 
-def by_the_clock(season: Season, on: date, part: Part, plan: DayPlan) -> DayPlan:
+def by_the_clock(season: Season, on: date, part: WorkPart, plan: DayPlan) -> DayPlan:
     """Return a plan as of now where its hours run: what no longer fits them is left out at its end.
 
     Where they do not run, it is the same.
@@ -271,7 +271,7 @@ def by_the_clock(season: Season, on: date, part: Part, plan: DayPlan) -> DayPlan
         fit = replace(plan, scene=scene)
     if notes is None:
         return fit
-    notes = replace(notes, start=routes.begins(season.planned_by(on), fit, hours.begins_s))
+    notes = replace(notes, start=kept_routes.begins(season.planned_by(on), fit, hours.begins_s))
     return replace(fit, route=replace(fit.route, notes=notes))
 
 
@@ -280,7 +280,7 @@ def _given_last(season: Season, on: date, ahead: DayAhead, wishes: Wishes) -> Da
 
     None holds that leads to plants that are closed by now, or not where it is wished.
     """
-    if not routes.is_last(ahead.last) or not season.holds_still(on, ahead.last[""].digest):
+    if not kept_routes.is_last(ahead.last) or not season.holds_still(on, ahead.last[""].digest):
         return None
     with season.entering_treated():
         scene = season.scene(on)
@@ -295,14 +295,14 @@ def _given_last(season: Season, on: date, ahead: DayAhead, wishes: Wishes) -> Da
     begins = ahead.last[""].begins
     if len(season.worked(on)):  # a second more or less is no stop less
         given = _fitting(scene, left, scene.seconds_left + 1.0)
-        begins = routes.begins(season.planned_by(on), given, season.begun_s(on))
+        begins = kept_routes.begins(season.planned_by(on), given, season.begun_s(on))
     else:
         given = through(scene, left)
     notes = RouteNotes(season.plot.field.name, ahead.settings.sampler, begins)
     return replace(given, route=replace(given.route, notes=notes))
 
 
-def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
+def route_ahead(season: Season, on: date, part: WorkPart = WHOLE) -> Route:
     """Return what is left of a day's route for whoever leaves now; it is kept as given out.
 
     Who works alone on the plot has the season's own, see `plan_ahead`. Somebody of the team has a
@@ -329,7 +329,7 @@ def route_ahead(season: Season, on: date, part: Part = WHOLE) -> Route:
 
 
 def planned_again(
-    season: Season, on: date, part: Part = WHOLE, seconds_left: float | None = None
+    season: Season, on: date, part: WorkPart = WHOLE, seconds_left: float | None = None
 ) -> Route:
     """Plan what is left of a day with all that is known now, by the plants to be photographed.
 
@@ -349,7 +349,8 @@ def planned_again(
         (me,) = {*crew} - {*ahead.others(part)}
         said = {} if seconds_left is None else {me: seconds_left}
         told = said | {
-            one: work_hours(season, on, Part(part.rows, one)).left_s for one in {*crew} - {*said}
+            one: work_hours(season, on, WorkPart(part.rows, one)).left_s
+            for one in {*crew} - {*said}
         }
         named = (ahead.kept_as(part),) if len(crew) == 1 else None
         days = season.plan_crew(on, crew, told, wishes=wishes, kept_as=named)
@@ -361,7 +362,7 @@ def planned_again(
     return season.plan(on, now, keep=ahead.rows(part) is None, wishes=wishes, who=who).route
 
 
-def work_hours(season: Season, on: date, part: Part = WHOLE) -> WorkHours:
+def work_hours(season: Season, on: date, part: WorkPart = WHOLE) -> WorkHours:
     """Return somebody's hours on a day; those of who works alone are everybody's."""
     who = DayAhead.of(season, on).works_as(part)
     second, now = season.worked(on, who).second, local_clock(season.plot.field).now()

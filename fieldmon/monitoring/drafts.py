@@ -17,15 +17,15 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.parse.result_words import GONE, gone_note
 from fieldmon.monitoring import inspection_lots, inspection_table, repeated_recordings
+from fieldmon.monitoring.contradictions import contradictions, said_before
 from fieldmon.monitoring.geopackage import beside_plot, geometry, touch
-from fieldmon.monitoring.recorded_before import contradictions, said_before
 from fieldmon.monitoring.schema import INSPECTIONS
 
 if TYPE_CHECKING:
     import sqlite3
 
     from fieldmon.monitoring.settings import MonitoringSettings
-    from fieldmon.plot.grid import PlantGrid, RowLabel
+    from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
 SOURCE = "added by another program"
 # by the index of digests that count, which is small where nothing waits
@@ -75,7 +75,7 @@ def any_waiting(db: sqlite3.Connection) -> bool:
 
 def read(
     db: sqlite3.Connection,
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     held: Inspections,
 ) -> list[Draft]:
@@ -108,7 +108,7 @@ def read(
 def keep(
     db: sqlite3.Connection,
     taken: list[Draft],
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     batch: int,
 ) -> Inspections:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.route import Route
 
 #: the table's file, beside the routes
-TABLE = "plan.csv"
+PLAN_TABLE = "plan.csv"
 _COLUMNS = ("file", "plot", "who", "from", "to", "plants", "finds_expected", "closed")
 
 

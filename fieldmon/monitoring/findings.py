@@ -378,7 +378,7 @@ def _write(
             try:
                 made = _inspection(season, one, letter)
                 days = (settings, (batch, scout.name))
-                (row,) = inspection_table.rows(made, season.plot.grid, season.label, *days)
+                (row,) = inspection_table.rows(made, season.plot.grid, season.plant_numbers, *days)
                 mark = str(row[schema.INSPECTIONS.names.index("digest")])
                 phone_tables.move_photos(change.db, mark, one.id)
                 inspection = _insert(change.db, row, one.id)

@@ -17,7 +17,7 @@ from fieldmon.infestation.inspections import FOUND, RESULT_CODES, RESULT_NAMES, 
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import beside_plot, point_blobs, touch
 from fieldmon.monitoring.rows_that_count import COUNTS, as_it_was
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 
 if TYPE_CHECKING:
     import sqlite3
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.settings import MonitoringSettings
-    from fieldmon.plot.grid import PlantGrid, RowLabel
+    from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
 _DAY_S = 86_400
 # of a digest
@@ -46,7 +46,7 @@ def ever_recorded(db: sqlite3.Connection) -> set[tuple[int, str, int]]:
 def rows(
     inspections: Inspections,
     grid: PlantGrid,
-    label: RowLabel,
+    numbered: PlantNumbers,
     settings: MonitoringSettings,
     batch: tuple[int, str],
 ) -> list[tuple[object, ...]]:
@@ -71,8 +71,8 @@ def rows(
     marks = [_digest(*one) for one in zip(*(said[name] for name in IDENTIFIED_BY), strict=True)]
     columns: dict[str, Iterable[object]] = said | {
         "geom": point_blobs(grid.lonlat(plants)),
-        "line": label.line[plants].tolist(),
-        "number": label.number[plants].tolist(),
+        "line": numbered.line[plants].tolist(),
+        "number": numbered.number[plants].tolist(),
         "day": [number[on] for on in dates],
         "who": [who or batch[1] for who in said["who"]],
         "batch": repeat(batch[0], len(plants)),
@@ -93,10 +93,10 @@ def _day(
     try:
         return settings.day(on)
     except SettingError as error:
-        (line,), (number,) = row_label(grid, plants[[dates.index(on)]])
+        (line,), (number,) = plant_numbers(grid, plants[[dates.index(on)]])
         said = worded(
             "Row {line}, plant {number}: {said}",
-            line=grid.row_signs[int(line)], number=int(number), said=error.args[0],
+            line=grid.line_signs[int(line)], number=int(number), said=error.args[0],
         )  # fmt: skip
         raise SettingError(said) from None
 

@@ -41,7 +41,7 @@ from fieldmon.monitoring.history import (
 )
 from fieldmon.planning.plan import plan_in
 from fieldmon.planning.skips import Skips, without_flagged, without_skipped
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot, must_be_robot
@@ -116,8 +116,8 @@ def plant_to_inspect(
 ) -> PlantToInspect:
     """Return a plant of a grid as it is asked for, with its names and its position."""
     one = np.array([plant])
-    label, (lon, lat) = row_label(grid, one), grid.lonlat(one)[0].tolist()
-    row, number = int(label.line[0]), int(label.number[0])
+    numbered, (lon, lat) = plant_numbers(grid, one), grid.lonlat(one)[0].tolist()
+    row, number = int(numbered.line[0]), int(numbered.number[0])
     return PlantToInspect(plant, row, number, (lon, lat), arrive_s, inspect_s, detects)
 
 

@@ -37,7 +37,7 @@ from fieldmon.monitoring.mornings import take as take_mornings
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
 from fieldmon.monitoring.told_detection import told_at_first, told_detection
 from fieldmon.monitoring.transactions import Store, get_meta
-from fieldmon.plot.grid import RowLabel, row_label
+from fieldmon.plot.grid import PlantNumbers, plant_numbers
 from fieldmon.plot.local_clock import grid_clock, local_clock
 
 if TYPE_CHECKING:
@@ -324,9 +324,9 @@ class OpenSeason:
         return last if today < self.settings.begins else min(last, today)
 
     @cached_property
-    def label(self) -> RowLabel:
+    def plant_numbers(self) -> PlantNumbers:
         """Row and number of every plant, as people count."""
-        return row_label(self.plot.grid)
+        return plant_numbers(self.plot.grid)
 
     def scene(self, on: date, now: time | None = None, who: str | Besides = "") -> Scene:
         """Return the day `on` as it stands after what was recorded of it; `now` as in `plan`.

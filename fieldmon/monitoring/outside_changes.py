@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     import sqlite3
 
     from fieldmon.monitoring.settings import MonitoringSettings
-    from fieldmon.plot.grid import PlantGrid, RowLabel
+    from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
 _MOST_NAMED = 5
 _DONE = {
@@ -186,7 +186,7 @@ def refuse_more(db: sqlite3.Connection) -> None:
 
 def correct(
     db: sqlite3.Connection,
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     who: str,
 ) -> tuple[str, ...]:
@@ -235,7 +235,7 @@ def correct(
 def _put_back(
     db: sqlite3.Connection,
     change: OutsideChange,
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
 ) -> bool:
     """Put a changed row back as it was, where it says nothing else; return whether it was that."""
@@ -307,7 +307,7 @@ def in_words(db: sqlite3.Connection, change: OutsideChange) -> str:
 def take_row(
     db: sqlite3.Connection,
     change: OutsideChange,
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     batch: int,
 ) -> str:
@@ -328,7 +328,7 @@ def take_row(
 def _made_anew(
     db: sqlite3.Connection,
     change: OutsideChange,
-    plot: tuple[PlantGrid, RowLabel],
+    plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     batch: int,
 ) -> dict[str, Any]:

@@ -136,7 +136,7 @@ def _keep(db: sqlite3.Connection, season: Season, asked: AskedPhoto) -> None:
         )
     plant, grid = asked.plant, season.plot.grid
     place = point_blobs(grid.lonlat(np.array([plant])))[0]
-    label = int(season.label.line[plant]), int(season.label.number[plant])
-    row = (place, asked.id, plant, *label, asked.note, asked.who, asked.at, None)
+    numbered = int(season.plant_numbers.line[plant]), int(season.plant_numbers.number[plant])
+    row = (place, asked.id, plant, *numbered, asked.note, asked.who, asked.at, None)
     insert(db, phone_tables.PHOTOS_ASKED, [row])
     touch(db, phone_tables.PHOTOS_ASKED.name)

@@ -10,7 +10,7 @@ from fieldmon.io.writers.qml import (
     BLUE,
     GREY,
     RED,
-    TABLE,
+    STYLES_TABLE,
     YELLOW,
     Symbol,
     add,
@@ -122,7 +122,7 @@ def add_asked_styles(db: sqlite3.Connection) -> None:
 
 def add_styles(db: sqlite3.Connection) -> None:
     """Add a default style for each layer."""
-    db.execute(TABLE)
+    db.execute(STYLES_TABLE)
     db.execute(
         "INSERT INTO gpkg_contents (table_name, data_type, identifier) "
         "VALUES ('layer_styles', 'attributes', 'layer_styles')"

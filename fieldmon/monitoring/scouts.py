@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from fieldmon.monitoring.open_season import OpenSeason
     from fieldmon.monitoring.settings import MonitoringSettings
-    from fieldmon.plot.grid import RowLabel
+    from fieldmon.plot.grid import PlantNumbers
     from fieldmon.plot.local_clock import LocalClock
 
 _KEY_BYTES = 18
@@ -88,7 +88,7 @@ def let_in(season: OpenSeason, name: str, rows: tuple[int, int] | None = None) -
                 most=_LONGEST_NAME, n=len(name),
             )
         )  # fmt: skip
-    least, lines = int(season.label.line.min()), int(season.label.line.max())
+    least, lines = int(season.plant_numbers.line.min()), int(season.plant_numbers.line.max())
     if rows is not None and not least <= rows[0] <= rows[1] <= lines:
         raise SettingError(
             worded(
@@ -174,11 +174,11 @@ def overlaps(db: sqlite3.Connection, n_lines: int) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def inside(label: RowLabel, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
+def inside(numbered: PlantNumbers, rows: tuple[int, int] | None) -> NDArray[np.bool_]:
     """Return ``(n,)`` which plants are in a part."""
     if rows is None:
-        return np.ones(len(label.line), np.bool_)
-    part: NDArray[np.bool_] = (label.line >= rows[0]) & (label.line <= rows[1])
+        return np.ones(len(numbered.line), np.bool_)
+    part: NDArray[np.bool_] = (numbered.line >= rows[0]) & (numbered.line <= rows[1])
     return part
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES
 from fieldmon.monitoring import season_log
-from fieldmon.monitoring.day_ahead import DayAhead, Part
+from fieldmon.monitoring.day_ahead import DayAhead, WorkPart
 from fieldmon.monitoring.findings import CLOCK_IS_WRONG
 from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.scouts import overlapping, scouts_on
@@ -96,13 +96,13 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
         photos = {person_key(who): at for who, at in db.execute(_LAST_PHOTO)}
         given = {one.digest: one.at for one in season_log.given_out(db) if one.date == str(on)}
         finds = _finds_since(db, min(given.values(), default=""), day) if given else []
-    codes = ahead.scouts, ahead.settings, int(season.label.line.max())
+    codes = ahead.scouts, ahead.settings, int(season.plant_numbers.line.max())
     coded = {person_key(one.name): one for one in ahead.scouts}
     team = {person_key(one.name): one.name for one in ahead.settings.team}
     out = []
     for who in dict.fromkeys([*coded, *team]):
         code = coded.get(who)
-        part = Part(None, team[who]) if code is None else Part(code.rows, code.name)
+        part = WorkPart(None, team[who]) if code is None else WorkPart(code.rows, code.name)
         heard = max(filter(None, (sent.get(who, ("",))[0], photos.get(who, ""))), default="")
         out.append(
             ScoutOut(

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fieldmon.compute.kinds import checked
+from fieldmon.monitoring.certifier_tables import inspections_table, treatments_table
 from fieldmon.monitoring.day_figures import DayFigures
-from fieldmon.monitoring.record_tables import inspections_table, treatments_table
 from fieldmon.monitoring.season_estimates import SeasonEstimates
-from fieldmon.monitoring.season_records import SeasonRecords
+from fieldmon.monitoring.season_inspections import SeasonInspections
 from fieldmon.monitoring.season_treatments import SeasonTreatments
 from fieldmon.plot.frames import plant_frame
 
@@ -28,7 +28,7 @@ _OF_PLANT = {"plot", "date", "row", "row_name", "number", "lon", "lat", "face"}
 
 
 @checked
-class SeasonFrames(SeasonRecords, SeasonTreatments, SeasonEstimates):
+class SeasonFrames(SeasonInspections, SeasonTreatments, SeasonEstimates):
     """What a season holds, as frames."""
 
     def to_geopandas(
@@ -91,7 +91,7 @@ class SeasonFrames(SeasonRecords, SeasonTreatments, SeasonEstimates):
         return _days(self)
 
 
-def _inspections(season: SeasonRecords) -> GeoDataFrame:
+def _inspections(season: SeasonInspections) -> GeoDataFrame:
     """Return a point for each inspection that counts, at its plant."""
     import pandas as pd  # noqa: PLC0415 - loaded when it is asked for
 

@@ -12,7 +12,7 @@ import numpy as np
 from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring import routes, scouts, season_log
+from fieldmon.monitoring import kept_routes, scouts, season_log
 from fieldmon.monitoring.day_figures import PlannedAndDone
 from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.mornings import is_behind
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.closures import Closure
+    from fieldmon.monitoring.kept_routes import KeptPlans, KeptRoute
     from fieldmon.monitoring.open_season import SeasonContents
-    from fieldmon.monitoring.routes import KeptPlans, KeptRoute
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.wishes import Wishes
     from fieldmon.samplers.base import Scene
@@ -166,8 +166,10 @@ class SeasonPlans(OpenSeason):
         with self._lock, self.store.reading() as db:  # both of one moment
             settings = self._planned_by(self._read(db), on, db)
             named = settings.at_work(who)
-            last = routes.kept_last(db, settings.day(on))
-            return routes.plants(db, last.get(person_key(who if named is None else named.name)))
+            last = kept_routes.kept_last(db, settings.day(on))
+            return kept_routes.plants(
+                db, last.get(person_key(who if named is None else named.name))
+            )
 
     def holds_still(self, on: date, plan: str) -> bool:
         """Return whether nothing was found or changed since a `plan` of the day `on` was kept.
@@ -190,7 +192,7 @@ class SeasonPlans(OpenSeason):
             settings = self._planned_by(contents, on, db)
             shift, name = self._shift(settings, who)
             own = str(name or "") if kept_as is None else kept_as
-            kept = routes.kept_last(db, settings.day(on)).get(person_key(own))
+            kept = kept_routes.kept_last(db, settings.day(on)).get(person_key(own))
             begun = len(self._worked(contents, on, who))
             now = local_clock(self.plot.field).now()
             begins = None if kept is None else kept.begins
@@ -214,7 +216,7 @@ class SeasonPlans(OpenSeason):
         last = min(until, clock.today() - timedelta(days=1))
         with self._lock, self.store.reading() as db:  # both of one moment
             contents = self._read(db)
-            planned = routes.days(db)
+            planned = kept_routes.days(db)
             missing = planned[~np.isin(planned, contents.history.days)]
             dates = [contents.settings.date(day) for day in missing.tolist()]
             over = [day for day in dates if day <= last]
@@ -233,13 +235,13 @@ class SeasonPlans(OpenSeason):
 
     def _people_out(self, db: sqlite3.Connection, contents: SeasonContents, on: date) -> set[str]:
         """Return who is out, by `person_key`, of those whose routes are kept of a day."""
-        last = routes.kept_last(db, contents.settings.day(on))
+        last = kept_routes.kept_last(db, contents.settings.day(on))
         if len(last) < 2:
             return {*last}
         codes = self._codes(db, on, is_over=self._is_earlier(contents, on))
         settings = self._planned_by(contents, on, db)
         out = _out(last, codes, settings)
-        own = routes.plants(db, last.get(""))
+        own = kept_routes.plants(db, last.get(""))
         if not settings.team and len(self._in_nobodys_rows(own, codes, out)):
             out.add("")
         return out
@@ -251,7 +253,7 @@ class SeasonPlans(OpenSeason):
         theirs = np.zeros(len(plants), np.bool_)
         for name, rows in codes.items():
             if person_key(name) in out:
-                theirs |= scouts.inside(self.label, rows)[plants]
+                theirs |= scouts.inside(self.plant_numbers, rows)[plants]
         return plants[~theirs]
 
     def _unused_routes(
@@ -281,7 +283,7 @@ class SeasonPlans(OpenSeason):
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             contents = self._read(db)
-            kept = routes.of_day(db, contents.settings.day(on))
+            kept = kept_routes.of_day(db, contents.settings.day(on))
             out = self._people_out(db, contents, on) if who is None else {person_key(who)}
             codes = self._codes(db, on, is_over=self._is_earlier(contents, on))
         if who is not None:
@@ -328,7 +330,7 @@ class SeasonPlans(OpenSeason):
         settings = self._planned_by(contents, on)
         named = [(today, who) for today, who in zip(noted, names, strict=True) if len(today.route)]
         with self.store.reading() as db:
-            is_kept = all(routes.is_kept(db, today, who) for today, who in named)
+            is_kept = all(kept_routes.is_kept(db, today, who) for today, who in named)
             by = self._chosen_for(contents, on, db)
         if is_kept:
             self._keep_what_was_worked_out()
@@ -338,10 +340,12 @@ class SeasonPlans(OpenSeason):
             kept = [
                 (today, who)
                 for today, who in named
-                if routes.keep(db, settings, self.label, today, who)
+                if kept_routes.keep(db, settings, self.plant_numbers, today, who)
             ]
             for today, who in kept:
-                season_log.append(db, "planned", who, by=by, **routes.in_words(settings, today))
+                season_log.append(
+                    db, "planned", who, by=by, **kept_routes.in_words(settings, today)
+                )
             if kept:
                 self._refresh(db, named[0][0].scene.day, before)
 
@@ -359,7 +363,7 @@ class SeasonPlans(OpenSeason):
         self, settings: MonitoringSettings, today: DayPlan, of: tuple[str, float]
     ) -> DayPlan:
         who, begun_s = of
-        begins = routes.begins(settings, today, begun_s)
+        begins = kept_routes.begins(settings, today, begun_s)
         notes = RouteNotes(self.plot.field.name, settings.sampler, begins, who or None)
         return replace(today, route=replace(today.route, notes=notes))
 
@@ -394,9 +398,9 @@ class SeasonPlans(OpenSeason):
         aisle = self.plot.grid.corridor[self.plot.grid.row]
         given = np.full(int(aisle.max()) + 1, -1)
         with self.store.reading() as db:
-            last = routes.kept_last(db, day)
+            last = kept_routes.kept_last(db, day)
             for k, who in enumerate(names):
-                given[aisle[routes.plants(db, last.get(person_key(who)))]] = k
+                given[aisle[kept_routes.plants(db, last.get(person_key(who)))]] = k
         joined = [k for k, who in enumerate(names) if person_key(who) not in last]
         return given if (given >= 0).any() else None, joined
 

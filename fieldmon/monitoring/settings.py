@@ -26,8 +26,8 @@ from fieldmon.monitoring.pest_json import kept_weather, pest_json, pest_of_json,
 from fieldmon.pests.pest import seen_by_pest, tells_detection
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ, person_key
 from fieldmon.plot.robot import ROBOT_TIMES, Robot, Viewpoints
-from fieldmon.samplers import USUAL, sampler
-from fieldmon.samplers.answers import must_detect
+from fieldmon.samplers import USUAL_SAMPLER, sampler
+from fieldmon.samplers.checked_sampler import must_detect
 
 if TYPE_CHECKING:
     from fieldmon.pests.pest import Pest
@@ -89,7 +89,7 @@ class MonitoringSettings:
     begins: date
     starts: time = time(6)
     robot: Robot = field(default_factory=Robot)
-    sampler: str = USUAL
+    sampler: str = USUAL_SAMPLER
     sampler_settings: dict[str, float] = field(default_factory=dict)
     prior: PriorSettings = field(default_factory=PriorSettings)
     belief: BeliefSettings = field(default_factory=BeliefSettings)

@@ -22,7 +22,7 @@ from fieldmon.monitoring.geopackage import blob, geometry, insert, point_blobs, 
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import PlantGrid, row_label
+from fieldmon.plot.grid import PlantGrid, plant_numbers
 from fieldmon.plot.local_clock import utc_text
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
@@ -181,8 +181,8 @@ def _write_grid(db: sqlite3.Connection, grid: PlantGrid) -> None:
 
 
 def _write_plant_layers(db: sqlite3.Connection, grid: PlantGrid) -> None:
-    lonlat, label = grid.lonlat(), row_label(grid)
-    numbers, counts = grid.row_number[grid.unbroken], np.diff(grid.unbroken_start)
+    lonlat, numbered = grid.lonlat(), plant_numbers(grid)
+    numbers, counts = grid.row_line_number[grid.unbroken], np.diff(grid.unbroken_start)
     lines = zip(row_corners(grid), numbers, counts, strict=True)
     rows = [
         (blob(LineString(grid.frame.lonlat(corners))), int(line), int(n))
@@ -192,8 +192,8 @@ def _write_plant_layers(db: sqlite3.Connection, grid: PlantGrid) -> None:
     plants = zip(
         point_blobs(lonlat),
         range(len(grid)),
-        label.line.tolist(),
-        label.number.tolist(),
+        numbered.line.tolist(),
+        numbered.number.tolist(),
         strict=True,
     )
     insert(db, schema.PLANTS, list(plants))

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, joined, worded
-from fieldmon.plot.grid import row_ends, row_label
+from fieldmon.plot.grid import plant_numbers, row_ends
 from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
@@ -63,9 +63,10 @@ def _told_finds(
     few = order if len(order) <= _FINDS + 1 else order[:_FINDS]
     said: list[str] = []
     for find, around in zip(which[few].tolist(), count[few].tolist(), strict=True):
-        line, number = (int(part[0]) for part in row_label(scene.grid, finds[[find]]))
+        line, number = (int(part[0]) for part in plant_numbers(scene.grid, finds[[find]]))
         words: dict[str, Any] = {
-            "plants": counted(around, "plant"), "row": scene.grid.row_signs[line], "number": number,
+            "plants": counted(around, "plant"), "row": scene.grid.line_signs[line],
+            "number": number,
         }  # fmt: skip
         if not scene.grid.in_rows:
             sentence = worded("{plants} around the find at plant {number}.", **words)
@@ -102,7 +103,7 @@ def _blocks(scene: Scene, plants: NDArray[np.int32], recorded: NDArray[np.bool_]
     """Return a sentence for each block of rows, in the order of the first stop in it."""
     if not len(plants):
         return []
-    line = row_label(scene.grid, plants).line
+    line = plant_numbers(scene.grid, plants).line
     # as they lie on the ground, whatever their numbers
     place = scene.grid.row_line[scene.grid.row[plants]]
     places = np.unique(place)

@@ -15,7 +15,7 @@ from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.robot import Robot, rover, scout
-from fieldmon.samplers import USUAL, sampler_with
+from fieldmon.samplers import USUAL_SAMPLER, sampler_with
 from fieldmon.samplers.own import is_own, own_text
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class Orders:
     """
 
     day: np.datetime64
-    sampler: str = USUAL
+    sampler: str = USUAL_SAMPLER
     every: int | None = None
     on_foot: bool = False
     robot: dict[str, float] = field(default_factory=dict)

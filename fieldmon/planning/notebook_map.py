@@ -9,7 +9,7 @@ import pydeck as pdk
 import shapely
 
 from fieldmon.compute.wording import chance_figure
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -64,7 +64,7 @@ def deck_of(route: Route, chance: Floats) -> pdk.Deck:
 
 
 def _plants(grid: PlantGrid, believed: Floats) -> list[dict[str, Any]]:
-    label = row_label(grid)
+    numbered = plant_numbers(grid)
     colours = _COLOURS[np.searchsorted(_FROM, believed, side="right") - 1]
     return [
         {
@@ -75,7 +75,7 @@ def _plants(grid: PlantGrid, believed: Floats) -> list[dict[str, Any]]:
         for at, colour, row, number, chance in zip(
             grid.lonlat().round(8).tolist(),
             colours.tolist(),
-            *(label.line.tolist(), label.number.tolist()),
+            *(numbered.line.tolist(), numbered.number.tolist()),
             believed.tolist(),
             strict=True,
         )
@@ -83,10 +83,10 @@ def _plants(grid: PlantGrid, believed: Floats) -> list[dict[str, Any]]:
 
 
 def _stops(route: Route) -> list[dict[str, Any]]:
-    label = row_label(route.aisles.grid, route.plant)
+    numbered = plant_numbers(route.aisles.grid, route.plant)
     columns = (
         route.stops_lonlat().round(8).tolist(),
-        *(label.line.tolist(), label.number.tolist()),
+        *(numbered.line.tolist(), numbered.number.tolist()),
         *(route.arrive_s.tolist(), route.chance.tolist()),
     )
     return [

@@ -24,8 +24,8 @@ from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot, must_be_robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.adaptive import Adaptive
-from fieldmon.samplers.answers import must_detect
 from fieldmon.samplers.base import NEVER, Sampler, Scene
+from fieldmon.samplers.checked_sampler import must_detect
 
 _STARTS = time(6)
 

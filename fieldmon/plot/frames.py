@@ -12,7 +12,7 @@ from fieldmon.compute.arguments import must_be
 from fieldmon.compute.rounding_step import step_of
 from fieldmon.compute.wording import first_few
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.near_doubles import near_doubles
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.projection import metres_per_unit
@@ -40,12 +40,12 @@ def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> G
     import geopandas  # noqa: PLC0415 - half a second to import
 
     chosen = np.arange(len(grid)) if plants is None else np.asarray(plants, np.int64)
-    label = row_label(grid, chosen)
-    block = {"block": block_label(grid, chosen)} if grid.n_blocks > 1 else {}
-    row: dict[str, object] = {"row": label.line} if grid.in_rows else {}
+    numbered = plant_numbers(grid, chosen)
+    block = {"block": block_number(grid, chosen)} if grid.n_blocks > 1 else {}
+    row: dict[str, object] = {"row": numbered.line} if grid.in_rows else {}
     if row and grid.row_names:
-        row["row_name"] = [grid.row_names.get(line, "") for line in label.line.tolist()]
-    columns = {"plant": chosen, **block, **row, "number": label.number}
+        row["row_name"] = [grid.row_names.get(line, "") for line in numbered.line.tolist()]
+    columns = {"plant": chosen, **block, **row, "number": numbered.number}
     twin = grid.twin[chosen]
     if (grid.twin >= 0).any():
         columns["face"] = np.where(twin < 0, 1, np.where(chosen < twin, 1, 2))

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.projection import Frame
 
 
-class RowLabel(NamedTuple):
+class PlantNumbers(NamedTuple):
     """Where plants stand, as people count from 1 or as the plot's file has it, ``(k,)`` each.
 
     Rows are numbered on from block to block: a row and a number in it are one plant.
@@ -34,7 +34,7 @@ class RowLabel(NamedTuple):
     number: NDArray[np.int64]
 
     def __repr__(self) -> str:
-        return f"<RowLabel: {counted(len(self.line), 'plant')}>"
+        return f"<PlantNumbers: {counted(len(self.line), 'plant')}>"
 
 
 class Csr(NamedTuple):
@@ -306,7 +306,7 @@ class PlantGrid:
         return {k: name for k, name, odd in own if odd and name and "\n" not in name}
 
     @cached_property
-    def row_signs(self) -> dict[int, str]:
+    def line_signs(self) -> dict[int, str]:
         """Return how each line is shown to people, by its number: that, and a name that says more.
 
         All lines, in their order on the ground.
@@ -315,7 +315,7 @@ class PlantGrid:
         return {k: f"{k} · {names[k]}" if k in names else f"{k}" for k in self.line_number.tolist()}
 
     @property
-    def row_number(self) -> NDArray[np.int64]:
+    def row_line_number(self) -> NDArray[np.int64]:
         """Number of each row's line as people count or name them, ``(r,)``."""
         return self.line_number[self.row_line]
 
@@ -379,20 +379,20 @@ class PlantGrid:
         return self.frame.lonlat(self.xy_m if plants is None else self.xy_m[plants])
 
 
-def row_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> RowLabel:
+def plant_numbers(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> PlantNumbers:
     """Return line and number within the line of the given plants, or of all.
 
     As the plot's file names them, where it does by numbers; else both count from 1. Numbers run on
-    along a line that is cut into pieces. Both faces of a plant share a label.
+    along a line that is cut into pieces. Both faces of a plant share their numbers.
     """
     chosen = np.arange(len(grid)) if plants is None else np.asarray(plants)
-    line = grid.row_number[grid.row[chosen]]
+    line = grid.row_line_number[grid.row[chosen]]
     if grid.plant_called is not None:
-        return RowLabel(line, grid.plant_called[chosen])
-    return RowLabel(line, chosen - _line_faces(grid)[grid.row[chosen]] + 1)
+        return PlantNumbers(line, grid.plant_called[chosen])
+    return PlantNumbers(line, chosen - _line_faces(grid)[grid.row[chosen]] + 1)
 
 
-def block_label(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> NDArray[np.int64]:
+def block_number(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> NDArray[np.int64]:
     """Return the block, from 1, of the given plants, or of all, ``(k,)``."""
     row = grid.row if plants is None else grid.row[plants]
     if grid.block is None:
@@ -417,9 +417,9 @@ def row_in_block(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> 
 
 
 def plant_at(grid: PlantGrid, line: int, number: int) -> int:
-    """Return the plant with that label (its first face); raise `PlotError` if there is none."""
-    label = row_label(grid)
-    in_line = label.line == line
+    """Return the plant with these numbers (its first face); raise `PlotError` if there is none."""
+    numbered = plant_numbers(grid)
+    in_line = numbered.line == line
     if not in_line.any():
         raise PlotError(
             worded(
@@ -428,13 +428,13 @@ def plant_at(grid: PlantGrid, line: int, number: int) -> int:
                 line=line,
             )
         )
-    found = np.flatnonzero(in_line & (label.number == number))
+    found = np.flatnonzero(in_line & (numbered.number == number))
     if not len(found):
         raise PlotError(
             worded(
                 "A plant in row {line} must be one of {some} on this plot, but it is {number}.",
                 line=line,
-                some=runs(label.number[in_line].tolist()),
+                some=runs(numbered.number[in_line].tolist()),
                 number=number,
             )
         )
@@ -484,16 +484,18 @@ def row_ends(grid: PlantGrid, line: NDArray[np.integer]) -> tuple[str, str]:
     beyond = [k for k in rows if k in grid.rows_beyond]
     own = [k for k in rows if k not in beyond] or beyond[:1]
     last = [*own[1:][-1:], *(k for k in beyond if k != own[0])] or own
-    return grid.row_signs[own[0]], ", ".join(grid.row_signs[k] for k in last)
+    return grid.line_signs[own[0]], ", ".join(grid.line_signs[k] for k in last)
 
 
 def rows_listed(grid: PlantGrid, line: NDArray[np.integer]) -> str:
     """Return which lines these are: ``1–12, 101 · 5A``."""
     rows = np.unique(line).tolist()
     if len(rows) == 1:
-        return grid.row_signs[rows[0]]
+        return grid.line_signs[rows[0]]
     own = runs(k for k in rows if k not in grid.rows_beyond)
-    return ", ".join([own] * bool(own) + [grid.row_signs[k] for k in rows if k in grid.rows_beyond])
+    return ", ".join(
+        [own] * bool(own) + [grid.line_signs[k] for k in rows if k in grid.rows_beyond]
+    )
 
 
 def _ends_in(name: str, number: int) -> bool:

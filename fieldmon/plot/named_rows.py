@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import counted, first_few, runs, worded
 from fieldmon.errors import SettingError
-from fieldmon.plot.grid import block_label, plant_at, row_label, rows_listed
+from fieldmon.plot.grid import block_number, plant_at, plant_numbers, rows_listed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -34,7 +34,7 @@ def plants_in_rows(grid: PlantGrid, rows: str) -> NDArray[np.bool_]:
     for part in rows.split(","):
         low, high = _ends(called, part.strip(), rows)
         wanted.update(row for row in called.numbers if low <= row <= high)
-    plants: NDArray[np.bool_] = np.isin(row_label(grid).line, sorted(wanted))
+    plants: NDArray[np.bool_] = np.isin(plant_numbers(grid).line, sorted(wanted))
     return plants
 
 
@@ -71,7 +71,7 @@ def place_in_words(grid: PlantGrid, plants: NDArray[np.bool_]) -> Worded:
     """Return where plants ``(n,)`` stand: the rows that they fill, or how many of which rows."""
     if plants.all():
         return worded("the whole plot")
-    line = grid.row_number[grid.row]
+    line = grid.row_line_number[grid.row]
     if not grid.in_rows or np.isin(line[~plants], line[plants]).any():
         return plants_in_words(grid, plants)
     rows = rows_listed(grid, line[plants])
@@ -84,7 +84,7 @@ def plants_in_words(grid: PlantGrid, plants: NDArray[np.bool_]) -> Worded:
     which = counted(int(np.count_nonzero(plants)), "plant")
     if not grid.in_rows:
         return which
-    line = grid.row_number[grid.row[plants]]
+    line = grid.row_line_number[grid.row[plants]]
     rows = rows_listed(grid, line)
     if len(np.unique(line)) == 1:
         return worded("{plants} in row {row}", plants=which, row=rows)
@@ -105,7 +105,7 @@ def plant_meant(grid: PlantGrid, row: str, plant: int) -> int:
                 "their numbers or by their names in the file of plants. Tap the plant on the map.",
                 name=plant,
                 some=runs(meant),
-                row=grid.row_signs[line],
+                row=grid.line_signs[line],
             )
         )
     return plant_at(grid, line, next(iter(meant), plant))
@@ -168,7 +168,7 @@ class CalledRows:
         self._named: dict[str, list[tuple[int, int]]] = defaultdict(list)
         if grid.line_named is not None:
             first = grid.row_start[np.unique(grid.row_line, return_index=True)[1]]
-            block = block_label(grid, first).tolist()
+            block = block_number(grid, first).tolist()
             columns = grid.line_named.tolist(), self.numbers, block
             for names, number, of in zip(*columns, strict=True):
                 for name in names.splitlines():
@@ -220,14 +220,19 @@ class CalledPlants:
 
     def __init__(self, grid: PlantGrid) -> None:
         vines = np.unique(grid.vine)
-        label, names = row_label(grid, vines), grid.plant_named
-        self._known = set(zip(label.line.tolist(), label.number.tolist(), strict=True))
+        numbered, names = plant_numbers(grid, vines), grid.plant_named
+        self._known = set(zip(numbered.line.tolist(), numbered.number.tolist(), strict=True))
         self._in_row: dict[tuple[int, str], set[int]] = defaultdict(set)
         self._alone: dict[str, set[int]] = defaultdict(set)
         if names is None and grid.plant_called is None:
             return
-        called = label.number.astype(np.str_) if names is None else names[vines]
-        columns = (called.tolist(), label.line.tolist(), label.number.tolist(), vines.tolist())
+        called = numbered.number.astype(np.str_) if names is None else names[vines]
+        columns = (
+            called.tolist(),
+            numbered.line.tolist(),
+            numbered.number.tolist(),
+            vines.tolist(),
+        )
         for name, line, number, plant in zip(*columns, strict=True):
             self._in_row[line, key(name)].add(number)
             self._alone[key(name)].add(plant)

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import joined, worded
-from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.plant_names import numbers_in
 
 if TYPE_CHECKING:
@@ -204,10 +204,10 @@ def _rows_out_of_order(grid: PlantGrid) -> str:
         named = [] if grid.line_named is None else grid.line_named.tolist()
         keys, odd = [_natural(one) for one in named], np.array([not one for one in named])
     first = np.unique(grid.row_line, return_index=True)[1]
-    block = block_label(grid, grid.row_start[first])
+    block = block_number(grid, grid.row_start[first])
     odd = odd | (np.bincount(grid.row_line[grid.row]) < _TELLS)  # of strays others tell
     some: list[str] = []
-    signs = list(grid.row_signs.values())
+    signs = list(grid.line_signs.values())
     for k in range(1, grid.n_blocks + 1):
         lines = np.flatnonzero((block == k) & ~odd)
         for at in out_of_order([keys[line] for line in lines.tolist()]):
@@ -323,7 +323,7 @@ def _plants_out_of_order(grid: PlantGrid) -> str:
     if not wrong.any() or n_in_order < max(_LEAST_IN_ORDER, _IN_ORDER * np.count_nonzero(asked)):
         return ""
     some = []
-    signs = list(grid.row_signs.values())
+    signs = list(grid.line_signs.values())
     for row in np.flatnonzero(wrong)[:_NAMED].tolist():
         at = int(np.flatnonzero(back & (line[1:] == row))[0])
         near = range(max(at - 1, 0), min(at + 3, len(line)))
@@ -348,7 +348,7 @@ def _rows_from_the_other_end(grid: PlantGrid) -> str:
     steps = _NumberSteps.of(grid, grid.plant_called)
     sure = steps.asked & (np.minimum(steps.up, steps.down) == 0)
     first = np.unique(grid.row_line, return_index=True)[1]
-    block = block_label(grid, grid.row_start[first])
+    block = block_number(grid, grid.row_start[first])
     wrong: list[int] = []
     for k in range(1, grid.n_blocks + 1):
         lines = np.flatnonzero(block == k)
@@ -362,7 +362,7 @@ def _rows_from_the_other_end(grid: PlantGrid) -> str:
             wrong += lines[asked[odd]].tolist()
     if not wrong:
         return ""
-    signs = list(grid.row_signs.values())
+    signs = list(grid.line_signs.values())
     some = [signs[line] for line in wrong[:_NAMED]]
     n = len(wrong)
     return worded(
@@ -384,5 +384,5 @@ def _counted_from_one(grid: PlantGrid, vines: Int, line: NDArray[np.integer]) ->
     """Return the lines whose plants do not have the numbers in their names."""
     if grid.plant_named is None:
         return np.empty(0, np.int64)
-    wrong = numbers_in(grid.plant_named[vines]) != row_label(grid, vines).number
+    wrong = numbers_in(grid.plant_named[vines]) != plant_numbers(grid, vines).number
     return np.unique(line[wrong]).astype(np.int64)

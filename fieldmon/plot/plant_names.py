@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, Self
 import numpy as np
 
 from fieldmon.compute.wording import first_few, worded
-from fieldmon.plot.grid import block_label, row_in_block, row_label
+from fieldmon.plot.grid import block_number, plant_numbers, row_in_block
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -70,7 +70,7 @@ def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) ->
 
     of = cKDTree(grid.frame.xy_m(lonlat)).query(grid.xy_m)[1]
     if names.block is not None and grid.n_blocks > 1:
-        blocks = block_label(grid)
+        blocks = block_number(grid)
         own = _lines_named(blocks - 1, names.block[of])
         numbers = np.arange(1, grid.n_blocks + 1)
         grid = replace(grid, block_named=_beyond_numbers(own, numbers))
@@ -83,7 +83,7 @@ def numbered(grid: PlantGrid, lonlat: NDArray[np.float64], names: PlantNames) ->
     if names.plant is not None:
         plants = numbers_in(names.plant)[of]
         grid = replace(grid, plant_called=_plants_called(grid, plants))
-        number = row_label(grid).number
+        number = plant_numbers(grid).number
         grid = replace(grid, plant_named=_beyond_numbers(names.plant[of], number))
     return grid
 
@@ -115,7 +115,7 @@ def _lines_called(grid: PlantGrid, names: NDArray[np.str_]) -> Int | None:
             return None
         plain = np.array([all(map(_PLAIN.match, one)) for one in own])
         first = np.unique(grid.row_line[grid.row], return_index=True)[1]
-        block = block_label(grid, first)
+        block = block_number(grid, first)
         for k in range(1, grid.n_blocks + 1):
             mine = block == k
             called[mine] = _plainest(called[mine], plain[mine])
@@ -158,7 +158,7 @@ def _plants_called(grid: PlantGrid, plants: Int) -> Int | None:
     mixed = np.unique(line[_not_told_apart(grid, plants)])
     if 2 * len(mixed) > len(np.unique(line)):
         return None
-    from_one = row_label(replace(grid, plant_called=None)).number
+    from_one = plant_numbers(replace(grid, plant_called=None)).number
     return np.where(np.isin(line, mixed), from_one, plants)
 
 
@@ -214,7 +214,7 @@ def _of_rows(grid: PlantGrid) -> str:
 
 def _of_rows_counted_on(grid: PlantGrid, called: Int) -> str:
     first = np.unique(grid.row_line, return_index=True)[1]
-    block = block_label(grid, grid.row_start[first])
+    block = block_number(grid, grid.row_start[first])
     some = [
         worded("row {row} of block {block} is row {number}", row=row, block=k, number=n)
         for n, row, k in zip(*called.T.tolist(), block.tolist(), strict=True)
@@ -245,14 +245,17 @@ def _of_rows_beyond(grid: PlantGrid) -> str:
 def _of_plants(grid: PlantGrid) -> str:
     if grid.plant_named is None:
         return ""
-    label = row_label(grid)
+    numbered = plant_numbers(grid)
     shown = np.arange(min(len(grid), 2))
     if grid.plant_called is not None:
-        shown = np.flatnonzero(numbers_in(grid.plant_named) == label.number)[:2]
+        shown = np.flatnonzero(numbers_in(grid.plant_named) == numbered.number)[:2]
     some = [
         worded("{name} is plant {number} of row {row}", name=name, number=n, row=row)
         for name, n, row in zip(
-            grid.plant_named[shown].tolist(), label.number[shown], label.line[shown], strict=True
+            grid.plant_named[shown].tolist(),
+            numbered.number[shown],
+            numbered.line[shown],
+            strict=True,
         )
     ]
     if grid.plant_called is None:
@@ -276,10 +279,10 @@ def _doubt_of_plants(grid: PlantGrid) -> str:
     # where most have none, or share theirs, numbers are meant otherwise
     if not 0 < 2 * len(wrong) <= len(np.unique(grid.vine)):
         return ""
-    line = row_label(grid).line[wrong].tolist()
+    line = plant_numbers(grid).line[wrong].tolist()
     names = grid.plant_named[wrong].tolist()
     some = [
-        worded("{name} in row {row}", name=name or "?", row=grid.row_signs.get(row, row))
+        worded("{name} in row {row}", name=name or "?", row=grid.line_signs.get(row, row))
         for name, row in dict.fromkeys(zip(names, line, strict=True))
     ]
     where = (

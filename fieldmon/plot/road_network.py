@@ -15,7 +15,7 @@ from fieldmon.compute.wording import runs as numbers_listed
 from fieldmon.plot.adjacency import delaunay_sides
 from fieldmon.plot.bent_ways import Bends, bends_of, row_end_places
 from fieldmon.plot.end_turns import lane_ends
-from fieldmon.plot.grid import row_label, rows_listed
+from fieldmon.plot.grid import plant_numbers, rows_listed
 from fieldmon.plot.obstacles import SAME_M, Obstacles
 from fieldmon.plot.way_joining import (
     NEAREST,
@@ -236,8 +236,8 @@ def _find_bent(
 def _called(grid: PlantGrid, narrow: _Narrow | None = None) -> Callable[[Index], str]:
     """Return what names rows by their places among those that must be reached."""
     if not grid.in_rows:
-        return lambda trees: numbers_listed(row_label(grid, trees).number.tolist())
-    number = grid.row_number if narrow is None else grid.row_number[~narrow.rows]
+        return lambda trees: numbers_listed(plant_numbers(grid, trees).number.tolist())
+    number = grid.row_line_number if narrow is None else grid.row_line_number[~narrow.rows]
     return lambda rows: rows_listed(grid, number[rows])
 
 

@@ -11,7 +11,7 @@ from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.io.spray_rate import litres_figure
 from fieldmon.monitoring.plant_states import shown_apart
-from fieldmon.plot.grid import row_ends, row_label
+from fieldmon.plot.grid import plant_numbers, row_ends
 from fieldmon.reports import words
 from fieldmon.reports.content import (
     Block,
@@ -88,11 +88,11 @@ def _map(season: Season, on: date, advice: Advice, units: Units) -> list[Block]:
 
 
 def _zones(advice: Advice) -> Table:
-    label = row_label(advice.grid)
+    numbered = plant_numbers(advice.grid)
     rows = []
     for k, verdict in enumerate(advice.said.zones):
         mine = advice.zones.zone == k
-        number, (start, end) = label.number[mine], row_ends(advice.grid, label.line[mine])
+        number, (start, end) = numbered.number[mine], row_ends(advice.grid, numbered.line[mine])
         rows.append(
             (
                 f"{k + 1}",

@@ -14,11 +14,11 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.closures import closed_in_words
-from fieldmon.monitoring.day_ahead import Part, plan_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, plan_ahead
 from fieldmon.monitoring.plant_states import hot_spots_on, shown_apart
 from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import left_out_in_words
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.reports import maps, words
 from fieldmon.reports.content import (
@@ -141,7 +141,7 @@ class DayFacts:
         """
         with season.one_moment():
             first = "".join([one.name for one in season.planned_by(on).team][:1])
-            plan = plan_ahead(season, on, Part(name=first))
+            plan = plan_ahead(season, on, WorkPart(name=first))
             route = plan.route
             worked = day_was_worked(season, on, route, today)
             settings = season.settings_on(on) if worked else season.planned_by(on)
@@ -337,14 +337,14 @@ def legend_block(
 def _stops(facts: DayFacts) -> Table:
     """Return the rows in the order in which they are come to, with their plants."""
     grid = facts.route.aisles.grid
-    label = row_label(grid, facts.route.plant)
-    lines, first = np.unique(label.line, return_index=True)
+    numbered = plant_numbers(grid, facts.route.plant)
+    lines, first = np.unique(numbered.line, return_index=True)
     rows, flow = [], 2 if len(lines) <= _MOST_WIDE else 3
     for line, k in sorted(zip(lines.tolist(), first.tolist(), strict=True), key=lambda one: one[1]):
-        own = label.number[label.line == line].tolist()
+        own = numbered.number[numbered.line == line].tolist()
         rows.append(
             (
-                grid.row_signs[line] if grid.in_rows else NO_ROW,
+                grid.line_signs[line] if grid.in_rows else NO_ROW,
                 _clock(facts, facts.route.arrive_s[k]),
                 f"{len(own)}",
                 which(own, _WHICH[flow]),
@@ -389,13 +389,13 @@ def treatment_table(
 
 def _found(facts: DayFacts) -> Table:
     grid = facts.route.aisles.grid
-    label = row_label(grid, facts.found)
+    numbered = plant_numbers(grid, facts.found)
     rows = tuple(
         (
-            grid.row_signs[line] if grid.in_rows else NO_ROW,
-            runs(label.number[label.line == line].tolist()),
+            grid.line_signs[line] if grid.in_rows else NO_ROW,
+            runs(numbered.number[numbered.line == line].tolist()),
         )
-        for line in np.unique(label.line).tolist()
+        for line in np.unique(numbered.line).tolist()
     )
     return Table(
         words.FOUND_BY_ROW, words.FOUND_COLUMNS, rows, (0.2, 0.8), flow=3, rest=words.FOUND_REST,
@@ -405,15 +405,15 @@ def _found(facts: DayFacts) -> Table:
 
 def _every_stop(facts: DayFacts) -> TickList:
     """Return every stop with a box to tick or, once the day is over, with its result."""
-    route, signs = facts.route, facts.route.aisles.grid.row_signs
-    label = row_label(route.aisles.grid, route.plant)
+    route, signs = facts.route, facts.route.aisles.grid.line_signs
+    numbered = plant_numbers(route.aisles.grid, route.plant)
     said = [
         words.RESULTS[facts.results.get(plant, -1)] if facts.worked else "☐"
         for plant in route.plant.tolist()
     ]
     rows = zip(
-        range(1, len(route) + 1), route.arrive_s.tolist(), label.line.tolist(),
-        label.number.tolist(), route.believed.tolist(), said, strict=True,
+        range(1, len(route) + 1), route.arrive_s.tolist(), numbered.line.tolist(),
+        numbered.number.tolist(), route.believed.tolist(), said, strict=True,
     )  # fmt: skip
     return TickList(
         words.EVERY_STOP, (*words.EVERY_COLUMNS, words.WAS if facts.worked else words.TICK),

@@ -364,7 +364,7 @@ def _row_numbers(grid: PlantGrid, placed: _ToPaper) -> list[Part]:
     return [
         Lettering(x, y, sign, 6.0, colours.SOFT, "middle")
         for line, sign, (x, y) in zip(
-            lines.tolist(), grid.row_signs.values(), placed(before_m).tolist(), strict=True
+            lines.tolist(), grid.line_signs.values(), placed(before_m).tolist(), strict=True
         )
         if line == 0 or (line + 1) % every == 0
     ]

@@ -16,7 +16,7 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import DayFigures
 from fieldmon.monitoring.day_figures import flagged_said, found_pct
 from fieldmon.monitoring.plant_states import finds_apart
-from fieldmon.plot.grid import row_label, rows_listed
+from fieldmon.plot.grid import plant_numbers, rows_listed
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.reports import words
 from fieldmon.reports.charts import DayChart
@@ -215,7 +215,7 @@ def _share_found(status: Status) -> KeyFigure:
 
 def _rows_seen(facts: _Facts) -> Iterator[str]:
     """Yield which rows nobody was in, ever or for a week."""
-    line = facts.season.plot.grid.row_number
+    line = facts.season.plot.grid.row_line_number
     lines = np.unique(line)
     days = np.array([_least(facts.status.days_since[line == one]) for one in lines.tolist()])
     never, late = lines[np.isinf(days)], lines[np.isfinite(days) & (days >= _LATE_DAYS)]
@@ -312,11 +312,11 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
     if not len(plants):
         yield Paragraph(words.FINDS_NONE)
         return
-    label = row_label(grid, plants)
+    numbered = plant_numbers(grid, plants)
     rows = []
-    for line in np.unique(label.line).tolist():
-        own = label.number[label.line == line].tolist()
-        row = grid.row_signs[line] if grid.in_rows else NO_ROW
+    for line in np.unique(numbered.line).tolist():
+        own = numbered.number[numbered.line == line].tolist()
+        row = grid.line_signs[line] if grid.in_rows else NO_ROW
         rows.append((row, f"{len(own)}", which(own, _FINDS_LONG)))
     yield Table(
         words.FINDS_BY_ROW, words.FINDS_COLUMNS, tuple(rows), (0.12, 0.12, 0.76), flow=2,

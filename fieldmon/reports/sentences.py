@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import Worded, counted, estimate, hours_figure, joined, worded
-from fieldmon.plot.grid import row_ends, row_label
+from fieldmon.plot.grid import plant_numbers, row_ends
 from fieldmon.reports import words
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ def headline(route: Route, day: str) -> str:
     """Return what there is to do on a day, in one sentence."""
     if not len(route):
         return worded(words.HEADLINE_NONE, day=day)
-    line = row_label(route.aisles.grid, route.plant).line
+    line = plant_numbers(route.aisles.grid, route.plant).line
     low, high = row_ends(route.aisles.grid, line)
     rows, finds = worded(words.ROW, low=low), route.expected_found
     if not route.aisles.grid.in_rows:
@@ -85,9 +85,9 @@ def _beside(
 
 def _place(grid: PlantGrid, plants: NDArray[np.intp]) -> Worded:
     """Return which rows and which of their plants these are, in words."""
-    label = row_label(grid, plants)
-    first, last = row_ends(grid, label.line)
-    low, high = int(label.number.min()), int(label.number.max())
+    numbered = plant_numbers(grid, plants)
+    first, last = row_ends(grid, numbered.line)
+    low, high = int(numbered.number.min()), int(numbered.number.max())
     if not grid.in_rows:
         return worded(words.HOT_PLANTS, low=low, high=high)
     if first == last:

@@ -11,7 +11,7 @@ from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.reports import words
 from fieldmon.reports.content import Listing, Table
-from fieldmon.samplers import USUAL, kind_of
+from fieldmon.samplers import USUAL_SAMPLER, kind_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -169,7 +169,11 @@ def _told(settings: WorkSettings, setting: str) -> str:
 
 def _of_work(settings: WorkSettings) -> Iterator[Row]:
     robot = settings.robot
-    yield words.SAMPLER, Worded(kind_of(settings.sampler).title), _from(settings.sampler == USUAL)
+    yield (
+        words.SAMPLER,
+        Worded(kind_of(settings.sampler).title),
+        _from(settings.sampler == USUAL_SAMPLER),
+    )
     yield from _of_team(settings.team) if settings.team else _of_robot(settings, robot)
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inner_loop, loop
 from fieldmon.compute.random_streams import coin
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
@@ -148,7 +148,7 @@ def _walk(
     return k
 
 
-@part
+@inner_loop
 def _choose(
     travel: TravelTable,
     work: tuple[_Believed, _Pass],
@@ -184,7 +184,7 @@ def _choose(
     return n
 
 
-@part
+@inner_loop
 def _weigh(believed: _Believed, room: _Pass, detects: float) -> None:
     """Weigh each plant by how unforeseen a look at it is; nothing where one was seen today."""
     for i in range(room.weight.size):
@@ -195,7 +195,7 @@ def _weigh(believed: _Believed, room: _Pass, detects: float) -> None:
         room.weight[i] = 0.0 if room.seen[i] else np.sqrt(told)
 
 
-@part
+@inner_loop
 def _drive_rows(room: _Pass, rows: int, place: float) -> None:
     """Choose the rows of a pass: one at each equal share of all weights."""
     total, so_far, ahead = room.of_row.sum(), 0.0, place
@@ -206,7 +206,7 @@ def _drive_rows(room: _Pass, rows: int, place: float) -> None:
             ahead += 1.0
 
 
-@part
+@inner_loop
 def _turn(
     travel: TravelTable, clock: Clock, chosen: NDArray[np.int64], state: tuple[int, int]
 ) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
-from fieldmon.compute.jit import inlined, loop, part
+from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
 from fieldmon.samplers.base import Sampler, Scene, Stops
@@ -150,7 +150,7 @@ def _open(travel: TravelTable, opened: _Open, inspected: NDArray[np.bool_], plan
     return 1
 
 
-@part
+@inner_loop
 def _refill(
     travel: TravelTable,
     opened: _Open,
@@ -193,7 +193,7 @@ def _refill(
     return joined
 
 
-@part
+@inner_loop
 def _least_of(
     opened: _Open,
     chance_bits: NDArray[np.int64],

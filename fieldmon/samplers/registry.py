@@ -112,7 +112,7 @@ SAMPLERS = {
     ),
 }  # fmt: skip
 #: who plans where nobody says otherwise, and who is compared
-USUAL = "adaptive"
+USUAL_SAMPLER = "adaptive"
 COMPARED = ("naive", "bouncy", "dynamic")
 
 
@@ -177,7 +177,7 @@ def sampler_or_name(given: str | Sampler) -> Sampler:
         )
     if type(given).__module__.startswith("fieldmon."):
         return given
-    from fieldmon.samplers.answers import Checked  # noqa: PLC0415 - it has a loop to compile
+    from fieldmon.samplers.checked_sampler import Checked  # noqa: PLC0415 - it has a loop to compile
 
     return Checked(given)
 
@@ -209,5 +209,5 @@ def of_equal_times() -> dict[str, SamplerKind]:
     The usual one comes first, then those that read chances.
     """
     equal = {name: kind for name, kind in SAMPLERS.items() if not kind.chooses_time}
-    order = sorted(equal, key=lambda name: (name != USUAL, not equal[name].reads_chance))
+    order = sorted(equal, key=lambda name: (name != USUAL_SAMPLER, not equal[name].reads_chance))
     return {name: equal[name] for name in order}

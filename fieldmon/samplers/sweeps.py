@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inner_loop, loop
 from fieldmon.plot.travel import Clock, in_time, travel_s
 from fieldmon.samplers.base import Sampler, Scene, Stops
 from fieldmon.samplers.registry import check_every
@@ -100,7 +100,7 @@ def _walk(
     return k
 
 
-@part
+@inner_loop
 def _first(snake: NDArray[np.int32], last: NDArray[np.int32], every: int) -> int:
     """Return where a new pass starts: at the first plant inspected least recently."""
     best = 0
@@ -110,7 +110,7 @@ def _first(snake: NDArray[np.int32], last: NDArray[np.int32], every: int) -> int
     return best
 
 
-@part
+@inner_loop
 def _place(snake: NDArray[np.int32], plant: int) -> int:
     """Return where in the sweep a plant stands."""
     for position in range(snake.size):

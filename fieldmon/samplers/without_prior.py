@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inner_loop, loop
 from fieldmon.compute.random_streams import coin, coin_table
 from fieldmon.compute.wording import counted
 from fieldmon.plot.travel import Clock, in_time, travel_s
@@ -235,7 +235,7 @@ def _walk(
     return k
 
 
-@part
+@inner_loop
 def _next_here(
     travel: TravelTable,
     stations: Stations,
@@ -257,7 +257,7 @@ def _next_here(
     return found
 
 
-@part
+@inner_loop
 def _turned(stations: Stations, last: NDArray[np.int32], ahead: int, step: int) -> int:
     """Return where a sweep goes on at the plot's end: least recently visited, then nearest."""
     m = stations.start.size - 1

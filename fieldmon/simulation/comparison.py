@@ -16,7 +16,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
-from fieldmon.samplers.answers import Checked
+from fieldmon.samplers.checked_sampler import Checked
 from fieldmon.samplers.own import label_of
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run

@@ -16,20 +16,20 @@ from pathlib import Path
 from PIL import Image, ImageDraw
 from playwright.sync_api import sync_playwright
 
-from tests.app.pictures import PARTS, SCHEMES, SIZES, STILL, take, windows
+from tests.app.pictures import PAGES, SCHEMES, SIZES, STILL, take, windows
 from tests.benchmarks.first_screen import answers, served
 from tests.benchmarks.seven_tasks import Hand, begin
 from tests.conftest import CHROMIUM, FLAGS
 from tests.paths import ROOT
 
-#: a part of a room, and the page that had its place before; what has none is new
+#: a page, and the page that had its place before; what has none is new
 BEFORE = {
     "today": "", "field": "map", "scout": "scout", "record": "season", "season": "season",
     "compare": "compare", "plot": "plot", "report": "report", "simulate": "simulate",
     "study": "study", "prior": "prior",
 }  # fmt: skip
 RESEARCH = ("study", "prior")
-SHOWN = (*PARTS, *RESEARCH)
+SHOWN = (*PAGES, *RESEARCH)
 LANGUAGES = ("en", "he")
 _WORKED = """
 import sys
@@ -69,15 +69,15 @@ def pictures(browser, tree, folder, languages):
         season = begin(Hand(browser.new_page(), url)).replace(" ", "+")
         worked(tree, seasons)
         for page, language, kind in windows(browser, SIZES, SCHEMES, languages):
-            for part in SHOWN:
-                to = folder / f"{part}_{kind}.png"
+            for name in SHOWN:
+                to = folder / f"{name}_{kind}.png"
                 try:
-                    if before and part in BEFORE:
-                        plainly(page, f"{url}/{BEFORE[part]}?season={season}", to)
-                    elif part in RESEARCH:
-                        plainly(page, f"{url}/{part}?lang={language}&season={season}", to)
+                    if before and name in BEFORE:
+                        plainly(page, f"{url}/{BEFORE[name]}?season={season}", to)
+                    elif name in RESEARCH:
+                        plainly(page, f"{url}/{name}?lang={language}&season={season}", to)
                     elif not before:
-                        take(page, url, language, part, to, f"&season={season}")
+                        take(page, url, language, name, to, f"&season={season}")
                 except Exception as error:  # noqa: BLE001 - the others still count
                     sys.stdout.write(f"{to.name}: {str(error)[:200]!r}\n")
 
@@ -88,12 +88,12 @@ def sheet(before, after, size, scheme, language):
     high = wide * height // width
     made = Image.new("RGB", ((2 * wide + 24) * _COLUMNS, (high + 30) * -(-len(SHOWN) // _COLUMNS)))
     draw = ImageDraw.Draw(made)
-    for k, part in enumerate(SHOWN):
+    for k, name in enumerate(SHOWN):
         x, y = (k % _COLUMNS) * (2 * wide + 24), k // _COLUMNS * (high + 30)
-        draw.text((x + 4, y + 8), f"{part}: before, after", fill="white")
+        draw.text((x + 4, y + 8), f"{name}: before, after", fill="white")
         shots = (before, "en"), (after, language)
         for side, (folder, tongue) in enumerate(shots):
-            path = folder / f"{part}_{tongue}_{size}_{scheme}.png"
+            path = folder / f"{name}_{tongue}_{size}_{scheme}.png"
             if path.is_file():
                 with Image.open(path) as shot:
                     made.paste(shot.convert("RGB").resize((wide, high)), (x + side * wide, y + 28))

@@ -39,7 +39,7 @@ METRES = 2039
 OTHERS = ("Pond", "Wadi")
 #: where insects begin, as shares of the rows and of a row, and how far they reach in metres
 SPOTS = ((0.30, 0.10, 9.0), (0.25, 0.75, 12.0), (0.45, 0.60, 7.0))
-#: by name: part, window, scheme, language, and how wide the picture is
+#: by name: page, window, scheme, language, and how wide the picture is
 SHOTS = {
     "today": ("today", "laptop", "light", "en", 1200),
     "season": ("season", "laptop", "light", "en", 1200),
@@ -165,11 +165,11 @@ def sent(page):
 ACTS = {"compare": compared, "answers": asked, "answers_of_records": asked_of_records, "send": sent}
 
 
-def taken(page, url, name, part, language):
-    """Return the picture of a part as bytes."""
+def taken(page, url, name, of, language):
+    """Return the picture of a page as bytes."""
     with tempfile.TemporaryDirectory() as folder:
-        to = Path(folder) / f"{part}.png"
-        pictures.take(page, url, language, part, to, f"&season={NAME}")
+        to = Path(folder) / f"{of}.png"
+        pictures.take(page, url, language, of, to, f"&season={NAME}")
         if name in ACTS:
             ACTS[name](page)
             page.wait_for_timeout(2000)
@@ -230,9 +230,9 @@ def main():
         if of_app := [name for name in wanted if name in SHOTS]:
             with pictures.served(begun) as url:
                 for name in of_app:
-                    part, size, scheme, language, wide = SHOTS[name]
+                    of, size, scheme, language, wide = SHOTS[name]
                     for page, _, _ in pictures.windows(browser, [size], [scheme], [language]):
-                        shot = taken(page, url, name, part, language)
+                        shot = taken(page, url, name, of, language)
                     kept(shot, name, wide)
         if of_phone := [name for name in wanted if name in SCOUTED]:
             scouted(browser, of_phone)

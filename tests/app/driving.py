@@ -14,7 +14,7 @@ from shapely import MultiPolygon, box
 from streamlit.testing.v1 import AppTest
 from streamlit.util import calc_hash
 
-from app.state import rooms
+from app.state import menu
 from app.state.map_store import STORE
 from app.words import texts
 from tests.app.shown_plants import shown_plants
@@ -23,7 +23,7 @@ from tests.paths import ROOT
 
 ESTATE = ROOT / "sample_data"
 SQUARE = MultiPolygon([box(35.15, 30.36, 35.1506, 30.3606)])
-PAGES = tuple(part for room in rooms.ROOMS.values() for part in room.parts)
+PAGES = tuple(page for item in menu.MENU.values() for page in item.pages)
 
 
 def until(is_so, within_s=180.0, every_s=0.005):
@@ -57,17 +57,17 @@ def opened(season=None, **address):
 
 
 def go(app, page):
-    """Turn to a part of a room by its address: it says nothing else, the next run is its own.
+    """Turn to a page by its address: it says nothing else, the next run is its own.
 
     A session that nobody has looked at begins there.
     """
-    room = rooms.room_of(page)
-    app._page_hash = calc_hash("" if room == "today" else room)
+    item = menu.item_of(page)
+    app._page_hash = calc_hash("" if item == "today" else item)
     if app.has_begun:
-        app.session_state[rooms.key(room)] = page
+        app.session_state[menu.key(item)] = page
         app.query_params.clear()
     app.has_begun = True
-    app.query_params[rooms.KEY] = page
+    app.query_params[menu.KEY] = page
     return app.run()
 
 

@@ -263,20 +263,20 @@ def scale_px_of_m(page):
     return scale.locator(".bar").bounding_box()["width"] / metres
 
 
-# -- rooms
+# -- the menu
 
 
-def open_room(page, name):
-    """Turn to a room by its link, and wait until it is there."""
+def open_item(page, name):
+    """Turn to an item of the menu by its link, and wait until it is there."""
     page.get_by_role("link", name=name).first.click()
     here = page.locator("a[aria-current=page]").filter(has_text=name)
     here.first.wait_for(state="attached", timeout=_REST_MS)
     rest(page)
 
 
-def open_part(page, name):
-    """Show a part of the room."""
-    part = page.get_by_role("radio", name=name, exact=True)
-    part.click()
-    part.and_(page.locator("[aria-checked=true]")).wait_for()
+def open_page(page, name):
+    """Show a page of that item."""
+    box = page.get_by_role("radio", name=name, exact=True)
+    box.click()
+    box.and_(page.locator("[aria-checked=true]")).wait_for()
     rest(page)

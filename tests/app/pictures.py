@@ -1,8 +1,8 @@
-"""Pictures of every room in every language, to be looked at: ``python -m tests.app.pictures``.
+"""Pictures of every page in every language, to be looked at: ``python -m tests.app.pictures``.
 
-It is no test: it starts the app, turns to each part of each room on a laptop, a tablet and a phone,
+It is no test: it starts the app, turns to each page of the menu on a laptop, a tablet and a phone,
 by day and by night, and keeps what a person would see in a folder; what axe-core finds serious is
-said. ``--languages he,ar``, ``--parts today,season``, ``--sizes phone`` and ``--schemes dark`` take
+said. ``--languages he,ar``, ``--pages today,season``, ``--sizes phone`` and ``--schemes dark`` take
 fewer; ``--url`` takes an app that is running.
 """
 
@@ -21,7 +21,7 @@ from urllib.parse import quote
 
 from playwright.sync_api import sync_playwright
 
-from app.state import rooms
+from app.state import menu
 from app.words.language import LANGUAGES
 from tests.app.map_in_browser import faults
 from tests.paths import ROOT
@@ -32,7 +32,7 @@ SIZES = {
     "phone": (390, 844, "Mozilla/5.0 (Android 14) Mobile Safari"),
 }
 SCHEMES = ("light", "dark")
-PARTS = tuple(part for room in rooms.ROOMS.values() for part in room.parts)
+PAGES = tuple(name for item in menu.MENU.values() for name in item.pages)
 STILL = "[data-testid=stApp][data-test-script-state=notRunning]"
 
 
@@ -67,16 +67,16 @@ def wait_for(url):
     raise SystemExit(message)
 
 
-def take(page, url, language, part, to, season=""):
-    """Turn to a part of a room and take its picture."""
-    room = rooms.room_of(part)
-    page.goto(f"{url}/{'' if room == 'today' else room}?lang={language}{season}")
+def take(page, url, language, name, to, season=""):
+    """Turn to a page and take its picture."""
+    item = menu.item_of(name)
+    page.goto(f"{url}/{'' if item == 'today' else item}?lang={language}{season}")
     page.wait_for_selector(".map[data-shown]", timeout=90_000)
     page.wait_for_selector(STILL, timeout=90_000)
-    parts = rooms.ROOMS[room].parts
-    if len(parts) > 1:
-        box = page.locator(f".st-key-part-{room} button")
-        box.nth(parts.index(part)).click()
+    pages = menu.MENU[item].pages
+    if len(pages) > 1:
+        box = page.locator(f".st-key-page-{item} button")
+        box.nth(pages.index(name)).click()
     page.wait_for_timeout(700)
     page.wait_for_selector(STILL, timeout=90_000)
     # what moves comes to rest
@@ -91,7 +91,7 @@ def main():
     ask = argparse.ArgumentParser(description=__doc__)
     ask.add_argument("--to", type=Path, default=Path(tempfile.gettempdir()) / "fieldmon-pictures")
     ask.add_argument("--languages", default=",".join(LANGUAGES))
-    ask.add_argument("--parts", default=",".join(PARTS))
+    ask.add_argument("--pages", default=",".join(PAGES))
     ask.add_argument("--sizes", default=",".join(SIZES))
     ask.add_argument("--schemes", default=",".join(SCHEMES))
     ask.add_argument("--url", default="")
@@ -114,8 +114,8 @@ def pictures(browsers, url, said):
     every = said.sizes.split(","), said.schemes.split(","), said.languages.split(",")
     season = f"&season={quote(said.season)}" if said.season else ""
     for page, language, kind in windows(browser, *every):
-        for part in said.parts.split(","):
-            take(page, url, language, part, said.to / f"{part}_{kind}.png", season)
+        for name in said.pages.split(","):
+            take(page, url, language, name, said.to / f"{name}_{kind}.png", season)
     browser.close()
 
 

@@ -1,7 +1,7 @@
 """For everybody: pages that axe-core finds nothing serious in, and tasks done by keys alone.
 
-The suite looks at the first part of each room, and at one room in the dark. ``FIELDMON_AXE=all``
-looks at every part of every room, and at every room in the dark.
+The suite looks at the first page of each item of the menu, and at one in the dark.
+``FIELDMON_AXE=all`` looks at every page, and at every item of the menu in the dark.
 """
 
 import io
@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.state import kept_ground, rooms
+from app.state import kept_ground, menu
 from app.state.kept_ground import GroundPicture
 from app.words import texts
 from fieldmon.io.rasters.read import Backdrop
@@ -22,8 +22,8 @@ from tests.app.map_in_browser import (
     MAP,
     faults,
     in_scheme,
-    open_part,
-    open_room,
+    open_item,
+    open_page,
     rest,
     still,
     tab_to,
@@ -32,7 +32,7 @@ from tests.app.test_in_browser import sample, season
 from tests.paths import ROOT
 
 EVERYTHING = os.environ.get("FIELDMON_AXE") == "all"
-#: the room that the suite sees in the dark: the one with a map, a route and figures
+#: the item of the menu that the suite sees in the dark: the one with a map, a route and figures
 DARK = "today"
 NAVIGATION = "ul[data-testid=stSidebarNavItems]"
 # two messages to the server leave together
@@ -75,8 +75,8 @@ def tab(new_tab, address, kept):
 
 @pytest.fixture
 def today(tab):
-    """Return that tab in the room that it began in."""
-    open_room(tab, texts.ROOMS["today"])
+    """Return that tab in the item of the menu that it began in."""
+    open_item(tab, texts.MENU["today"])
     return tab
 
 
@@ -101,17 +101,17 @@ def in_the_dark(page):
     return found
 
 
-def test_axe_finds_nothing_serious_in_any_room_nor_in_the_dark(tab):
+def test_axe_finds_nothing_serious_in_any_page_nor_in_the_dark(tab):
     found = []
-    for name, room in rooms.ROOMS.items():
-        open_room(tab, texts.ROOMS[name])
+    for name, item in menu.MENU.items():
+        open_item(tab, texts.MENU[name])
         found += left(tab)
         if EVERYTHING or name == DARK:
             found += in_the_dark(tab)
         # the first one last: what is shown first in the tests below is what the suite shows
-        others = (*room.parts[1:], room.parts[0]) if len(room.parts) > 1 else ()
-        for part in others if EVERYTHING else ():
-            open_part(tab, texts.PARTS[part])
+        others = (*item.pages[1:], item.pages[0]) if len(item.pages) > 1 else ()
+        for shown in others if EVERYTHING else ():
+            open_page(tab, texts.PAGES[shown])
             found += left(tab)
     assert found == []
 
@@ -168,7 +168,7 @@ def test_a_wait_of_over_a_second_is_said_in_words(today):
 
 def test_a_day_is_done_by_keys_alone(today):
     page = today
-    # who comes by keys sees where they are among the rooms
+    # who comes by keys sees where they are in the menu
     tab_to(page, page.get_by_test_id("stTopNavLink").nth(2))
     assert page.evaluate("getComputedStyle(document.activeElement).outline").endswith("solid 3px")
     # hours
@@ -225,7 +225,7 @@ def test_a_day_is_done_by_keys_alone(today):
 
 def test_a_fraction_typed_with_a_comma_in_spanish_is_not_ten_times_as_much(today):
     page = today
-    open_room(page, texts.ROOMS["ahead"])
+    open_item(page, texts.MENU["ahead"])
     box = page.get_by_role("spinbutton", name=texts.INFESTED)
     for language, typed in (("es", "2.5"), ("en", "25")):
         # a map that is just shown says the page's language, too
@@ -243,7 +243,7 @@ def test_a_fraction_typed_with_a_comma_in_spanish_is_not_ten_times_as_much(today
 @pytest.mark.parametrize("way", ["click", "keys", "back"])
 def test_a_number_typed_just_before_a_page_is_turned_is_there_again(today, way):
     page = today
-    open_room(page, texts.ROOMS["ahead"])
+    open_item(page, texts.MENU["ahead"])
     box = page.get_by_role("spinbutton", name=texts.INFESTED)
     typed = str(int(float(box.input_value())) + 7)
     box.press("Control+a")
@@ -253,18 +253,18 @@ def test_a_number_typed_just_before_a_page_is_turned_is_there_again(today, way):
     if way == "back":
         page.go_back()
     else:
-        link = page.get_by_role("link", name=texts.ROOMS["today"]).first
+        link = page.get_by_role("link", name=texts.MENU["today"]).first
         link.click() if way == "click" else link.press("Enter")
-    here = page.locator("a[aria-current=page]").filter(has_text=texts.ROOMS["today"])
+    here = page.locator("a[aria-current=page]").filter(has_text=texts.MENU["today"])
     here.first.wait_for(state="attached")
     rest(page)
-    open_room(page, texts.ROOMS["ahead"])
+    open_item(page, texts.MENU["ahead"])
     assert box.input_value() == typed
 
 
 def test_strategies_are_compared_and_a_plot_is_brought_by_keys_alone(today):
     page = today
-    tab_to(page, page.get_by_role("link", name=texts.ROOMS["ahead"]).locator("visible=true"))
+    tab_to(page, page.get_by_role("link", name=texts.MENU["ahead"]).locator("visible=true"))
     page.keyboard.press("Enter")
     samplers = page.get_by_role("combobox", name=texts.STRATEGY_SAMPLERS)
     samplers.wait_for()
@@ -279,7 +279,7 @@ def test_strategies_are_compared_and_a_plot_is_brought_by_keys_alone(today):
     first.or_(page.get_by_text("95 % interval")).first.wait_for()
     press(page, texts.STOP, exact=True)
     # a shapefile to the first route: last here, since the tab then shows another plot
-    tab_to(page, page.get_by_role("link", name=texts.ROOMS["plots"]).locator("visible=true"))
+    tab_to(page, page.get_by_role("link", name=texts.MENU["plots"]).locator("visible=true"))
     page.keyboard.press("Enter")
     press(page, texts.WAYS_IN["file"])
     with page.expect_file_chooser() as chosen:

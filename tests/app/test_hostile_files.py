@@ -115,8 +115,8 @@ def test_the_name_of_a_plot_is_text_whatever_format_it_comes_in(tmp_path, kind):
     else:
         rows = [["WKT", "name"], [SQUARE.wkt, name], [SECOND.wkt, "B"]]
         source = table_of(kind, rows, tmp_path)
-    (tmp_path / "room").mkdir()
-    read = tasks.plots(str(tmp_path / "room"), source, PlotOptions())
+    (tmp_path / "work").mkdir()
+    read = tasks.plots(str(tmp_path / "work"), source, PlotOptions())
     assert len(read.value) == 2
     (own,) = (field.name for field in read.value if field.name != "B")  # in any order
     held_as_text(own, LETTERS.get(kind, len(EVERY)))
@@ -139,9 +139,9 @@ def points(kind, rows, folder):
 def test_species_and_stage_of_a_record_are_text_whatever_format_they_come_in(tmp_path, kind):
     said = EVERY[:250] if kind in LETTERS else EVERY if kind == "xls" else LONG
     rows = [["lon", "lat", "date", "count", "species", "stage"], [*HERE[0], DAY, 7, said, said]]
-    (tmp_path / "room").mkdir()
+    (tmp_path / "work").mkdir()
     source = points(kind, rows, tmp_path)
-    read = tasks.records(str(tmp_path / "room"), source, RecordOptions(), None)
+    read = tasks.records(str(tmp_path / "work"), source, RecordOptions(), None)
     (species,), (stage,) = read.value.species.tolist(), read.value.stage.tolist()
     for text in (species, stage):
         held_as_text(text, LETTERS.get(kind, len(EVERY)))
@@ -152,9 +152,9 @@ def test_species_and_stage_of_a_record_are_text_whatever_format_they_come_in(tmp
 def test_who_inspected_and_noted_what_is_text_whatever_format_it_comes_in(tmp_path, kind):
     said = EVERY[:250] if kind in LETTERS else EVERY if kind == "xls" else LONG
     rows = [["lon", "lat", "result", "who", "notes"], [*HERE[0], "found", said, said]]
-    (tmp_path / "room").mkdir()
+    (tmp_path / "work").mkdir()
     source, options = points(kind, rows, tmp_path), InspectionOptions(day=np.datetime64(DAY))
-    read = tasks.inspection_rows(str(tmp_path / "room"), source, options)
+    read = tasks.inspection_rows(str(tmp_path / "work"), source, options)
     said_of = read.value
     for text in (*said_of.notes.tolist(), *said_of.who.tolist()):
         held_as_text(str(text), LETTERS.get(kind, len(EVERY)))
@@ -166,8 +166,8 @@ def test_what_is_drawn_in_the_browser_makes_no_markup_of_texts():
     markup = re.compile(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|DOMParser")
     found = [
         line.strip()
-        for room in ("map_view", "scout_page")
-        for path in sorted(Path(ROOT / "app" / room / "src").rglob("*.js"))
+        for folder in ("map_view", "scout_page")
+        for path in sorted(Path(ROOT / "app" / folder / "src").rglob("*.js"))
         for line in path.read_text("utf-8").splitlines()
         if markup.search(line)
     ]
@@ -212,7 +212,7 @@ def drawing(folder):
 
 
 def read_in(folder, task, *asked):
-    """Read by a task in a room of its own."""
+    """Read by a task in a folder of its own."""
     return task(tempfile.mkdtemp(dir=folder), *asked)
 
 
@@ -252,7 +252,7 @@ def test_a_season_of_such_files_is_text_on_paper_and_on_the_scouts_page(tmp_path
     waypoints = gpx(waypoint(HERE[0], "found"))
     asked = InspectionOptions(day=np.datetime64(DAY))
     said = str(read_in(tmp_path, tasks.inspection_rows, waypoints, asked).value.notes[0])
-    for text in (name, said):  # what rooms and the scout's page are looked at with in a browser
+    for text in (name, said):  # what pages and the scout's page are looked at with in a browser
         assert " ".join(text.split()) == " ".join(LONG.split())
     plot = a_plot()
     plot = replace(plot, field=replace(plot.field, name=name))

@@ -6,13 +6,13 @@ from datetime import date
 
 import numpy as np
 
-from app.state import rooms
+from app.state import menu
 from app.words import language, texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from tests.app.driving import PAGES, go, opened
-from tests.app.map_in_browser import IDLE, open_part, open_room, rest
+from tests.app.map_in_browser import IDLE, open_item, open_page, rest
 from tests.monitoring.seasons import a_plot
 
 EVIL = "evil.example"
@@ -61,7 +61,7 @@ def test_no_name_becomes_a_link_or_a_picture_and_all_of_it_can_be_read():
     assert language.in_words("Give a number (1 to 5).") == "Give a number (1 to 5)."
 
 
-def test_every_part_of_every_room_shows_such_a_season_as_text(seasons_folder):
+def test_every_page_shows_such_a_season_as_text(seasons_folder):
     hostile_season(seasons_folder / "Harm.gpkg", f"{EVERY} {'x' * 10_000}")
     app = opened("Harm")
     shown = 0
@@ -83,11 +83,11 @@ def test_in_a_browser_nothing_runs_nothing_is_fetched_and_nothing_leads_out(
     page.goto(f"{address}/?season=Harm")
     rest(page)
     seen = 0
-    for name, room in rooms.ROOMS.items():
-        open_room(page, texts.ROOMS[name])
-        for part in ("", *room.parts[1:]):
-            if part:
-                open_part(page, texts.PARTS[part])
+    for name, item in menu.MENU.items():
+        open_item(page, texts.MENU[name])
+        for shown in ("", *item.pages[1:]):
+            if shown:
+                open_page(page, texts.PAGES[shown])
                 page.wait_for_selector(IDLE, timeout=180_000)
             assert page.evaluate("window.hit") is None
             assert page.locator(f'[src*="{EVIL}"], [href*="{EVIL}"], [onerror]').count() == 0

@@ -22,7 +22,7 @@ from streamlit.proto.ForwardMsg_pb2 import ForwardMsg
 
 from app.show.map_view import LOADER
 from app.show.maps import colours
-from app.state import rooms
+from app.state import menu
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.level_range import first_level_range
@@ -33,7 +33,7 @@ from fieldmon.io.writers import FORMATS
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import scout
 from tests.app.driving import until, zipped
@@ -50,8 +50,8 @@ from tests.app.map_in_browser import (
     is_near,
     look,
     opacity,
-    open_part,
-    open_room,
+    open_item,
+    open_page,
     picture,
     pixels,
     rest,
@@ -204,7 +204,7 @@ _COUNT_SENT = """() => {
 
 @pytest.fixture(scope="module")
 def walk(new_tab, address):
-    """Turn to every room and each of its parts; return what was asked for and complained."""
+    """Turn to every page of the menu; return what was asked for and complained."""
     page, complaints = new_tab(), []
     page.on("console", lambda one: complaints.append(one.text) if one.type == "error" else None)
     for name in ("study", "prior", ""):
@@ -212,10 +212,10 @@ def walk(new_tab, address):
         page.wait_for_selector(IDLE, timeout=240_000)
     try:
         rest(page)  # as people do: they see the map before they turn from it
-        for name, room in rooms.ROOMS.items():
-            open_room(page, texts.ROOMS[name])
-            for part in room.parts[1:]:
-                open_part(page, texts.PARTS[part])
+        for name, item in menu.MENU.items():
+            open_item(page, texts.MENU[name])
+            for shown in item.pages[1:]:
+                open_page(page, texts.PAGES[shown])
                 page.wait_for_selector(IDLE, timeout=180_000)
     except PlaywrightTimeout as late:
         late.add_note(f"Its console says: {complaints}; asked last: {page.requests[-12:]}")
@@ -267,7 +267,7 @@ def test_a_page_is_shown_again_over_a_line_so_slow_that_another_was_turned_to_me
         socket.connect_to_server().on_message(say)
 
     def turn(name, runs):
-        page.get_by_role("link", name=texts.ROOMS[name]).first.click()
+        page.get_by_role("link", name=texts.MENU[name]).first.click()
         until(lambda: page.wait_for_timeout(10) or len(done) == runs)
 
     is_slow = False
@@ -476,7 +476,7 @@ def test_the_zoom_stays_over_layers_days_and_rooms(page, address, served_seasons
     switch(page, ROUTE, on=False)
     becomes(page, lambda now: (now == near).all(), "the map without it")
     for name in ("today", "ahead", "plot", "season"):
-        open_room(page, texts.ROOMS[name])
+        open_item(page, texts.MENU[name])
         still(page)
         assert view(page) == seen, f"the zoom is lost in {name}"
 
@@ -507,10 +507,10 @@ def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
     x, y = free(page)
     plant = int(np.argmin(np.hypot(*(place - [x - box["x"], y - box["y"]]).T)))
     page.mouse.move(box["x"] + place[plant][0], box["y"] + place[plant][1])
-    label = row_label(plot.grid, np.array([plant]))
+    numbered = plant_numbers(plot.grid, np.array([plant]))
     tip = page.locator(f"{MAP} .tip")
     tip.wait_for()
-    said = f"row {label.line[0]}, plant {label.number[0]}"
+    said = f"row {numbered.line[0]}, plant {numbered.number[0]}"
     assert tip.inner_text().startswith(said)
     of_it = today.chance[[plant]]
     low, high = first_level_range(plot.grid, today.chance).of(of_it)
@@ -546,8 +546,8 @@ def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(asked_sc
     box = page.locator(MAP).bounding_box()
     plant = int(np.argmin(np.hypot(*(place - [x - box["x"], y - box["y"]]).T)))
     click(page, place[plant], says=texts.HISTORY)
-    label = row_label(plot.grid, np.array([plant]))
-    until(lambda: history(page) == (str(label.line[0]), str(label.number[0])))
+    numbered = plant_numbers(plot.grid, np.array([plant]))
+    until(lambda: history(page) == (str(numbered.line[0]), str(numbered.number[0])))
     image = becomes(
         page, lambda now: share_near(now, place[[plant]], (255, 190, 0), reach=45) == 1, "the ring"
     )
@@ -619,7 +619,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     boxes.nth(1).set_input_files([box])
     page.get_by_text("1 of 1 records shown").wait_for(timeout=180_000)
     clicked, drawn_in = drawn_by_clicks(page), view(page)
-    open_room(page, texts.ROOMS["today"])
+    open_item(page, texts.MENU["today"])
     far = still(page)
     features = route_of(page)
     first = plants_of(features)
@@ -640,8 +640,8 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     record_eight(page)
     page.reload()
     rest(page)
-    open_room(page, texts.ROOMS["today"])
-    open_part(page, texts.PARTS["today"])
+    open_item(page, texts.MENU["today"])
+    open_page(page, texts.PAGES["today"])
     page.get_by_text("8 plants inspected so far").wait_for(timeout=180_000)
     remaining = stops(page)
     # planned anew, the rest is another route of about as many stops
@@ -691,7 +691,7 @@ def test_a_plot_is_drawn_by_four_taps_corrected_and_has_a_route(page, address):
     wanted = np.array([places[0], np.add(places[1], (60, 0)), *places[2:]])
     assert len(corners) == 4
     assert np.linalg.norm(corners[:, None] - wanted, axis=2).min(axis=0).max() < 3
-    open_room(page, texts.ROOMS["today"])
+    open_item(page, texts.MENU["today"])
     assert len(plants_of(route_of(page))) > 10
     assert all(asked.startswith((address, "blob:", "data:")) for asked in page.requests)
 
@@ -734,7 +734,7 @@ def test_corners_are_walked_to_with_a_phone_and_a_rough_position_is_none(page, a
 
 def record_eight(page):
     """Record the first eight stops of the route as clean."""
-    open_part(page, texts.PARTS["record"])
+    open_page(page, texts.PAGES["record"])
     page.get_by_role("tab", name=texts.RECORD_ROUTE).click()
     box = page.get_by_role("spinbutton", name=texts.RECORD_STOPS)
     box.wait_for(timeout=180_000)
@@ -917,7 +917,7 @@ def test_plants_are_there_after_a_plot_that_is_drawn_as_a_picture(page, address,
     boxes.nth(0).wait_for(state="attached", timeout=180_000)
     boxes.nth(0).set_input_files([file])
     of_plot(page, "large")
-    open_room(page, texts.ROOMS["today"])
+    open_item(page, texts.MENU["today"])
     plants_show(page)
     page.get_by_role("combobox", name="Which plot").click()
     page.get_by_role("option", name="small").click()
@@ -958,7 +958,7 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
     project = season(served_seasons / "Phone.gpkg", plot, **whole)
     page.goto(f"{address}/?season=Phone")
     rest(page)
-    open_part(page, texts.PARTS["scout"])
+    open_page(page, texts.PAGES["scout"])
     place = page.locator("h2")
     place.wait_for(timeout=240_000)
     for name in ("Clean", "Found", "Could not inspect"):
@@ -981,7 +981,7 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
     here = place.inner_text()
     page.reload()
     rest(page)
-    open_part(page, texts.PARTS["scout"])
+    open_page(page, texts.PAGES["scout"])
     place.wait_for(timeout=180_000)
     assert place.inner_text() == here
     page.get_by_role("button", name="Undo").click()
@@ -1027,11 +1027,11 @@ def test_a_day_that_is_typed_counts_by_enter_and_by_tab(page, address, served_se
         rest(page)
 
 
-def test_one_press_of_back_leads_to_the_room_before(page, address, served_seasons):
+def test_one_press_of_back_leads_to_the_item_before(page, address, served_seasons):
     season(served_seasons / "Back.gpkg", sample()[0])
     page.goto(f"{address}/?season=Back&day=2026-11-18")
     rest(page)
-    open_room(page, texts.ROOMS["season"])
+    open_item(page, texts.MENU["season"])
     page.wait_for_url("**/season?*day=2026-11-18*")
     rest(page)
     page.go_back()

@@ -14,7 +14,7 @@ import pytest
 from rasterio.io import MemoryFile
 from rasterio.transform import from_bounds
 
-from app.state import chosen_language, rooms
+from app.state import chosen_language, menu
 from app.words import texts
 from app.words.language import LANGUAGES
 from fieldmon.monitoring import Season
@@ -74,7 +74,7 @@ CHOICES = {
     "one_result": [0, 1, 2],
     "strategy_samplers": list(texts.SAMPLERS),
     "compared": list(texts.SAMPLERS),
-    **{rooms.key(name): list(room.parts) for name, room in rooms.ROOMS.items()},
+    **{menu.key(name): list(item.pages) for name, item in menu.MENU.items()},
 }
 DAYS = [date(2026, 11, 16), date(2026, 11, 17), date(2026, 12, 24), date(2026, 11, 20)]
 NUMBERS = ("slider", "number_input")

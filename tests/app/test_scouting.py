@@ -18,10 +18,10 @@ from app.state.scout_page import invitation
 from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season, photos, scouts
-from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, planned_again, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.local_clock import utc_now
 from tests.app.driving import until
 from tests.app.scouting import BrokenLine, Line, PhoneBrowser, PhoneWindow, a_picture, kept
@@ -326,11 +326,11 @@ def test_a_newer_plan_is_said_and_loaded_by_whoever_wants_it(season, line, phone
     page = phone.page
     page.locator(SENT).wait_for()
     plant = plant_of(page)
-    ahead = [one for one in route_ahead(season, BEGINS, Part(name="Dan")).plant if one != plant]
+    ahead = [one for one in route_ahead(season, BEGINS, WorkPart(name="Dan")).plant if one != plant]
     theirs = [a_finding(one, CLEAN, on=BEGINS, at=utc_now()) for one in ahead[:9]]
     take(season, scouts.let_in(season, "Ann"), theirs, utc_now())
-    plan = planned_again(season, BEGINS, Part(name="Dan"))
-    closed = [{"rows": [1, int(season.label.line.max())], "until": "2999-04-06T07:00"}]
+    plan = planned_again(season, BEGINS, WorkPart(name="Dan"))
+    closed = [{"rows": [1, int(season.plant_numbers.line.max())], "until": "2999-04-06T07:00"}]
     monkeypatch.setattr(documents, "_closed", lambda *_: closed)
     page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
     page.evaluate("() => { dispatchEvent(new Event('online')); }")
@@ -360,8 +360,8 @@ def test_a_phone_learns_what_the_season_took_back_and_sends_it_again(season, lin
     page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
     page.evaluate("() => { dispatchEvent(new Event('online')); }")
     page.locator("#taken_back").click()
-    label = season.label
-    name = f"Row {label.line[plant]}, plant {label.number[plant]}: Clean"
+    numbered = season.plant_numbers
+    name = f"Row {numbered.line[plant]}, plant {numbered.number[plant]}: Clean"
     page.locator("#menu li", has_text=name).wait_for()
     page.locator("#tell_again").click()
     page.locator("#taken_back").wait_for(state="hidden")
@@ -371,7 +371,7 @@ def test_a_phone_learns_what_the_season_took_back_and_sends_it_again(season, lin
 
 def test_the_page_says_what_waits_and_takes_no_half_pests(season, line, phone):
     invited(phone, line, season, "Dan")
-    page, label = phone.page, season.label
+    page, numbered = phone.page, season.plant_numbers
     page.locator(SENT).wait_for()
     phone.window.set_offline(True)
     page.locator("#sync[data-state=offline]").wait_for()
@@ -387,8 +387,8 @@ def test_the_page_says_what_waits_and_takes_no_half_pests(season, line, phone):
     told_now(page, "found", 3)
     assert "✓" not in page.locator("#sync[data-left='1']").inner_text()
     page.locator("#other_plant").click()
-    page.locator("#to_row").fill(str(label.line[plant]))
-    page.locator("#to_plant").fill(str(label.number[plant]))
+    page.locator("#to_row").fill(str(numbered.line[plant]))
+    page.locator("#to_plant").fill(str(numbered.number[plant]))
     page.locator("#ok").click()
     page.locator(f"#place[data-plant='{plant}']").wait_for()
     assert "Chance" not in page.locator("#place").inner_text()
@@ -499,12 +499,12 @@ def test_what_a_scout_does_in_the_field(season, line, browser):
 
 
 def _in_the_field(phone, line, season):
-    label, plot = season.label, season.plot
+    numbered, plot = season.plant_numbers, season.plot
     key = invited(phone, line, season, "Ben")
     page = phone.page
     page.locator("#place .good", has_text="You are there").wait_for()
     first = plant_of(page)
-    row, number = (int(each[0]) for each in row_label(plot.grid, [first]))
+    row, number = (int(each[0]) for each in plant_numbers(plot.grid, [first]))
     assert f"Row {row}, plant {number}" in page.locator("h1").inner_text()
     # the neighbours of a find come next
     told_now(page, "found", 7)
@@ -514,8 +514,8 @@ def _in_the_field(phone, line, season):
     # off the route, by its row and number, with a note
     page.locator("#other_plant").click()
     other = int((plot.grid.row_start[3] + plot.grid.row_start[4]) // 2)
-    page.locator("#to_row").fill(str(label.line[other]))
-    page.locator("#to_plant").fill(str(label.number[other]))
+    page.locator("#to_row").fill(str(numbered.line[other]))
+    page.locator("#to_plant").fill(str(numbered.number[other]))
     page.locator("#ok").click()
     page.locator(f"#place[data-plant='{other}']").wait_for()
     page.locator("#note_button").click()

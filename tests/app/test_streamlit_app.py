@@ -1,4 +1,4 @@
-"""The frame: every room and part opens, whatever is chosen."""
+"""The frame: every page opens, whatever is chosen."""
 
 import re
 

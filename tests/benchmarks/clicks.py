@@ -1,6 +1,6 @@
 """How long a click in the app takes: ``python -m tests.benchmarks.clicks [plants ...]``.
 
-Uploads two crooked plots with records, turns rooms and parts, changes day, hours, sampler and plot,
+Uploads two crooked plots with records, turns pages, changes day, hours, sampler and plot,
 begins a season and records in it, in the system's Chromium, which draws without a graphics card
 here. For each click: seconds of the server, from the browser's question to the end of its answer,
 and of the whole, from the press until the page is at rest and the frame after that is drawn.
@@ -32,8 +32,8 @@ from tests.conftest import CHROMIUM, FLAGS
 
 SIZES = (8_281, 100_000)
 N_RECORDS = 2_000
-ROOMS = ("Today", "Season", "Plan ahead", "Plot & data")
-PARTS = {
+MENU = ("Today", "Season", "Plan ahead", "Plot & data")
+PAGES = {
     "Today": ("Scout", "Record", "Plan"),
     "Season": ("Plants & hot spots", "Report", "How it goes"),
 }
@@ -126,15 +126,15 @@ def bring(page, address: str, plots: Path, records: Path) -> None:
 
 def turning(page, name: str) -> Click:
     link = page.get_by_role("link", name=name, exact=True)
-    return Click(f"room: {name}", link.click, link.hover)
+    return Click(f"menu: {name}", link.click, link.hover)
 
 
-def parts(page, room: str) -> list[Click]:
-    """Return turning to a room, then to each of its parts, the first one last."""
-    shown = [page.get_by_role("radio", name=name, exact=True) for name in PARTS[room]]
-    turned = [Click(f"{room}: {name}", part.click, part.hover)
-              for name, part in zip(PARTS[room], shown, strict=True)]  # fmt: skip
-    return [turning(page, room), *turned]
+def pages(page, item: str) -> list[Click]:
+    """Return turning to an item of the menu, then to each of its pages, the first one last."""
+    shown = [page.get_by_role("radio", name=name, exact=True) for name in PAGES[item]]
+    turned = [Click(f"{item}: {name}", box.click, box.hover)
+              for name, box in zip(PAGES[item], shown, strict=True)]  # fmt: skip
+    return [turning(page, item), *turned]
 
 
 def opened(page) -> None:
@@ -162,8 +162,8 @@ def unsaved(page):
     month = page.get_by_role("spinbutton", name="month").first
     slider = page.get_by_role("slider", name="Working hours").first
     return [
-        *(turning(page, name) for name in ROOMS),
-        *(click for room in PARTS for click in parts(page, room)),
+        *(turning(page, name) for name in MENU),
+        *(click for item in PAGES for click in pages(page, item)),
         turning(page, "Today"),
         Click("Today: another day", partial(page.keyboard.press, "Escape"),
               lambda: (month.click(), page.keyboard.press("ArrowDown"))),
@@ -180,11 +180,11 @@ def kept(page):
     """Return the clicks in a season: a record, and each page after it."""
     record = page.get_by_role("tabpanel").get_by_role("button", name="Record", exact=True)
     return [
-        *parts(page, "Today")[:3],
+        *pages(page, "Today")[:3],
         Click("Record: one plant", record.locator("visible=true").first.click,
               page.get_by_role("tab", name="One plant").click),
-        *(turning(page, name) for name in ROOMS),
-        *(click for room in PARTS for click in parts(page, room)),
+        *(turning(page, name) for name in MENU),
+        *(click for item in PAGES for click in pages(page, item)),
     ]  # fmt: skip
 
 

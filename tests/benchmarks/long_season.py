@@ -127,7 +127,9 @@ def _write(
     day, settings = when
     source, who = f"route-{on(day)}.csv", WHO[day % 2]
     batch = batches.begin(db, "findings", source, who)
-    rows = inspection_table.rows(seen, season.plot.grid, season.label, settings, (batch, who))
+    rows = inspection_table.rows(
+        seen, season.plot.grid, season.plant_numbers, settings, (batch, who)
+    )
     batches.end(db, batch, int(inspection_table.store(db, rows).sum()))
     season_log.append(
         db, "seen", who, states=season_log.states(db, [batch]), batch=batch, source=source,
@@ -146,9 +148,11 @@ class Prepared(NamedTuple):
 def commands(season: Path, work: Path) -> list[Prepared]:
     """Return every command that takes a season; `SEASON` stands for the copy."""
     known = Season(season)
-    last, label = known.last_date(), known.label
+    last, numbered = known.last_date(), known.plant_numbers
     two = known.plan(last, keep=False).route.plant[:2].tolist()
-    rows = [f"{label.line[p]},{label.number[p]},{r}" for p, r in zip(two, (1, 0), strict=True)]
+    rows = [
+        f"{numbered.line[p]},{numbered.number[p]},{r}" for p, r in zip(two, (1, 0), strict=True)
+    ]
     (work / "two.csv").write_text("\n".join(["row,number,found", *rows, ""]))
     (work / "labels.csv").write_text("product,max dose,unit,waiting days\nsoap,5,l/ha,3\n")
     day, tomorrow = str(last), str(last + timedelta(days=1))

@@ -1,7 +1,7 @@
 """What a page's own program takes: ``python -m tests.benchmarks.page_runs [plants]``.
 
-Turns through the parts of rooms in a season of so many plants, three times, without a browser and
-without a server. Prints of the last turn the processor time of each part, and how often it opened
+Turns through the pages of the app in a season of so many plants, three times, without a browser and
+without a server. Prints of the last turn the processor time of each page, and how often it opened
 the season's file. It hardly depends on what else the machine does.
 """
 
@@ -24,7 +24,7 @@ from tests.app.driving import go, opened
 from tests.benchmarks.test_bench_grid import crooked_plot
 
 N_PLANTS, N_RECORDS = 8_281, 2_000
-PARTS = ("today", "scout", "record", "decide", "season", "field", "report", "plot")
+PAGES = ("today", "scout", "record", "decide", "season", "field", "report", "plot")
 
 
 def begun(path: Path, n_plants: int) -> int:
@@ -40,7 +40,7 @@ def begun(path: Path, n_plants: int) -> int:
 
 
 def main() -> None:
-    """Print the processor time of each part."""
+    """Print the processor time of each page."""
     n_plants = int(sys.argv[1]) if len(sys.argv) > 1 else N_PLANTS
     connect, files = transactions.connect, []
     transactions.connect = lambda *of: files.append(of[0]) or connect(*of)
@@ -49,13 +49,13 @@ def main() -> None:
         sys.stdout.write(f"{begun(Path(folder) / 'Timed.gpkg', n_plants):,} plants\n")
         app = opened("Timed")
         for turn in range(3):
-            for part in PARTS:
+            for page in PAGES:
                 began, n = time.process_time(), len(files)
-                go(app, part)
+                go(app, page)
                 assert not app.exception
                 spent = time.process_time() - began
                 if turn == 2:
-                    sys.stdout.write(f"{part:10s}{spent:6.2f} s, {len(files) - n} times opened\n")
+                    sys.stdout.write(f"{page:10s}{spent:6.2f} s, {len(files) - n} times opened\n")
 
 
 if __name__ == "__main__":

@@ -17,8 +17,8 @@ import numpy as np
 
 import fieldmon as fm
 from fieldmon.errors import FieldmonError
+from fieldmon.io.plot_request import PlantingChoices
 from fieldmon.io.prepare import lay
-from fieldmon.io.sources import PlantingChoices
 from fieldmon.planning.routes.best_route import best
 from fieldmon.plot.robot import ROBOT_TIMES, Robot, scout
 from tests.paths import SHARED

@@ -19,7 +19,7 @@ from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.import_report import Remedy, guessed
-from fieldmon.io.prepared import Laid, SourceMessage
+from fieldmon.io.prepared_plots import Laid, SourceMessage
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import team_of
 from fieldmon.plot.assumed import Assumed

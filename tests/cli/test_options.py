@@ -15,7 +15,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.errors import SettingError
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
-from fieldmon.io.sources import PlantingChoices, PlotSources, RecordSource
+from fieldmon.io.plot_request import PlantingChoices, PlotSources, RecordSource
 from fieldmon.plot.robot import Robot, scout
 
 

@@ -12,7 +12,7 @@ from fieldmon.errors import ImportDoubt
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.day_ahead import Part, route_ahead, work_hours
+from fieldmon.monitoring.day_ahead import WorkPart, route_ahead, work_hours
 from fieldmon.reports.day import DayFacts
 from tests.cli.estate import BEGINS, ZIP, filled_in
 
@@ -41,7 +41,7 @@ def test_a_day_from_plan_to_status(run, season, tmp_path):
 def test_command_report_and_phone_say_the_same_route_and_hours_after_any_record(
     run, season, tmp_path
 ):
-    kept, on, dana = Season(season), date.fromisoformat(BEGINS), Part(name="Dana")
+    kept, on, dana = Season(season), date.fromisoformat(BEGINS), WorkPart(name="Dana")
     scouts.let_in(kept, "Dana")
     given = route_ahead(kept, on, dana).plant
     for k, (who, result) in enumerate((("Dana", 0), ("", 0), ("Dana", 1), ("", 0))):
@@ -63,7 +63,7 @@ def test_a_plant_that_was_pulled_out_is_recorded_by_file_and_no_treatment_stands
     kept, first = Season(season), date.fromisoformat(BEGINS)
     kept.record(Inspections.of(np.arange(3), np.ones(3, int), np.datetime64(first)), "x")
     after = first + timedelta(days=1)
-    line, number = (of[:3].tolist() for of in kept.label)
+    line, number = (of[:3].tolist() for of in kept.plant_numbers)
     (tmp_path / "gone.csv").write_text(
         f"row,number,found,date,who\n{line[1]},{number[1]},pulled out,{after},Ana\n"
     )
@@ -110,7 +110,7 @@ def test_it_is_said_by_what_a_past_day_is_planned_and_how_to_plan_it_otherwise(r
 
 def test_plants_where_people_may_not_be_yet_are_left_out_and_that_is_said(run, season):
     kept, words = Season(season), ["plan", season, "--date", BEGINS, "--no-bound"]
-    on, line = date.fromisoformat(BEGINS), kept.label.line
+    on, line = date.fromisoformat(BEGINS), kept.plant_numbers.line
 
     def sprayed(rows):
         waits = Application("Acarol", reentry_hours=24.0, ended=time(5))

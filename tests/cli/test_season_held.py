@@ -7,7 +7,7 @@ from time import monotonic
 
 import pytest
 
-from fieldmon.cli import waiting
+from fieldmon.cli import progress
 from fieldmon.monitoring import transactions
 
 COMMANDS = {
@@ -50,6 +50,6 @@ def test_every_command_says_who_keeps_it_waiting_within_its_patience(run, held, 
 def test_the_seconds_are_counted_on_the_screen_while_it_waits(run, held, monkeypatch):
     monkeypatch.setattr(transactions, "_PATIENCE_S", 2.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    monkeypatch.setattr(waiting, "_SILENT_S", 0.0)
+    monkeypatch.setattr(progress, "_SILENT_S", 0.0)
     _, _, err, _ = run("status", held)
     assert err.count("Working, ") >= 2

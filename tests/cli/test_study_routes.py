@@ -3,7 +3,7 @@
 import csv
 from contextlib import contextmanager
 
-from fieldmon.cli import study_routes, waiting
+from fieldmon.cli import progress, study_routes
 from fieldmon.studies.routes.team_walks import team_walks
 
 
@@ -53,7 +53,7 @@ def test_a_teams_search_moves_the_bar_before_it_ends(run, tmp_path, monkeypatch)
 
     @contextmanager
     def watched(label, length):
-        with waiting.progress(label, length) as bar:
+        with progress.progress(label, length) as bar:
             bars.append(bar)
             yield bar
 

@@ -61,7 +61,7 @@ def test_what_was_applied_is_kept_and_what_to_beware_of_is_said(run, season, tmp
     (one,) = Season(season).treatments()
     _, listed, _, _ = run("status", season, "--batches")
     assert f"  {int(one.place.plants.sum())} plants, 2026-11-0" in listed
-    lines = Season(season).label.line
+    lines = Season(season).plant_numbers.line
     assert np.array_equal(one.place.plants, np.isin(lines, [1, 2]))
     _, out, _, _ = run("status", season, "--date", BEGINS)
     assert "harvest                from 2026-11-10 on, after the treatment of 2026-11-02" in out
@@ -150,7 +150,7 @@ def test_rows_are_a_range_from_either_end(run, season):
     code, _, err, _ = run("treat", season, "--efficacy", "1", "--rows", "5-3,8", "--date", BEGINS)
     assert code == 0, err
     (treated,) = Season(season).treatments()
-    rows = Season(season).label.line[treated.place.plants]
+    rows = Season(season).plant_numbers.line[treated.place.plants]
     assert sorted(set(rows.tolist())) == [3, 4, 5, 8]
 
 

@@ -24,13 +24,13 @@ made = {name}
 """
 LOOPS = """
 import numpy as np
-from fieldmon.compute.jit import inlined, loop, part, routine
+from fieldmon.compute.jit import inlined, inner_loop, loop, routine
 
 @inlined
 def twice(x):
     return 2.0 * x
 
-@part
+@inner_loop
 def apart(pair):
     return twice(pair.high) - twice(pair.low)
 
@@ -188,9 +188,9 @@ def inner(x):
     return sign(x) * x
 """
 CALLEE = """
-from fieldmon.compute.jit import part
+from fieldmon.compute.jit import inner_loop
 
-@part
+@inner_loop
 def sign(x):
     return {sign}
 """

@@ -243,7 +243,7 @@ def test_a_day_that_did_not_begin_at_the_seasons_hour_goes_on_at_its_own(season)
 
 def test_beside_scouts_it_keeps_its_own_place_and_time_and_leaves_their_rows(season):
     scouts.let_in(season, "Ann", (1, 3))
-    line = season.label.line
+    line = season.plant_numbers.line
     season.record(noted(np.flatnonzero(line == 2)[:3], 40_000.0, "Ann"), "phone")
     first = CrashesAfter(4)
     with pytest.raises(KeyboardInterrupt):

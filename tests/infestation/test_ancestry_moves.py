@@ -17,7 +17,7 @@ def test_an_ancestry_holds_together(delay):
     plot = rectangle(12, 12)
     landing, mornings = landing_of(plot), 9
     kernel = np.einsum("k,kij->ij", np.full(8, 0.125), landing.kernels)
-    made = Infestations.room(120)
+    made = Infestations.empty(120)
     plants = rng.choice(144, 30, replace=False)
     last_find = np.full(144, -1)
     for place, plant in enumerate(plants):

@@ -40,7 +40,7 @@ def with_finds(finds, *, left=False):
 
     They end by that, or are `left` to go on.
     """
-    made = Infestations.room(PLACES)
+    made = Infestations.empty(PLACES)
     for place, (plant, morning) in enumerate(finds):
         made.plant[place], made.seen[place] = plant, morning
         made.ends[place] = MORNINGS - 1 if left else morning
@@ -151,7 +151,7 @@ def test_a_jump_from_before_the_wind_dropped_is_counted_in_no_other_cell():
     row = rectangle(1, 40)
     landing, mornings = landing_of(row), 16
     kernel = np.einsum("k,kij->ij", np.full(8, 0.125), landing.kernels)
-    made = Infestations.room(8)
+    made = Infestations.empty(8)
     for place, (plant, begins, ends) in enumerate([(0, 0, 3), (30, 2, 3)]):
         made.plant[place], made.begins[place], made.ends[place] = plant, begins, ends
         made.found[place] = made.there[place] = True

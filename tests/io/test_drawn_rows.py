@@ -14,11 +14,11 @@ from shapely import LineString, MultiLineString, MultiPolygon
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.io.drawn_rows import blocks_of_each, blocks_on, cut_each, guess_each, rows_of_each
 from fieldmon.io.options import PlotOptions
+from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources
 from fieldmon.io.prepare import prepare, prepare_estate
-from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import block_label
+from fieldmon.plot.grid import block_number
 from fieldmon.plot.projection import Frame
 
 FRAME = Frame(8.0, 47.0)
@@ -105,7 +105,7 @@ def test_areas_and_lines_of_a_file_are_blocks_and_cuts(tmp_path):
     assert made.plot.grid.n_blocks == 2
     assert made.assumed == ()
     assert "Rows run in 2 blocks as drawn: close, wide." in sentences(made)
-    block_of = block_label(made.plot.grid)
+    block_of = block_number(made.plot.grid)
     assert np.count_nonzero(block_of == 1) > 5 * np.count_nonzero(block_of == 2)
     cuts = write(tmp_path / "cut.geojson", [LineString([(40, -5), (45, 65)])])
     made = prepare(PlotRequest(PlotSources(home, blocks=cuts)))

@@ -8,8 +8,8 @@ from shapely import LineString, MultiLineString, MultiPolygon
 
 from fieldmon.io.guessed_bearing import doubts_of_bearing, guessed_bearing
 from fieldmon.io.import_report import gathered
+from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources
 from fieldmon.io.prepare import prepare, prepare_estate
-from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from tests.walked import FRAME, walked, write_corners

@@ -9,8 +9,8 @@ import pytest
 from fieldmon.errors import ChoiceNeeded, ImportDoubt, SettingError
 from fieldmon.io import library, read
 from fieldmon.io.options import PlotOptions, ReadOptions, Upload
+from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources
 from fieldmon.io.prepare import prepare
-from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
 from tests.paths import SAMPLE_DATA
 
 ESTATE = SAMPLE_DATA / "paran_estate.zip"
@@ -53,7 +53,7 @@ def test_a_plot_is_read_from_its_plants_alone_or_its_rows_alone_as_commands_do()
     assert (plot.field.name, plot.n_plants) == ("vines", 24)
     options = ReadOptions().naming(**columns)
     by_command = prepare(PlotRequest(PlotSources(plants=file, plants_options=options))).plot
-    assert {*plot.grid.row_number.tolist()} == {7, 8, 9}
+    assert {*plot.grid.row_line_number.tolist()} == {7, 8, 9}
     assert plot.to_geopandas().equals(by_command.to_geopandas())
     line = json.dumps({"type": "MultiLineString", "coordinates": LINES})
     drawn, said = heard(library.read_plot, rows=Upload("rows.geojson", line.encode()))

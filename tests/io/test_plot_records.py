@@ -7,14 +7,14 @@ import shapely
 from fieldmon.errors import ChoiceNeeded, FileProblem, ObservationError, PlotError
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.plot_records import records_on
-from fieldmon.io.prepare import lay, prepare, prepare_estate
-from fieldmon.io.sources import (
+from fieldmon.io.plot_request import (
     PlotRequest,
     PlotSources,
     RecordSource,
 )
+from fieldmon.io.prepare import lay, prepare, prepare_estate
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import nearest_plants, row_label
+from fieldmon.plot.grid import nearest_plants, plant_numbers
 from fieldmon.plot.plot import Plot
 from tests.io.three_parcels import (
     DAY,
@@ -203,11 +203,11 @@ def test_corners_of_plots_among_the_records_of_an_estate_are_left_out(parcels):
 def placed_twice(plot, column="", cell=""):
     """Return records at plants of a plot that name them, but for the sixth: it names another."""
     some = np.arange(40)
-    label, lonlat = row_label(plot.grid, some), plot.grid.lonlat(some)
-    row = np.where(some == 5, plot.grid.line_number.max(), label.line)
+    numbered, lonlat = plant_numbers(plot.grid, some), plot.grid.lonlat(some)
+    row = np.where(some == 5, plot.grid.line_number.max(), numbered.line)
     lines = [
         f"{DAY},{lon:.8f},{lat:.8f},{line},{number},1{cell}"
-        for (lon, lat), line, number in zip(lonlat, row, label.number, strict=True)
+        for (lon, lat), line, number in zip(lonlat, row, numbered.number, strict=True)
     ]
     return csv(f"date,lon,lat,row,plant,count{column}\n" + "\n".join(lines))
 

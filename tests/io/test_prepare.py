@@ -13,10 +13,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
 from fieldmon.infestation.raster_risk import RiskSettings
 from fieldmon.io.options import PlotOptions, ReadOptions
 from fieldmon.io.plot_records import records_on
-from fieldmon.io.prepare import lay, one_of, prepare, prepare_estate
-from fieldmon.io.prepared import Laid
-from fieldmon.io.read import read_plots
-from fieldmon.io.sources import (
+from fieldmon.io.plot_request import (
     CanopySource,
     PlantingChoices,
     PlotRequest,
@@ -24,6 +21,9 @@ from fieldmon.io.sources import (
     RecordSource,
     RiskSource,
 )
+from fieldmon.io.prepare import lay, one_of, prepare, prepare_estate
+from fieldmon.io.prepared_plots import Laid
+from fieldmon.io.read import read_plots
 from tests.io.three_parcels import (
     DAY,
     FRAME,

@@ -10,8 +10,8 @@ from shapely import LineString, MultiLineString, MultiPolygon
 
 from fieldmon.errors import ImportDoubt
 from fieldmon.io.library import read_plot
+from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources
 from fieldmon.io.prepare import lay, prepare, prepare_estate
-from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources
 from fieldmon.io.unused_row_settings import unused_of
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field

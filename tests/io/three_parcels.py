@@ -7,12 +7,12 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.io.options import PlotOptions, RecordOptions, Upload
-from fieldmon.io.read import read_plots
-from fieldmon.io.sources import (
+from fieldmon.io.plot_request import (
     PlotRequest,
     PlotSources,
     RecordSource,
 )
+from fieldmon.io.read import read_plots
 from fieldmon.plot.grid import plant_at
 from fieldmon.plot.projection import Frame
 from tests.paths import SAMPLE_DATA

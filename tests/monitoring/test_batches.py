@@ -11,7 +11,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season, batches
 from fieldmon.monitoring.batches import Batch
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from tests.monitoring.seasons import BEGINS, a_plot_with_named_rows, a_season
 
 
@@ -60,8 +60,8 @@ def test_a_batch_says_how_many_of_its_plants_were_found_and_of_which_days(season
     one = season.record(
         Inspections.of(np.array([4]), np.array([2]), np.datetime64("2026-11-17")), "typed in"
     ).batch
-    label = row_label(season.plot.grid, np.array([4]))
-    row, plant = int(label.line[0]), int(label.number[0])
+    numbered = plant_numbers(season.plot.grid, np.array([4]))
+    row, plant = int(numbered.line[0]), int(numbered.number[0])
     said = season.contents([several, one, 99])
     assert set(said) == {several, one}
     assert (said[several].n, said[several].found) == (3, 2)
@@ -74,9 +74,9 @@ def test_a_batch_says_how_many_of_its_plants_were_found_and_of_which_days(season
 
 def test_what_was_undone_calls_a_row_by_the_name_that_says_more_than_its_number(tmp_path):
     season = a_season(tmp_path / "s.gpkg", a_plot_with_named_rows())
-    label = row_label(season.plot.grid, np.arange(80))
+    numbered = plant_numbers(season.plot.grid, np.arange(80))
     for line in (101, 102):
-        here = np.flatnonzero((label.line == line) & (label.number == 2))
+        here = np.flatnonzero((numbered.line == line) & (numbered.number == 2))
         one = here, np.array([FOUND]), np.datetime64("2026-11-17")
         season.record(Inspections.of(*one), "typed in")
     assert season.undo() == "Undone: row 102 · Top, plant 2 on 2026-11-17 (found)."

@@ -12,7 +12,7 @@ from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.closures import closed_in_words, closed_on, closed_plants, entry_waits
-from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, planned_again, route_ahead
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.planning.members import team_of
 from fieldmon.planning.wishes import Wishes
@@ -27,7 +27,7 @@ TREES = SimpleNamespace(in_rows=False)
 
 def sprayed(season, rows, hours, at=time(9), on=BEGINS, product="Acarol"):
     """Treat rows, which then are closed for so many hours from `at` on; return their plants."""
-    plants = np.isin(season.label.line, rows)
+    plants = np.isin(season.plant_numbers.line, rows)
     season.treat(on, 0.5, plants=plants, application=Application(
         product, reentry_hours=float(hours), ended=at))  # fmt: skip
     return plants
@@ -60,7 +60,9 @@ def test_what_is_left_off_is_said_once_with_its_last_time(season):
     for wait, lines in ((24, [1, 2, 3, 7]), (72, [3, 4])):
         sprayed(season, lines, wait, product="Acarol" if wait == 24 else "")
     first, second = closed_in_words(season.closed(ON), grid, Units())
-    low, high = (np.count_nonzero(np.isin(season.label.line, some)) for some in ([1, 2, 7], [3, 4]))
+    low, high = (
+        np.count_nonzero(np.isin(season.plant_numbers.line, some)) for some in ([1, 2, 7], [3, 4])
+    )
     assert first == (
         "Closed until 09:00 on 2026-04-09 after a product that nobody named, so not on the route: "
         f"{high} plants in rows 3–4."
@@ -75,7 +77,7 @@ def test_what_is_left_off_is_said_once_with_its_last_time(season):
 
 def test_a_plan_leaves_closed_plants_out_until_their_time(season):
     given = season.plan(ON, keep=False).route.plant
-    rows = np.unique(season.label.line[given[:40]])[:2]
+    rows = np.unique(season.plant_numbers.line[given[:40]])[:2]
     plants = sprayed(season, rows, 24, at=time(6, 30))
     left = season.plan(ON, keep=False)
     assert plants[given].any()
@@ -100,15 +102,17 @@ def test_one_plant_closes_its_row_for_the_way_to_the_others_passes_it(season):
 
 
 def test_a_plot_that_is_wholly_closed_has_an_empty_route(season):
-    sprayed(season, np.unique(season.label.line), 48)
+    sprayed(season, np.unique(season.plant_numbers.line), 48)
     assert len(season.plan(ON).route) == 0
-    assert len(route_ahead(season, ON, Part(name="Ann"))) == 0
+    assert len(route_ahead(season, ON, WorkPart(name="Ann"))) == 0
 
 
-@pytest.mark.parametrize("part", [Part(), Part(name="Ann"), Part((1, 6), "Ann"), Part((1, 6))])
+@pytest.mark.parametrize(
+    "part", [WorkPart(), WorkPart(name="Ann"), WorkPart((1, 6), "Ann"), WorkPart((1, 6))]
+)
 def test_a_route_kept_of_before_is_planned_anew_and_the_rest_goes_elsewhere(season, part):
     given = route_ahead(season, ON, part).plant
-    plants = sprayed(season, [int(season.label.line[given[0]])], 48)
+    plants = sprayed(season, [int(season.plant_numbers.line[given[0]])], 48)
     ahead = route_ahead(season, ON, part).plant
     assert len(ahead)
     assert not plants[ahead].any()
@@ -140,7 +144,7 @@ def test_rows_that_opened_since_are_closed_to_a_plan_whose_times_begin_before(se
 
 
 def test_what_is_closed_now_is_closed_to_a_plan_whose_times_are_over(season, monkeypatch):
-    plants = np.isin(season.label.line, [1, 2])
+    plants = np.isin(season.plant_numbers.line, [1, 2])
     late = Application("Soap", reentry_hours=5.0, began=time(20), ended=time(20, 30))
     season.treat(ON, 0.1, plants=plants, application=late)
     assert season.closed(ON) == ()
@@ -148,7 +152,7 @@ def test_what_is_closed_now_is_closed_to_a_plan_whose_times_are_over(season, mon
     assert len(season.closed(ON)) == 1
 
 
-@pytest.mark.parametrize("part", [Part(), Part(name="Ann")])
+@pytest.mark.parametrize("part", [WorkPart(), WorkPart(name="Ann")])
 def test_a_plan_kept_from_a_later_time_on_is_held_to_its_own_begin(season, part, monkeypatch):
     plants = sprayed(season, [1, 2], 22)  # until 07:00, and work begins at 06:00
     kept = season.plan(ON, time(7)).route.plant
@@ -176,7 +180,7 @@ def test_one_row_is_a_row(season):
 
 def test_a_wish_opens_no_closed_plant_that_was_found_and_only_flagged(tmp_path):
     season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
-    row = season.label.line == 2
+    row = season.plant_numbers.line == 2
     found, sprayed_plant = np.flatnonzero(row)[[3, 10]]
     season.record(Inspections.of([found], [1], np.datetime64(BEGINS)), "a.csv", "Ann")
     only = np.arange(len(row)) == sprayed_plant

@@ -10,7 +10,7 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.day_ahead import (
     DayAhead,
-    Part,
+    WorkPart,
     inside,
     plan_ahead,
     planned_again,
@@ -48,7 +48,7 @@ def test_it_is_the_route_given_out_without_what_was_clean_until_something_is_fou
 
 def test_who_is_alone_on_the_plot_has_the_route_and_hours_of_the_season_whoever_worked(tmp_path):
     fresh = a_season(tmp_path / "fresh.gpkg")
-    dana = Part(name="Dana")
+    dana = WorkPart(name="Dana")
     scouts.let_in(fresh, "Dana")
     given = route_ahead(fresh, BEGINS, dana).plant
     for plants, who in ((given[:4], "Dana"), (given[4:9], "")):
@@ -63,7 +63,7 @@ def test_who_is_alone_on_the_plot_has_the_route_and_hours_of_the_season_whoever_
 
 def test_a_day_that_was_worked_to_its_end_by_one_gives_another_nothing_more(tmp_path):
     fresh = a_season(tmp_path / "fresh.gpkg")
-    dana, day_s = Part(name="Dana"), fresh.settings.robot.day_s
+    dana, day_s = WorkPart(name="Dana"), fresh.settings.robot.day_s
     scouts.let_in(fresh, "Dana")
     given = route_ahead(fresh, BEGINS, dana).plant
     fresh.record(Inspections.of(given[:2], np.zeros(2, np.int8), BEGINS), "f", "Dana")
@@ -78,7 +78,7 @@ def test_a_day_that_was_worked_to_its_end_by_one_gives_another_nothing_more(tmp_
 
 def test_a_day_that_runs_is_cut_at_its_end_by_the_clock_for_all_alike(tmp_path, monkeypatch):
     fresh = a_season(tmp_path / "fresh.gpkg")
-    dana, day_s = Part(name="Dana"), fresh.settings.robot.day_s
+    dana, day_s = WorkPart(name="Dana"), fresh.settings.robot.day_s
     scouts.let_in(fresh, "Dana")
     given = route_ahead(fresh, BEGINS, dana)
     told(fresh, "Dana", given.plant[:1], 6 * 3600.0 + 120.0)
@@ -107,20 +107,20 @@ def test_where_none_was_given_out_one_is(tmp_path):
 
 def test_a_part_has_stops_in_its_rows_only_and_is_given_out_to_nobody_else(season):
     given = season.kept_route(BEGINS)
-    route = planned_again(season, BEGINS, Part((1, 3)))
-    assert inside(season.label, (1, 3))[route.plant].all()
+    route = planned_again(season, BEGINS, WorkPart((1, 3)))
+    assert inside(season.plant_numbers, (1, 3))[route.plant].all()
     assert len(route)
     assert season.kept_route(BEGINS).tolist() == given.tolist()
-    ahead = route_ahead(season, BEGINS, Part((1, 3)))
-    assert inside(season.label, (1, 3))[ahead.plant].all()
+    ahead = route_ahead(season, BEGINS, WorkPart((1, 3)))
+    assert inside(season.plant_numbers, (1, 3))[ahead.plant].all()
 
 
 def test_a_part_is_all_plants_of_its_rows_and_no_others(season):
-    line = season.label.line.tolist()
+    line = season.plant_numbers.line.tolist()
     for rows in ((1, 3), (2, 2), (4, 400), (3, 2)):
         wanted = [rows[0] <= one <= rows[1] for one in line]
-        assert inside(season.label, rows).tolist() == wanted
-    assert inside(season.label, None).all()
+        assert inside(season.plant_numbers, rows).tolist() == wanted
+    assert inside(season.plant_numbers, None).all()
 
 
 def test_the_rest_planned_again_fits_what_is_left_of_the_hours(season):
@@ -137,14 +137,14 @@ def test_the_hours_of_each_run_from_the_first_inspection_of_that_person(tmp_path
     late = np.array([15.5, 16.5]) * 3600.0
     first_s = fresh.plan(BEGINS).route.leave_s[0]
     fresh.record(Inspections.of(plants[:2], np.zeros(2, np.int8), BEGINS, second=late), "f", "Ann")
-    rows = (1, int(fresh.label.line.max()))
-    ann, ben = (work_hours(fresh, BEGINS, Part(rows, who)) for who in ("Ann", "Ben"))
+    rows = (1, int(fresh.plant_numbers.line.max()))
+    ann, ben = (work_hours(fresh, BEGINS, WorkPart(rows, who)) for who in ("Ann", "Ben"))
     assert ann.left_s == pytest.approx(day_s - 3600 - first_s)
     assert ben.left_s == day_s
-    assert work_hours(fresh, BEGINS) == work_hours(fresh, BEGINS, Part(name="Ben")) == ann
+    assert work_hours(fresh, BEGINS) == work_hours(fresh, BEGINS, WorkPart(name="Ben")) == ann
     fresh.record(Inspections.of(plants[2:3], np.zeros(1, np.int8), BEGINS), "f", "Cem")
-    assert 0 < work_hours(fresh, BEGINS, Part(rows, "Cem")).left_s < day_s
-    assert len(planned_again(fresh, BEGINS, Part((1, 3), "Ben"), day_s)), "though it is evening"
+    assert 0 < work_hours(fresh, BEGINS, WorkPart(rows, "Cem")).left_s < day_s
+    assert len(planned_again(fresh, BEGINS, WorkPart((1, 3), "Ben"), day_s)), "though it is evening"
 
 
 def test_nothing_is_left_where_all_was_inspected(season):
@@ -163,11 +163,11 @@ def test_each_of_a_team_has_the_route_that_the_teams_plan_gives(tmp_path):
         for one, name in zip(team_of(2, alone.robot), ("Ann", "Ben"), strict=True)
     )
     fresh.change(replace(alone, team=team), alone)
-    ann, ben = (route_ahead(fresh, BEGINS, Part(name=name)) for name in ("ann", "Ben"))
+    ann, ben = (route_ahead(fresh, BEGINS, WorkPart(name=name)) for name in ("ann", "Ben"))
     assert len(ann)
     assert len(ben)
     assert not set(ann.plant) & set(ben.plant)
-    short = planned_again(fresh, BEGINS, Part(name="Ben"), seconds_left=1200)
+    short = planned_again(fresh, BEGINS, WorkPart(name="Ben"), seconds_left=1200)
     assert 0 < short.end_s <= 1200
 
 
@@ -185,17 +185,17 @@ def begins_at(season, route):
 
 def test_each_scout_has_a_whole_day_in_their_own_rows_and_goes_on_from_where_they_stand(tmp_path):
     fresh = a_season(tmp_path / "fresh.gpkg", robot=Robot(hours=0.7))
-    ann, dan = Part((1, 8), "Ann"), Part((11, 19), "Dan")
+    ann, dan = WorkPart((1, 8), "Ann"), WorkPart((11, 19), "Dan")
     for part in (ann, dan):
         scouts.let_in(fresh, part.name, part.rows)
     routes = {part: route_ahead(fresh, BEGINS, part) for part in (ann, dan)}
     for part, route in routes.items():
-        assert inside(fresh.label, part.rows)[route.plant].all()
+        assert inside(fresh.plant_numbers, part.rows)[route.plant].all()
         assert 0.9 * fresh.settings.robot.day_s < route.end_s <= fresh.settings.robot.day_s
         assert route_ahead(fresh, BEGINS, part).plant.tolist() == route.plant.tolist()
     told(fresh, "Ann", routes[ann].plant[:5], 21_700.0)
     told(fresh, "Dan", routes[dan].plant[:5], 22_000.0)
-    line = fresh.label.line
+    line = fresh.plant_numbers.line
     for again in (route_ahead, lambda *of: planned_again(*of, seconds_left=1200.0)):
         for part, route in routes.items():
             rest = again(fresh, BEGINS, part)
@@ -208,7 +208,7 @@ def test_each_scout_has_a_whole_day_in_their_own_rows_and_goes_on_from_where_the
 
 def test_scouts_with_codes_for_the_same_plants_share_them(tmp_path):
     fresh = a_season(tmp_path / "fresh.gpkg")
-    ann, ben = Part(name="Ann"), Part(name="Ben")
+    ann, ben = WorkPart(name="Ann"), WorkPart(name="Ben")
     scouts.let_in(fresh, "Ann")
     alone = route_ahead(fresh, BEGINS, ann)
     assert fresh.kept_route(BEGINS).tolist() == alone.plant.tolist(), "the season's own"
@@ -229,16 +229,16 @@ def test_a_code_with_other_rows_is_a_full_day_in_these(tmp_path):
     fresh = a_season(tmp_path / "fresh.gpkg", robot=Robot(hours=0.7))
     for rows in (None, (1, 8), (11, 19)):
         scouts.let_in(fresh, "Dan", rows)
-        route = route_ahead(fresh, BEGINS, Part(rows, "Dan"))
-        assert inside(fresh.label, rows)[route.plant].all()
+        route = route_ahead(fresh, BEGINS, WorkPart(rows, "Dan"))
+        assert inside(fresh.plant_numbers, rows)[route.plant].all()
         assert 0.9 * fresh.settings.robot.day_s < route.end_s <= fresh.settings.robot.day_s
-        again = route_ahead(fresh, BEGINS, Part(rows, "Dan"))
+        again = route_ahead(fresh, BEGINS, WorkPart(rows, "Dan"))
         assert again.plant.tolist() == route.plant.tolist()
 
 
 def test_who_is_left_alone_has_the_seasons_own_and_who_comes_back_takes_nothing_of_it(tmp_path):
     fresh = a_season(tmp_path / "fresh.gpkg")
-    ann, dan = Part(name="Ann"), Part(name="Dan")
+    ann, dan = WorkPart(name="Ann"), WorkPart(name="Dan")
     scouts.let_in(fresh, "Ann")
     alone = route_ahead(fresh, BEGINS, ann).plant.tolist()
     scouts.let_in(fresh, "Dan")
@@ -258,15 +258,15 @@ def test_who_is_left_alone_has_the_seasons_own_and_who_comes_back_takes_nothing_
 def test_a_name_beside_the_team_has_its_own_rows_or_nothing(tmp_path):
     fresh = a_season(tmp_path / "fresh.gpkg", team=team_of(2, Robot(hours=0.5)))
     team = {plant for one in (1, 2) for plant in route_ahead(fresh, BEGINS, robot(one)).plant}
-    assert len(route_ahead(fresh, BEGINS, Part(name="Anna"))) == 0
-    own = route_ahead(fresh, BEGINS, Part((1, 12), "Anna"))
+    assert len(route_ahead(fresh, BEGINS, WorkPart(name="Anna"))) == 0
+    own = route_ahead(fresh, BEGINS, WorkPart((1, 12), "Anna"))
     assert len(own)
-    assert inside(fresh.label, (1, 12))[own.plant].all()
+    assert inside(fresh.plant_numbers, (1, 12))[own.plant].all()
     assert not {*own.plant} & team
 
 
 def robot(k):
-    return Part(name=f"robot-{k}")
+    return WorkPart(name=f"robot-{k}")
 
 
 def test_who_begins_in_the_evening_has_the_whole_day_for_the_phone_and_for_the_season(tmp_path):
@@ -274,7 +274,7 @@ def test_who_begins_in_the_evening_has_the_whole_day_for_the_phone_and_for_the_s
     day_s, plants = fresh.settings.robot.day_s, fresh.plan(BEGINS).route.plant
     assert fresh.begun_s(BEGINS) == 6 * 3600.0
     told(fresh, "Ann", plants[:3], 20.5 * 3600.0)
-    left_s = work_hours(fresh, BEGINS, Part(name="Ann")).left_s
+    left_s = work_hours(fresh, BEGINS, WorkPart(name="Ann")).left_s
     assert day_s - 300.0 < left_s < day_s
     today = fresh.plan(BEGINS)
     assert today.scene.seconds_left == left_s

@@ -76,11 +76,11 @@ def test_a_label_counts_and_without_a_wait_nothing_is_said():
 
 @pytest.mark.parametrize("first", ["inspected", "treated"])
 def test_a_season_says_so_whichever_was_recorded_first(season, first):
-    plants = np.flatnonzero(season.label.line == 1)
+    plants = np.flatnonzero(season.plant_numbers.line == 1)
     said = Application("Acarol", began=time(18), ended=time(19, 30), reentry_hours=24.0)
     steps = [
         lambda: season.record(inspected(1, plants[:3], 6 * H), "day.csv", "Ana"),
-        lambda: season.treat(on(0), 0.5, application=said, plants=season.label.line <= 2),
+        lambda: season.treat(on(0), 0.5, application=said, plants=season.plant_numbers.line <= 2),
     ]
     for step in steps if first == "inspected" else steps[::-1]:
         step()

@@ -12,8 +12,8 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, Inspect
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Season, outside_changes, season_log
+from fieldmon.monitoring.certifier_tables import csv_bytes, inspections_table
 from fieldmon.monitoring.inspection_table import time_text
-from fieldmon.monitoring.record_tables import csv_bytes, inspections_table
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 DAY = np.datetime64(BEGINS)

@@ -10,11 +10,11 @@ from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import Season, inspection_lots, inspection_table
 from fieldmon.monitoring.settings import MonitoringSettings
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from tests.monitoring.seasons import BEGINS, a_plot
 
 GRID = a_plot().grid
-LABEL = row_label(GRID)
+LABEL = plant_numbers(GRID)
 SETTINGS = MonitoringSettings(BEGINS)
 MONDAY = np.datetime64(BEGINS)
 

@@ -42,7 +42,7 @@ from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json
 from fieldmon.monitoring.treatments import TreatedPlace
 from fieldmon.plot import local_clock
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from tests.monitoring.phone import JPEG
 from tests.monitoring.seasons import BEGINS, a_plot, a_season, state
 from tests.monitoring.test_outside_changes import outside
@@ -50,7 +50,7 @@ from tests.monitoring.test_outside_changes import outside
 PAIRS = int(os.environ.get("FIELDMON_MERGES", "40"))
 PLOT = a_plot()
 GRID = PLOT.grid
-LABEL = row_label(GRID)
+LABEL = plant_numbers(GRID)
 SETTINGS = MonitoringSettings(BEGINS)
 SEASON = SimpleNamespace(plot=PLOT, label=LABEL)
 WHO = "Ann", "Ben"

@@ -94,7 +94,10 @@ def test_a_correction_counts_in_every_column_and_is_taken_back_as_a_whole(path, 
             "SELECT i.line, i.number, i.batch, i.geom = p.geom, i.undone FROM inspections i "
             "JOIN plants p ON p.plant = i.plant WHERE i.fid = 1"
         ).fetchone()
-    assert (line, number) == (int(season.label.line[301]), int(season.label.number[301]))
+    assert (line, number) == (
+        int(season.plant_numbers.line[301]),
+        int(season.plant_numbers.number[301]),
+    )
     assert (batch, x, y) == (season.batches()[0].number, 1, 0)
     season.undo()
     assert season.history.states(0)[301] == -1
@@ -118,7 +121,9 @@ def test_a_finding_that_was_moved_is_of_the_plant_at_its_new_place(path):
     assert season.correct("Ann") == 1
     states = season.history.states(0)
     assert (states[301], states[stood]) == (CLEAN, -1)
-    place = f"is now at row {season.label.line[301]}, plant {season.label.number[301]}"
+    place = (
+        f"is now at row {season.plant_numbers.line[301]}, plant {season.plant_numbers.number[301]}"
+    )
     assert place in season.log()[-1].sentence()
     season.undo()
     assert season.history.states(0)[stood] == CLEAN

@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.errors import LimitError, ObservationError, SettingError
 from fieldmon.monitoring import Season, photos_asked, scouts
-from fieldmon.monitoring.day_ahead import DayAhead, Part, planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import DayAhead, WorkPart, planned_again, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.photos import Photo, keep
 from fieldmon.monitoring.photos_asked import ask_no_more, ask_photo
@@ -69,8 +69,8 @@ def test_the_route_given_out_leads_by_what_is_asked_for(tmp_path):
     missed = next(k for k in range(len(season.plot.grid)) if k not in plain)
     ask_photo(season, missed)
     assert missed in route_ahead(season, BEGINS).plant
-    low = int(season.label.line[missed])
-    far = Part(rows=(low + 2, low + 3))
+    low = int(season.plant_numbers.line[missed])
+    far = WorkPart(rows=(low + 2, low + 3))
     assert missed not in planned_again(season, BEGINS, far).plant, "a part is a part"
 
 
@@ -87,12 +87,12 @@ def test_of_a_team_or_of_parts_one_person_is_to_take_each(tmp_path):
     nobodys = min({*range(n)} - {*ann.tolist()} - {*ben.tolist()})
     for plant in (ann[0], ben[0], nobodys):
         ask_photo(season, int(plant))
-    to_take = {name: [one.plant for one in DayAhead.of(season, BEGINS).asked_of(Part(name=name))]
-               for name in ("Ann", "Ben")}  # fmt: skip
+    asked = DayAhead.of(season, BEGINS).asked_of
+    to_take = {name: [one.plant for one in asked(WorkPart(name=name))] for name in ("Ann", "Ben")}
     assert to_take == {"Ann": [ann[0], nobodys], "Ben": [ben[0]]}
-    low = int(season.label.line[ann[0]])
-    rows = DayAhead.of(season, BEGINS).asked_of(Part(rows=(low, low), name="Cem"))
-    assert {int(season.label.line[one.plant]) for one in rows} == {low}
+    low = int(season.plant_numbers.line[ann[0]])
+    rows = DayAhead.of(season, BEGINS).asked_of(WorkPart(rows=(low, low), name="Cem"))
+    assert {int(season.plant_numbers.line[one.plant]) for one in rows} == {low}
 
 
 def test_copies_that_are_merged_ask_for_all_that_neither_took_back(path, tmp_path):

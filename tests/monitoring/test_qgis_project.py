@@ -242,7 +242,7 @@ def test_qgis_opens_the_project_edits_and_saves_and_the_season_records_it(season
     assert Season(copy).store.doubt is None  # and closed the season where it lies
     plant = int(done.stdout.split()[-1])
     from fieldmon.io.readers.inspections import read_inspections
-    from fieldmon.monitoring.brought_findings import counting_copy
+    from fieldmon.monitoring.inspection_import import counting_copy
 
     (tmp_path / "counting").mkdir()
     counted = counting_copy(copy, tmp_path / "counting")

@@ -8,7 +8,7 @@ import pytest
 
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season, scouts, transactions
-from fieldmon.monitoring.day_ahead import Part, planned_again, route_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, planned_again, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.scouts_out import scouts_out
 from fieldmon.planning.members import team_of
@@ -33,9 +33,9 @@ def test_it_says_who_has_which_rows_and_how_far_they_are(fresh):
     ann = of(fresh, "Ann")
     assert (ann.rows, ann.heard, ann.done, ann.ahead) == ((1, 8), None, 0, 0)
     assert abs(ann.made - utc_now()) < timedelta(minutes=1)
-    route = route_ahead(fresh, BEGINS, Part((1, 8), "Ann")).plant
+    route = route_ahead(fresh, BEGINS, WorkPart((1, 8), "Ann")).plant
     take(fresh, key, [a_finding(int(route[0]), on=BEGINS)], utc_now())
-    route_ahead(fresh, BEGINS, Part((11, 19), "Ben"))
+    route_ahead(fresh, BEGINS, WorkPart((11, 19), "Ben"))
     ann = of(fresh, "Ann")
     assert (ann.done, ann.ahead) == (1, len(route) - 1)
     assert abs(ann.heard - utc_now()) < timedelta(minutes=1)
@@ -46,10 +46,10 @@ def test_it_says_who_has_which_rows_and_how_far_they_are(fresh):
 
 def test_what_is_ahead_of_who_has_other_rows_now_lies_in_these(fresh):
     scouts.let_in(fresh, "Dan", (1, 8))
-    line = fresh.label.line[route_ahead(fresh, BEGINS, Part((1, 8), "Dan")).plant]
+    line = fresh.plant_numbers.line[route_ahead(fresh, BEGINS, WorkPart((1, 8), "Dan")).plant]
     scouts.let_in(fresh, "Dan", (7, 12))
     assert of(fresh, "Dan").ahead == int((line >= 7).sum())
-    route = route_ahead(fresh, BEGINS, Part((7, 12), "Dan"))
+    route = route_ahead(fresh, BEGINS, WorkPart((7, 12), "Dan"))
     assert of(fresh, "Dan").ahead == len(route)
 
 
@@ -57,7 +57,7 @@ def test_a_wrong_clock_and_shared_plants_are_said(fresh):
     key = scouts.let_in(fresh, "Ann")
     scouts.let_in(fresh, "Ben")
     assert (of(fresh, "Ann").shares, of(fresh, "Ben").shares) == (("Ben",), ("Ann",))
-    route_ahead(fresh, BEGINS, Part(None, "Ann"))
+    route_ahead(fresh, BEGINS, WorkPart(None, "Ann"))
     take(fresh, key, [a_finding(5, on=BEGINS)], utc_now() + timedelta(minutes=30))
     ann = of(fresh, "Ann")
     assert ann.clock_is_wrong
@@ -67,25 +67,25 @@ def test_a_wrong_clock_and_shared_plants_are_said(fresh):
 def test_which_plan_was_given_last_is_known_before_anything_is_recorded_by_it(fresh):
     scouts.let_in(fresh, "Ann")
     assert of(fresh, "Ann").plan is None
-    route_ahead(fresh, BEGINS, Part(None, "Ann"))
+    route_ahead(fresh, BEGINS, WorkPart(None, "Ann"))
     alone = of(fresh, "Ann").plan
     scouts.let_in(fresh, "Ben")
-    route_ahead(fresh, BEGINS, Part(None, "Ben"))
+    route_ahead(fresh, BEGINS, WorkPart(None, "Ben"))
     shared = of(fresh, "Ann").plan
     assert len({alone, shared, of(fresh, "Ben").plan}) == 3
-    planned_again(fresh, BEGINS, Part(None, "Ann"), seconds_left=3000.0)
+    planned_again(fresh, BEGINS, WorkPart(None, "Ann"), seconds_left=3000.0)
     assert of(fresh, "Ann").plan not in {alone, shared}
 
 
 def test_a_person_is_one_though_an_older_file_writes_the_name_in_two_ways(fresh):
     scouts.let_in(fresh, "Ann")
-    part = Part((1, 8), "Ann")
+    part = WorkPart((1, 8), "Ann")
     given = route_ahead(fresh, BEGINS, part).plant.tolist()
     scouts.let_in(fresh, "Ann", (1, 8))
     with fresh.store.writing() as db:
         db.execute("UPDATE scouts SET name = 'ANN' WHERE ended IS NULL")
     assert of(fresh, "ANN").ahead == len(given)
-    part = Part((1, 8), "ANN")
+    part = WorkPart((1, 8), "ANN")
     assert route_ahead(fresh, BEGINS, part).plant.tolist() == given
     planned_again(fresh, BEGINS, part, seconds_left=3000.0)
     assert fresh.planned_and_done(BEGINS).people == 1
@@ -119,7 +119,7 @@ def test_the_team_is_there_without_codes_and_who_is_beside_it_has_no_route(fresh
 def test_a_code_made_after_a_day_changes_nothing_of_its_plan_or_of_who_was_out(fresh):
     for name, rows in (("Ann", (1, 8)), ("Dan", (11, 19))):
         key = scouts.let_in(fresh, name, rows)
-        first = route_ahead(fresh, BEGINS, Part(rows, name)).plant[0]
+        first = route_ahead(fresh, BEGINS, WorkPart(rows, name)).plant[0]
         take(fresh, key, [a_finding(int(first), on=BEGINS)], utc_now())
     with fresh.store.writing() as db:  # that evening
         db.execute(
@@ -157,7 +157,7 @@ def test_finds_that_came_in_after_a_route_was_given_out_are_counted_but_ones_own
 ):
     keys = {name: scouts.let_in(fresh, name) for name in ("Ann", "Ben")}
     take(fresh, keys["Ann"], [a_finding(2, FOUND, on=BEGINS)], utc_now())
-    route_ahead(fresh, on(1), Part(None, "Ann"))
+    route_ahead(fresh, on(1), WorkPart(None, "Ann"))
     monkeypatch.setattr(fresh, "is_earlier", lambda _day: False)
 
     def newer():
@@ -168,8 +168,8 @@ def test_finds_that_came_in_after_a_route_was_given_out_are_counted_but_ones_own
         take(fresh, keys[name], [a_finding(plant, FOUND, on=on(day))], utc_now())
     take(fresh, keys["Ben"], [a_finding(7, on=BEGINS)], utc_now())
     assert newer() == [2, 2]
-    planned_again(fresh, on(1), Part(None, "Ann"), seconds_left=3000.0)
+    planned_again(fresh, on(1), WorkPart(None, "Ann"), seconds_left=3000.0)
     assert newer() == [0, 0]
-    route_ahead(fresh, on(2), Part(None, "Ann"))
+    route_ahead(fresh, on(2), WorkPart(None, "Ann"))
     take(fresh, keys["Ben"], [a_finding(8, FOUND, on=BEGINS)], utc_now())
     assert newer() == [1, 1]

@@ -12,7 +12,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Application
-from fieldmon.monitoring.record_tables import csv_bytes, inspections_table, treatments_table
+from fieldmon.monitoring.certifier_tables import csv_bytes, inspections_table, treatments_table
 from tests.monitoring.seasons import BEGINS, a_season, some_results
 
 

@@ -9,9 +9,9 @@ import pytest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, SKIPPED, Inspections
 from fieldmon.monitoring import Season, scouts
-from fieldmon.monitoring.day_ahead import Part, route_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, route_ahead
 from fieldmon.monitoring.history import Besides
-from fieldmon.monitoring.routes import kept_last
+from fieldmon.monitoring.kept_routes import kept_last
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import person_key, team_of
 from fieldmon.planning.wishes import Wishes
@@ -317,7 +317,7 @@ def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
     settings = MonitoringSettings(today, robot=ROBOT)
     season = Season.create(tmp_path / "out.gpkg", plot, some_records(plot), settings)
     own = season.plan(today).route
-    parts = [Part(name=name) for name in ("Ann", "Dan")]
+    parts = [WorkPart(name=name) for name in ("Ann", "Dan")]
     for part in parts:
         scouts.let_in(season, part.name)
     held = season.planned_and_done(today)
@@ -336,10 +336,10 @@ def test_the_plan_of_a_day_is_that_of_those_who_are_out(tmp_path):
 def test_a_code_for_some_rows_leaves_the_rest_of_the_days_plan_as_it_is(tmp_path):
     season = a_season(tmp_path / "rows.gpkg")
     own = season.plan(BEGINS).route.plant
-    line, day = season.label.line, np.datetime64(BEGINS)
+    line, day = season.plant_numbers.line, np.datetime64(BEGINS)
     rows, last = (int(line[own[0]]),) * 2, int(line.max())
     scouts.let_in(season, "Ann", rows)
-    ann = route_ahead(season, BEGINS, Part(rows, "Ann"))
+    ann = route_ahead(season, BEGINS, WorkPart(rows, "Ann"))
     others = own[line[own] != rows[0]]
     held = season.planned_and_done(BEGINS)
     assert (held.planned, held.people) == (len(ann) + len(others), 2)
@@ -351,7 +351,7 @@ def test_a_code_for_some_rows_leaves_the_rest_of_the_days_plan_as_it_is(tmp_path
     for name, (low, high) in {"Ben": (1, rows[0] - 1), "Cem": (rows[0] + 1, last)}.items():
         if low <= high:
             scouts.let_in(season, name, (low, high))
-            routes.append(route_ahead(season, BEGINS, Part((low, high), name)))
+            routes.append(route_ahead(season, BEGINS, WorkPart((low, high), name)))
     held = season.planned_and_done(BEGINS)
     assert held.people == len(routes)
     assert held.left == sum(map(len, routes))
@@ -359,7 +359,7 @@ def test_a_code_for_some_rows_leaves_the_rest_of_the_days_plan_as_it_is(tmp_path
 
 def test_a_code_taken_back_on_a_later_day_changes_no_day_before(tmp_path):
     season = a_season(tmp_path / "out.gpkg")
-    parts = [Part(name=name) for name in ("Ann", "Dan")]
+    parts = [WorkPart(name=name) for name in ("Ann", "Dan")]
     for part in parts:
         scouts.let_in(season, part.name)
     route_ahead(season, BEGINS, parts[0])
@@ -401,7 +401,7 @@ def test_plants_that_could_not_be_inspected_are_in_nobodys_plan_of_the_next_day(
         for day in (1, 2):
             days = season.plan_each(on(day))
             assert all(len(one.route) for one in days)
-            parts = [Part(name=one.name) for one in choices.get("team", ())] or [Part()]
+            parts = [WorkPart(name=one.name) for one in choices.get("team", ())] or [WorkPart()]
             routes = [one.route for one in days]
             routes += [route_ahead(season, on(day), part) for part in parts]
             asked = np.concatenate([route.plant for route in routes])

@@ -26,7 +26,7 @@ from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.block import Block
 from fieldmon.plot.clear_lanes import clear_lanes
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from tests.monitoring.seasons import a_plot
@@ -241,11 +241,11 @@ def test_a_gis_sees_boundary_places_rows_and_plants_where_and_as_many_as_they_ar
                         ("row line", field.row_lines)):  # fmt: skip
         assert (kind in places) == (not shape.is_empty)
         assert kind not in places or places[kind].equals(shape)
-    label = row_label(plot.grid)
+    numbered = plant_numbers(plot.grid)
     plants = read["plants"]
     assert plants["plant"].tolist() == list(range(len(plot.grid)))
-    assert plants["line"].tolist() == label.line.tolist()
-    assert plants["number"].tolist() == label.number.tolist()
+    assert plants["line"].tolist() == numbered.line.tolist()
+    assert plants["number"].tolist() == numbered.number.tolist()
     assert plants.get_coordinates().to_numpy() == pytest.approx(plot.grid.lonlat())
     rows = read["rows"]
     of_row = np.bincount(plot.grid.row)

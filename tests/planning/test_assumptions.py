@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.io.plot_request import PlantingChoices
 from fieldmon.io.prepare import lay
-from fieldmon.io.sources import PlantingChoices
 from fieldmon.planning.assumptions import assumed_by, assumed_by_team
 from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.plot.assumed import Assumed

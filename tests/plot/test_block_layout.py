@@ -13,7 +13,7 @@ from fieldmon.errors import PlotError
 from fieldmon.plot.block import Block
 from fieldmon.plot.block_cutting import blocks_from_outline, cut_blocks
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import block_label
+from fieldmon.plot.grid import block_number
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
@@ -50,7 +50,7 @@ def test_rows_of_each_block_run_along_it_and_are_longer_than_in_one(in_blocks):
     xy_m = FRAME.xy_m(grid.lonlat())
     ways = []
     for block in (1, 2):
-        step = np.diff(xy_m[block_label(grid) == block], axis=0)
+        step = np.diff(xy_m[block_number(grid) == block], axis=0)
         ways.append(np.median(np.abs(step), axis=0))
     assert sorted(way.round(2).tolist() for way in ways) == [[0.0, 1.2], [1.2, 0.0]]
 
@@ -60,7 +60,7 @@ def test_rows_stop_half_a_row_and_a_headland_before_the_edge_of_their_block(in_b
     xy_m = FRAME.xy_m(grid.lonlat())
     for k, block in enumerate(in_blocks.blocks):
         area = FRAME.geometry_m(block.area)
-        mine = shapely.points(xy_m[block_label(grid) == k + 1])
+        mine = shapely.points(xy_m[block_number(grid) == k + 1])
         assert shapely.contains(area, mine).all()
         assert shapely.distance(area.boundary, mine).min() == pytest.approx(1.25, abs=0.01)
     stops = shapely.points(FRAME.xy_m(grid.frame.lonlat(grid.stop_m)))
@@ -74,7 +74,7 @@ def test_each_block_keeps_its_own_spacings_neighbours_and_bearing():
         block_of(halves[1], "wide", row_bearing_deg=90.0, row_spacing_m=5.0, plant_spacing_m=4.0),
     )
     grid = lay(field_of(shapely.union(*halves), blocks=blocks), PLANTING)
-    block, n_along = block_label(grid), np.diff(grid.along_start)
+    block, n_along = block_number(grid), np.diff(grid.along_start)
     n_across = np.diff(grid.across_start)
     for number, (rows, plants) in enumerate([(30, 43), (10, 16)], 1):
         assert np.count_nonzero(block == number) == rows * plants
@@ -88,7 +88,7 @@ def test_a_drawn_row_bends_the_rows_of_its_own_block_only():
     rows = MultiLineString([FRAME.geometry_lonlat(bow)])
     blocks = (block_of(halves[0], "straight", row_bearing_deg=90.0), block_of(halves[1], "bent"))
     grid = lay(field_of(shapely.union(*halves), blocks=blocks, row_lines=rows), PLANTING)
-    xy_m, block = FRAME.xy_m(grid.lonlat()), block_label(grid)
+    xy_m, block = FRAME.xy_m(grid.lonlat()), block_number(grid)
     for number, bends in ((1, False), (2, True)):
         for row in np.unique(grid.row[block == number]):
             mine = xy_m[grid.row == row]

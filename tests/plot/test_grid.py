@@ -4,7 +4,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
-from fieldmon.plot.grid import nearest_plants, plant_at, row_label
+from fieldmon.plot.grid import nearest_plants, plant_at, plant_numbers
 from fieldmon.plot.layout import lay, rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
@@ -57,19 +57,19 @@ def test_the_snake_visits_every_plant_once_up_one_line_and_down_the_next(grid):
 
 @given(crooked_grids(50))
 def test_a_label_leads_back_to_its_plant(grid):
-    label = row_label(grid)
-    assert label.line.min() == label.number.min() == 1
+    numbered = plant_numbers(grid)
+    assert numbered.line.min() == numbered.number.min() == 1
     some = np.arange(0, len(grid), 1 + len(grid) // 20)
     for plant in some:
         first_face = grid.twin[plant] if 0 <= grid.twin[plant] < plant else plant
-        assert plant_at(grid, int(label.line[plant]), int(label.number[plant])) == first_face
-    assert row_label(grid, some).number.tolist() == label.number[some].tolist()
+        assert plant_at(grid, int(numbered.line[plant]), int(numbered.number[plant])) == first_face
+    assert plant_numbers(grid, some).number.tolist() == numbered.number[some].tolist()
 
 
 def test_numbers_count_on_behind_a_hole_and_faces_share_their_label():
     grid = rectangle(3, 5, Planting(faces=2))
-    assert row_label(grid).line.tolist() == np.repeat([1, 2, 3], 10).tolist()
-    assert row_label(grid).number.tolist() == list(range(1, 6)) * 6
+    assert plant_numbers(grid).line.tolist() == np.repeat([1, 2, 3], 10).tolist()
+    assert plant_numbers(grid).number.tolist() == list(range(1, 6)) * 6
     assert plant_at(grid, 2, 4) == 13
 
 

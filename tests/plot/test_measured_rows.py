@@ -11,7 +11,7 @@ from shapely import MultiPolygon
 
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import block_label
+from fieldmon.plot.grid import block_number
 from fieldmon.plot.layout import grid_from_plants
 from fieldmon.plot.measured_rows import SaidRows, name_numbers
 from fieldmon.plot.plant_names import PlantNames
@@ -174,7 +174,7 @@ def test_named_blocks_have_rows_and_spacings_of_their_own():
     grid = plot.grid
     assert grid.n_blocks == 2
     assert grid.n_rows == 16
-    block = block_label(grid)
+    block = block_number(grid)
     assert np.bincount(block)[1:].tolist() == [240, 240]
     n_across = np.diff(grid.across_start)
     for number in (1, 2):  # but for the outer rows each has a neighbour on both sides
@@ -210,7 +210,7 @@ def test_measured_plants_are_in_the_blocks_that_were_drawn():
     )
     plot = Plot.of(replace(field, blocks=blocks, plants=FRAME.lonlat(xy_m)))
     assert plot.grid.n_blocks == 2
-    assert np.bincount(block_label(plot.grid))[1:].tolist() == [320, 320]
+    assert np.bincount(block_number(plot.grid))[1:].tolist() == [320, 320]
 
 
 def test_a_block_of_a_plant_or_two_is_a_row():

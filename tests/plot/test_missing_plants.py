@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
 from fieldmon.plot import adjacency
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.missing_plants import without
 from fieldmon.plot.planting import Planting
@@ -98,7 +98,7 @@ def test_a_gap_at_a_row_end_shortens_no_lane_and_an_empty_line_is_counted_out():
     left = without(grid, missing)
     assert left.n_rows == 3
     np.testing.assert_array_equal(left.lane_x_m[0], grid.lane_x_m[0])
-    assert row_label(left).line.tolist() == [1] * 3 + [2] * 5 + [3] * 5
+    assert plant_numbers(left).line.tolist() == [1] * 3 + [2] * 5 + [3] * 5
 
 
 def test_both_faces_of_a_missing_vine_go():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.named_rows import place_in_words, plants_in_rows
 from tests.app.chosen import a_plot
@@ -22,7 +22,7 @@ def grid():
     ("said", "rows"), [("2", {2}), ("3-5,8", {3, 4, 5, 8}), (" 5 - 3 , 3", {3, 4, 5})]
 )
 def test_all_plants_of_the_rows_are_meant_and_no_others(grid, said, rows):
-    line = row_label(grid).line
+    line = plant_numbers(grid).line
     assert plants_in_rows(grid, said).tolist() == [one in rows for one in line.tolist()]
 
 
@@ -57,7 +57,7 @@ ROWS = np.array(["Pinot-1", "Pinot-2", "Merlot", "B", "ROW05"])
 )  # fmt: skip
 def test_rows_are_named_as_their_file_has_them(said, rows):
     grid = replace(rectangle(5, 4), line_named=ROWS)
-    assert set(row_label(grid).line[plants_in_rows(grid, said)].tolist()) == rows
+    assert set(plant_numbers(grid).line[plants_in_rows(grid, said)].tolist()) == rows
 
 
 def test_a_name_that_is_another_rows_number_is_refused():

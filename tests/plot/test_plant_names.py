@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.plot.grid import plant_at, row_in_block, row_label, rows_listed
+from fieldmon.plot.grid import plant_at, plant_numbers, row_in_block, rows_listed
 from fieldmon.plot.named_rows import plant_meant, plants_in_rows, rows_meant
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, said_of_numbers
 from fieldmon.plot.planting import Planting
@@ -25,14 +25,14 @@ def named(rows, plants=None, blocks=None, **planting):
 
 def labels(plot):
     """Return the row and the number of each plant, in the order in which they were measured."""
-    label = row_label(plot.grid)
+    numbered = plant_numbers(plot.grid)
     found = plot.grid.tree.query(plot.grid.frame.xy_m(FRAME.lonlat(XY_M)))[1]
-    return label.line[found].tolist(), label.number[found].tolist()
+    return numbered.line[found].tolist(), numbered.number[found].tolist()
 
 
 def signs(plot):
     """Return what stands at each row of a plot on maps."""
-    return list(plot.grid.row_signs.values())
+    return list(plot.grid.line_signs.values())
 
 
 def test_names_say_of_how_many_plants_they_are():
@@ -91,7 +91,7 @@ def test_a_row_without_a_number_of_its_own_leaves_the_others_theirs(names, numbe
     for name, number in zip(names, numbers, strict=True):
         if name:
             for said in (name, f"{number}"):
-                meant = row_label(plot.grid).line[plants_in_rows(plot.grid, said)]
+                meant = plant_numbers(plot.grid).line[plants_in_rows(plot.grid, said)]
                 assert set(meant.tolist()) == {number}
 
 
@@ -99,7 +99,7 @@ def test_a_row_without_a_number_of_its_own_is_beyond_those_of_all_blocks():
     block = np.where(ROW < 3, "east", "west")
     plot = named([["1", "2", "5A", "2", "1", "Top"][k] for k in ROW], None, block)
     assert labels(plot)[0] == [[1, 2, 101, 4, 3, 102][k] for k in ROW]
-    assert list(plot.grid.row_signs.values()) == ["1", "2", "101 · 5A", "4", "3", "102 · Top"]
+    assert list(plot.grid.line_signs.values()) == ["1", "2", "101 · 5A", "4", "3", "102 · Top"]
     assert "5A is row 101, Top is row 102" in said_of_numbers(plot.grid)[-1]
 
 
@@ -109,7 +109,7 @@ def test_rows_up_to_one_without_a_number_of_its_own_are_refused():
         plants_in_rows(grid, "5 - 5A")
     with pytest.raises(SettingError, match="but 101 has none"):
         plants_in_rows(grid, "5-101")
-    assert set(row_label(grid).line[plants_in_rows(grid, "4-5,5a")].tolist()) == {4, 5, 101}
+    assert set(plant_numbers(grid).line[plants_in_rows(grid, "4-5,5a")].tolist()) == {4, 5, 101}
 
 
 def test_rows_are_listed_with_those_without_a_number_of_their_own_by_name():
@@ -155,11 +155,11 @@ def test_rows_of_blocks_that_have_the_same_names_are_counted_on():
 
 def test_what_is_left_keeps_its_numbers():
     plot = named(6 - ROW, 10 - PLANT)
-    label = row_label(plot.grid)
-    missing = (label.line == 4) | (label.number == 2)
-    left = row_label(plot.without(missing).grid)
-    assert left.line.tolist() == label.line[~missing].tolist()
-    assert left.number.tolist() == label.number[~missing].tolist()
+    numbered = plant_numbers(plot.grid)
+    missing = (numbered.line == 4) | (numbered.number == 2)
+    left = plant_numbers(plot.without(missing).grid)
+    assert left.line.tolist() == numbered.line[~missing].tolist()
+    assert left.number.tolist() == numbered.number[~missing].tolist()
     with pytest.raises(PlotError, match="one of 1–3, 5–6 on this plot, but it is 4"):
         plant_at(plot.without(missing).grid, 4, 1)
 
@@ -238,4 +238,4 @@ def test_plants_whose_row_nobody_named_are_of_the_row_they_stand_in():
     plot = named(rows)
     assert signs(plot) == ["6", "5", "101", "3", "2", "1"]
     assert "a row without a name is row 101" in said_of_numbers(plot.grid)[-1]
-    assert set(row_label(plot.grid).line[plants_in_rows(plot.grid, "6")].tolist()) == {6}
+    assert set(plant_numbers(plot.grid).line[plants_in_rows(plot.grid, "6")].tolist()) == {6}

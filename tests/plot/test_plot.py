@@ -12,7 +12,7 @@ import fieldmon as fm
 from fieldmon.errors import ImportDoubt, PlotError, SettingError
 from fieldmon.io import prepare
 from fieldmon.io.guessed_bearing import doubts_of_bearing
-from fieldmon.io.sources import PlantingChoices
+from fieldmon.io.plot_request import PlantingChoices
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting

@@ -9,7 +9,7 @@ from shapely import MultiPolygon
 
 from fieldmon.errors import PlotError
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
@@ -38,8 +38,8 @@ def test_every_tree_is_there_once_and_counted_on(plot):
     grid = plot.grid
     assert not grid.in_rows
     assert grid.counts == "120 plants in no rows"
-    label = row_label(grid)
-    assert label.number.tolist() == list(range(1, 121))
+    numbered = plant_numbers(grid)
+    assert numbered.number.tolist() == list(range(1, 121))
     found = np.sort(FRAME.xy_m(grid.lonlat()), axis=0)
     assert found == pytest.approx(np.sort(anyhow(), axis=0), abs=1e-6)
 

@@ -93,7 +93,7 @@ def test_rows_shut_in_by_a_no_go_area_cannot_be_reached():
     grid = laid(ring, box(-25, -25, 25, 25))
     moat = in_grid(grid, MultiPolygon([box(-32, -32, 32, 32).difference(box(-28, -28, 28, 28))]))
     island = np.abs(grid.xy_m[grid.row_start[:-1]]).max(axis=1) < 27
-    shut = rows_listed(grid, grid.row_number[island])
+    shut = rows_listed(grid, grid.row_line_number[island])
     sentence = f"{np.count_nonzero(island)} of {grid.n_rows} rows are not: {shut}. Move"
     with pytest.raises(PlotError, match=sentence):
         find_roads(grid, no_go_m=moat)

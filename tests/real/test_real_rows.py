@@ -10,7 +10,7 @@ from shapely import MultiPolygon
 
 from fieldmon.errors import PlotError
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import nearest_plants, row_label
+from fieldmon.plot.grid import nearest_plants, plant_numbers
 from fieldmon.plot.layout import found_planting, grid_from_plants, lay
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
@@ -56,10 +56,10 @@ def test_every_riseholme_vine_is_in_its_own_row_and_place(vines, vine_lonlat):
     assert np.diff(grid.row_start).tolist() == [12] * 10
     plant, distance_m = nearest_plants(grid, vine_lonlat, 0.01)
     assert distance_m.max() < 0.001
-    label = row_label(grid, plant)
-    same_way = [label.line == vines["row"], label.line == 11 - vines["row"]]
+    numbered = plant_numbers(grid, plant)
+    same_way = [numbered.line == vines["row"], numbered.line == 11 - vines["row"]]
     assert any(way.all() for way in same_way)
-    same_way = [label.number == vines["number"], label.number == 13 - vines["number"]]
+    same_way = [numbered.number == vines["number"], numbered.number == 13 - vines["number"]]
     assert any(way.all() for way in same_way)
     assert (np.diff(grid.adjacent.start) <= 4).all()
     assert len(grid.along_plant) == 2 * 10 * 11
@@ -69,9 +69,9 @@ def test_every_riseholme_vine_is_in_its_own_row_and_place(vines, vine_lonlat):
 def test_every_riseholme_vine_has_the_row_and_the_number_that_it_is_called_by(vines, vine_lonlat):
     rows, plants = (vines[name].to_numpy(np.str_) for name in ("Vine Row", "Vine ID"))
     grid = plot_around("vines", vine_lonlat, names=PlantNames(rows, None, plants)).grid
-    label = row_label(grid, nearest_plants(grid, vine_lonlat, 0.01)[0])
-    assert label.line.tolist() == vines["row"].tolist()
-    assert label.number.tolist() == vines["number"].tolist()
+    numbered = plant_numbers(grid, nearest_plants(grid, vine_lonlat, 0.01)[0])
+    assert numbered.line.tolist() == vines["row"].tolist()
+    assert numbered.number.tolist() == vines["number"].tolist()
 
 
 def test_riseholme_rows_are_still_found_with_a_third_of_the_vines_missing(vine_lonlat):

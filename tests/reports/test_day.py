@@ -12,7 +12,7 @@ from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import PlannedAndDone
 from fieldmon.monitoring.applications import Application
 from fieldmon.planning.members import TeamMember
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.robot import Robot
 from fieldmon.reports import words
 from fieldmon.reports.content import (
@@ -76,9 +76,9 @@ def test_a_day_that_is_over_says_what_was_done(worked, last, done, of_worked_day
     assert lead == (f"Worked on {last}: {len(made)} plants inspected, {len(found)} found infested.")
     assert figures(of_worked_day)["Found that day"].value == f"{len(found)}"
     assert done.route.plant.tolist() == made.plant.tolist()
-    label = row_label(worked.plot.grid, found)
+    numbered = plant_numbers(worked.plot.grid, found)
     lines = [row[0] for row in table(of_worked_day, "Found that day, by row").rows]
-    assert lines == [f"{line}" for line in np.unique(label.line)]
+    assert lines == [f"{line}" for line in np.unique(numbered.line)]
 
 
 def test_the_map_of_a_day_draws_as_found_what_the_season_counts_as_found(worked):
@@ -158,11 +158,11 @@ def test_half_a_day_says_both_what_was_done_and_what_is_left(tmp_path):
 def test_a_day_ahead_tells_which_plants_are_left_off_as_nobody_may_enter(tmp_path):
     season = a_season(tmp_path / "closed.gpkg")
     waits = Application("Oil", reentry_hours=24.0, ended=time(5))
-    season.treat(BEGINS, 0.0, plants=season.label.line == 3, application=waits)
+    season.treat(BEGINS, 0.0, plants=season.plant_numbers.line == 3, application=waits)
     facts = DayFacts.of_season(season, BEGINS)
     said = paragraphs(day_report(facts, Units()))
     assert [one for one in said if one.startswith("Closed until 05:00 on 2026-04-07 after Oil")]
-    assert not (season.label.line[facts.route.plant] == 3).any()
+    assert not (season.plant_numbers.line[facts.route.plant] == 3).any()
 
 
 def test_a_day_ahead_tells_how_many_plants_are_left_out_as_nobody_could_inspect_them(tmp_path):
@@ -185,10 +185,10 @@ def test_making_a_report_keeps_nothing_in_the_season(tmp_path):
 
 
 def test_every_stop_stands_in_its_row_in_the_order_of_the_rows(ahead, of_day):
-    label = row_label(ahead.route.aisles.grid, ahead.route.plant)
+    numbered = plant_numbers(ahead.route.aisles.grid, ahead.route.plant)
     rows = table(of_day, "Stops by row, in order").rows
     assert sum(int(row[2]) for row in rows) == len(ahead.route)
-    assert [row[0] for row in rows] == [f"{line}" for line in dict.fromkeys(label.line.tolist())]
+    assert [row[0] for row in rows] == [f"{line}" for line in dict.fromkeys(numbered.line.tolist())]
     assert [row[1] for row in rows] == sorted(row[1] for row in rows)
 
 
@@ -208,10 +208,10 @@ def test_rows_without_a_number_of_their_own_are_shown_by_name(ahead):
 
 def test_every_stop_is_on_the_list_to_tick(ahead, of_day):
     ticks = one(of_day, TickList).rows
-    label = row_label(ahead.route.aisles.grid, ahead.route.plant)
+    numbered = plant_numbers(ahead.route.aisles.grid, ahead.route.plant)
     assert [int(row[0]) for row in ticks] == list(range(1, len(ahead.route) + 1))
-    assert [int(row[2]) for row in ticks] == label.line.tolist()
-    assert [int(row[3]) for row in ticks] == label.number.tolist()
+    assert [int(row[2]) for row in ticks] == numbered.line.tolist()
+    assert [int(row[3]) for row in ticks] == numbered.number.tolist()
     assert {row[5] for row in ticks} == {"☐"}
 
 

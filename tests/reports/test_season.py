@@ -17,7 +17,7 @@ from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import Application, Season
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.plant_states import finds_apart
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.reports import season as season_module
 from fieldmon.reports import sentences
 from fieldmon.reports.content import Illustration, KeyFigures, Listing, Paragraph
@@ -95,7 +95,7 @@ def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(worke
     rows = (by_row := table(of_season, "Plants found infested, by row")).rows
     assert by_row.columns == ("row", "plants", "which")  # plants are counted, not finds
     assert sum(int(row[1]) for row in rows) == len(found) == status.found
-    line = row_label(worked.plot.grid, found).line
+    line = plant_numbers(worked.plot.grid, found).line
     assert [int(row[0]) for row in rows] == np.unique(line).tolist()
 
 

@@ -10,7 +10,7 @@ import pytest
 from fieldmon.errors import SettingError
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.robot import Robot
-from fieldmon.samplers import COMPARED, SAMPLERS, USUAL, kind_of, of_equal_times, sampler
+from fieldmon.samplers import COMPARED, SAMPLERS, USUAL_SAMPLER, kind_of, of_equal_times, sampler
 from fieldmon.samplers.base import Sampler
 from fieldmon.samplers.registry import sampler_or_name
 from tests.scenes import GRIDS, scene_on
@@ -53,7 +53,7 @@ def test_titles_are_short_and_differ():
 
 def test_the_usual_one_is_offered_first_then_those_that_read_chances():
     offered = of_equal_times()
-    assert next(iter(offered)) == USUAL
+    assert next(iter(offered)) == USUAL_SAMPLER
     reads = [kind.reads_chance for kind in offered.values()]
     assert reads == sorted(reads, reverse=True)
     assert set(offered) == {name for name in NAMES if not SAMPLERS[name].chooses_time}

@@ -86,7 +86,7 @@ def rows(grid: PlantGrid) -> list[Label]:
     return [
         {"p": place, "away": away, "t": sign, "k": "row", "row": at + 1}
         for at, sign, place, away in zip(
-            line.tolist(), grid.row_signs.values(), *places, strict=True
+            line.tolist(), grid.line_signs.values(), *places, strict=True
         )
     ]
 

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from pydeck import Layer
 
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.projection import M_PER_DEGREE
 
 from ...words import texts
@@ -63,7 +63,7 @@ def plants(
     arrays = {"places": _places(grid), "ranks": shade.rank.tobytes()}
     tips: dict[str, object] = {"text": texts.TIP_PLANT if grid.in_rows else texts.TIP_ALONE}
     if grid.row_names:
-        tips["rows"] = grid.row_signs
+        tips["rows"] = grid.line_signs
     if notes.chance is not None:
         arrays["values"] = notes.chance.astype("<f4").tobytes()
         tips["values"] = texts.TIP_CHANCE
@@ -90,11 +90,11 @@ def _places(grid: PlantGrid) -> bytes:
     if grid not in _PLACES:
         lonlat = grid.lonlat()
         first = lonlat[0]
-        label = row_label(grid, np.arange(len(grid)))
+        numbered = plant_numbers(grid, np.arange(len(grid)))
         step = max(grid.plant_spacing_m, grid.row_spacing_m) / M_PER_DEGREE
         head = np.array([len(grid), *first, step, 0.0, 0.0], "<f8")
         offsets = (lonlat - first).T.astype("<f4")
-        names = np.stack([label.line, label.number]).astype("<i4")
+        names = np.stack([numbered.line, numbered.number]).astype("<i4")
         _PLACES[grid] = head.tobytes() + offsets.tobytes() + names.tobytes()
     return _PLACES[grid]
 

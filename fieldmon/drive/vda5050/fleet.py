@@ -28,7 +28,7 @@ from fieldmon.drive.vda5050.messages import (
 from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.errors import FieldmonError, ObservationError, SettingError
 from fieldmon.plot.clearance import STRAY_M
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -206,10 +206,10 @@ class Vda5050Robot:
             return "It does not say where it stands."
         lonlat = self._east_north.lonlat(np.array([[place["x"], place["y"]]]))
         near = self._grid.tree.query(self._grid.frame.xy_m(lonlat))[1]
-        label, (lon, lat) = row_label(self._grid, near), lonlat[0].tolist()
-        row = f"row {label.line[0]}, " if self._grid.in_rows else ""
+        numbered, (lon, lat) = plant_numbers(self._grid, near), lonlat[0].tolist()
+        row = f"row {numbered.line[0]}, " if self._grid.in_rows else ""
         return (
-            f"It stands near {row}plant {label.number[0]}, by its own word: latitude {lat:.6f}, "
+            f"It stands near {row}plant {numbered.number[0]}, by its own word: latitude {lat:.6f}, "
             f"longitude {lon:.6f}."
         )
 

@@ -9,7 +9,13 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.drive.vda5050.rules import problems
-from fieldmon.drive.vda5050.versions import USUAL, VERSIONS, as_heard, as_sent, known_version
+from fieldmon.drive.vda5050.versions import (
+    USUAL_VERSION,
+    VERSIONS,
+    as_heard,
+    as_sent,
+    known_version,
+)
 from fieldmon.errors import ObservationError, SettingError
 
 if TYPE_CHECKING:
@@ -46,7 +52,7 @@ def encoded(kind: str, header: dict[str, Any], body: dict[str, Any]) -> bytes:
 
 def _copy(body: dict[str, Any], version: str) -> dict[str, Any]:
     """Return a body that may be changed, where that is needed."""
-    return body if version == USUAL else copy.deepcopy(body)
+    return body if version == USUAL_VERSION else copy.deepcopy(body)
 
 
 def decoded(kind: str, data: bytes) -> dict[str, Any]:
@@ -61,7 +67,9 @@ def decoded(kind: str, data: bytes) -> dict[str, Any]:
         message = json.loads(data)
     except ValueError as error:
         raise ObservationError(f"A message {kind!r} must be JSON, but it is not.") from error
-    said = str(message.get("version", USUAL)) if isinstance(message, dict) else USUAL
+    said = (
+        str(message.get("version", USUAL_VERSION)) if isinstance(message, dict) else USUAL_VERSION
+    )
     try:
         version = known_version(said)
     except SettingError as error:
@@ -90,7 +98,7 @@ def _moment(text: str) -> datetime | None:
     return at.replace(tzinfo=UTC) if at.tzinfo is None else at
 
 
-def header_of(manufacturer: str, serial: str, version: str = USUAL) -> dict[str, Any]:
+def header_of(manufacturer: str, serial: str, version: str = USUAL_VERSION) -> dict[str, Any]:
     """Return the header of a robot's messages, before the first one."""
     return {
         "headerId": 0,

@@ -9,7 +9,7 @@ import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
-from fieldmon.drive.vda5050.versions import USUAL, VERSIONS
+from fieldmon.drive.vda5050.versions import USUAL_VERSION, VERSIONS
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ class RobotName(NamedTuple):
 
     manufacturer: str
     serial: str
-    version: str = USUAL
+    version: str = USUAL_VERSION
 
     def check(self) -> None:
         """Raise `SettingError` if a name holds what parts or stands for topics."""

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     Message = dict[str, Any]
 
-USUAL = "2.1"
+USUAL_VERSION = "2.1"
 #: by version: what stands in a header, and what topics begin with
 VERSIONS = {"2.1": ("2.1.0", "uagv/v2"), "3.0": ("3.0.0", "vda5050/v3")}
 
@@ -106,7 +106,7 @@ def known_version(text: str) -> str:
 
 def as_sent(kind: str, message: Message, version: str) -> Message:
     """Return a message of 2.1 as a version has it; the given one may be changed."""
-    if version == USUAL:
+    if version == USUAL_VERSION:
         return message
     for one in MAP_OF_FIELDS[kind]:
         for inside in _places(message, one.where):
@@ -126,7 +126,7 @@ def as_heard(kind: str, message: Message, version: str) -> Message:
 
     What 2.1 has no word for stays as it is.
     """
-    if version == USUAL:
+    if version == USUAL_VERSION:
         return message
     if kind == "state":  # 2.1 has one list of both
         message["actionStates"] = [*message["actionStates"], *message.pop("instantActionStates")]

@@ -1,4 +1,4 @@
-"""The doors for rasters: pictures of the ground, and values that plants stand on.
+"""Reading rasters: pictures of the ground, and values that plants stand on.
 
 A GeoTIFF in any coordinate system, turned or not, alone or in a zip archive. It is opened in a
 process of its own (`sandbox`), from a copy, and only by GDAL's GeoTIFF reader: what points at other
@@ -89,7 +89,7 @@ def looks_like_heights(source: Source, options: RasterOptions | None = None) -> 
     return looks
 
 
-def _read(task: str, source: Source, options: RasterOptions | None, near: Field | None) -> Any:  # noqa: ANN401 - each door says
+def _read(task: str, source: Source, options: RasterOptions | None, near: Field | None) -> Any:  # noqa: ANN401 - each caller says
     options = options or RasterOptions()
     bounds = None
     if near is not None:

@@ -1,4 +1,4 @@
-"""The door for maps in tiles: an MBTiles or PMTiles file of pictures, read where it lies.
+"""Maps in tiles: an MBTiles or PMTiles file of pictures, read where it lies.
 
 What is in it is looked up in a process of its own (`fieldmon.io.sandbox`), a tile at a time.
 """

@@ -25,7 +25,7 @@ from fieldmon.compute.wording import runs, worded
 from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import guessed
 from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
-from fieldmon.plot.grid import block_label, row_in_block, row_label
+from fieldmon.plot.grid import block_number, plant_numbers, row_in_block
 from fieldmon.plot.named_rows import CalledPlants, CalledRows, called_blocks, key
 
 if TYPE_CHECKING:
@@ -70,9 +70,9 @@ def by_number(rows: InspectionRows, grid: PlantGrid) -> PlantsFound:
     }
     doubts: dict[int, str] = {}
     here = np.flatnonzero(plant >= 0)
-    label = row_label(grid, plant[here])
+    numbered = plant_numbers(grid, plant[here])
     line, number = rows.line[here], rows.number[here]
-    other = (line != UNSAID) & ((label.line != line) | (label.number != number))
+    other = (line != UNSAID) & ((numbered.line != line) | (numbered.number != number))
     for k in np.flatnonzero(other).tolist():
         doubts[int(here[k])] = worded(
             "plant {plant} is {label} on this plot, but the record says row {row}, number {number}",
@@ -154,8 +154,8 @@ def _by_plant_alone(
             plant[i] = found
     if not alone.any():
         return rows, ()
-    line, number, label = rows.line.copy(), rows.number.copy(), row_label(grid, plant[alone])
-    line[alone], number[alone] = label.line, label.number
+    line, number, numbered = rows.line.copy(), rows.number.copy(), plant_numbers(grid, plant[alone])
+    line[alone], number[alone] = numbered.line, numbered.number
     said = worded(
         "{n} {n:record names a plant|records name plants} alone: taken as the plot's file "
         "calls {n:it|them}.",
@@ -238,9 +238,9 @@ def by_label(rows: InspectionRows, grid: PlantGrid, wanted: NDArray[np.bool_]) -
 
 def below_first(rows: InspectionRows, grid: PlantGrid) -> NDArray[np.bool_]:
     """Return which records name a row or a plant below 1, where the plot has none so low."""
-    label = row_label(grid)
-    row = min(1, int(label.line.min()), int(row_in_block(grid).min()))
-    plant = min(1, int(label.number.min()))
+    numbered = plant_numbers(grid)
+    row = min(1, int(numbered.line.min()), int(row_in_block(grid).min()))
+    plant = min(1, int(numbered.number.min()))
     below: NDArray[np.bool_] = (rows.line != UNSAID) & ((rows.line < row) | (rows.number < plant))
     return below
 
@@ -277,20 +277,20 @@ def _labelled(
     Where it names the block too, rows of all records are counted on from block to block, as files
     given out have them, or from 1 in each if more of them are found so.
     """
-    label = row_label(grid)
-    known, line = _key(label.line, label.number), rows.line[records]
+    numbered = plant_numbers(grid)
+    known, line = _key(numbered.line, numbered.number), rows.line[records]
     first = _found(known, _key(line, rows.number[records]))
     named = np.flatnonzero((rows.block[records] != "") & (grid.n_blocks > 1))
     said = _about_blocks(grid, len(records) - len(named))
     if not len(named):
         return first, said
-    of_plant, within = block_label(grid), row_in_block(grid)
+    of_plant, within = block_number(grid), row_in_block(grid)
     numbers = called_blocks(grid)
     block = np.array([numbers.get(key(name), 0) for name in rows.block[records[named]].tolist()])
     first[named] = np.where(of_plant[first[named]] == block, first[named], -1)
     # the row as its block counts, then as all are counted on
     of_row = _found(_key(of_plant, within), _key(block, line[named]))
-    also = _found(known, _key(label.line[of_row], rows.number[records[named]]))
+    also = _found(known, _key(numbered.line[of_row], rows.number[records[named]]))
     also = np.where(of_row >= 0, also, -1)
     if np.count_nonzero(also >= 0) > np.count_nonzero(first[named] >= 0):
         first[named] = also
@@ -401,9 +401,9 @@ def _nearest(
 
 
 def _label(grid: PlantGrid, plant: int) -> str:
-    label = row_label(grid, np.array([plant]))
+    numbered = plant_numbers(grid, np.array([plant]))
     return worded(
         "row {line}, number {number}",
-        line=label.line[0],
-        number=label.number[0],
+        line=numbered.line[0],
+        number=numbered.number[0],
     )

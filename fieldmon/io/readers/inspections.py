@@ -53,7 +53,7 @@ from fieldmon.io.readers.inspection_places import (
 from fieldmon.io.readers.nearby import doubt_of_order
 from fieldmon.io.readers.other_plots import of_this_plot
 from fieldmon.io.readers.visits import visits_of
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -255,7 +255,7 @@ def _about_contradictions(
     both = {at: sorted(one.values()) for (at, _), one in told.items() if len(one) > 1}
     if not both:
         return []
-    label = row_label(grid, np.array([*both]))
+    numbered = plant_numbers(grid, np.array([*both]))
     names = [
         worded(
             "row {line}, plant {number} (records {some})",
@@ -263,7 +263,7 @@ def _about_contradictions(
             number=number,
             some=", ".join(map(str, some)),
         )
-        for line, number, some in zip(label.line, label.number, both.values(), strict=True)
+        for line, number, some in zip(numbered.line, numbered.number, both.values(), strict=True)
     ]
     said = worded(
         "In this file {n} {n:plant is|plants are} both found and clean on one day: {some}.",

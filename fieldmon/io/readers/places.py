@@ -17,7 +17,7 @@ from fieldmon.io.import_report import ImportMessage, dropped, guessed, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.parse.values import is_missing
-from fieldmon.plot.grid import block_label, nearest_plants, row_in_block, row_label
+from fieldmon.plot.grid import block_number, nearest_plants, plant_numbers, row_in_block
 from fieldmon.plot.plant_names import PlantNames
 
 if TYPE_CHECKING:
@@ -134,14 +134,14 @@ def labelled(
     """
     if measured is not None and (measured.plant != "").all():
         return _numbered(measured, grid)
-    label = np.stack(row_label(grid), axis=1)
-    once, first = np.unique(label, axis=0, return_index=True)
+    numbered = np.stack(plant_numbers(grid), axis=1)
+    once, first = np.unique(numbered, axis=0, return_index=True)
     lonlat, row, plant = grid.lonlat(first), *once.astype(np.str_).T
     if grid.n_blocks == 1:
         return Plants(lonlat, row, plant)
-    number = block_label(grid, first).astype(np.str_)
+    number = block_number(grid, first).astype(np.str_)
     within = row_in_block(grid, first).astype(np.str_)
-    own = [] if grid.block_named is None else [grid.block_named[block_label(grid, first) - 1]]
+    own = [] if grid.block_named is None else [grid.block_named[block_number(grid, first) - 1]]
     known = [*own, number, *_called(lonlat, blocks)]
     ways = [(block, row, False) for block in known]
     ways += [(block, within, True) for block in known]
@@ -155,7 +155,7 @@ def _numbered(measured: Plants, grid: PlantGrid) -> Plants:
     plant, _ = nearest_plants(grid, measured.lonlat, _SAME_M)
     if (plant < 0).any():
         return measured
-    row, number = (part.astype(np.str_) for part in row_label(grid, plant))
+    row, number = (part.astype(np.str_) for part in plant_numbers(grid, plant))
     return replace(measured, numbers=(row, number))
 
 

@@ -26,14 +26,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 #: what belongs to a main file, by that one's ending and by its kind
-PARTS = {
+FILES_BESIDE = {
     ".shp": (".dbf", ".shx", ".prj", ".cpg"),
     ".tif": (".tfw", ".tifw", ".wld", ".prj"),
     ".tab": (".dat", ".map", ".id", ".ind", ".dbf"),
     ".mif": (".mid",),
     ".csv": (".prj", ".csvt"),
 }
-PARTS[".tiff"] = PARTS[".tif"]
+FILES_BESIDE[".tiff"] = FILES_BESIDE[".tif"]
 #: the other files of an ISOXML
 TASK_FILE = re.compile(r"[A-Za-z]{3}[0-9]{5}\.(xml|bin)", re.IGNORECASE)
 #: what reading a damaged file raises
@@ -132,7 +132,7 @@ def _belongings(path: Path) -> list[Path]:
     """Return the other files that lie beside a data set's main file and belong to it."""
     if path.name.lower() == "taskdata.xml":
         return [other for other in _siblings(path) if TASK_FILE.fullmatch(other.name)]
-    wanted = PARTS.get(path.suffix.lower(), ())
+    wanted = FILES_BESIDE.get(path.suffix.lower(), ())
     if not wanted:
         return []
     return [

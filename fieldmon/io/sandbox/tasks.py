@@ -1,4 +1,4 @@
-"""What the reading process does: one function for each door of `io.read`.
+"""What the reading process does: one function for each of `io.read`.
 
 What lays out rows takes longest to load: who reads a table of results does not wait for it.
 """

@@ -9,7 +9,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.signatures import READABLE, FileKind, kind_of, workbook_kind
 from fieldmon.io.options import Source, source_name
 from fieldmon.io.sandbox.archives import expand
-from fieldmon.io.sandbox.file_entries import PARTS, TASK_FILE, Member, entries_of
+from fieldmon.io.sandbox.file_entries import FILES_BESIDE, TASK_FILE, Member, entries_of
 
 if TYPE_CHECKING:
     from fieldmon.io.sandbox.file_entries import FileEntry
@@ -71,7 +71,7 @@ def _group(entries: list[FileEntry]) -> tuple[list[Member], list[FileProblem]]:
     problems = []
     for entry in rest:
         beside = by_place[str(entry.path.parent), entry.path.stem.lower()]
-        if any(entry.path.suffix.lower() in PARTS.get(main, ()) for main in beside):
+        if any(entry.path.suffix.lower() in FILES_BESIDE.get(main, ()) for main in beside):
             continue
         try:
             kind = kind_of(entry.head(), entry.name)
@@ -80,7 +80,7 @@ def _group(entries: list[FileEntry]) -> tuple[list[Member], list[FileProblem]]:
             continue
         if kind is FileKind.ARCHIVE:
             kind = workbook_kind(entry.head())
-        belongings = [beside[part] for part in PARTS.get(kind.value, ()) if part in beside]
+        belongings = [beside[part] for part in FILES_BESIDE.get(kind.value, ()) if part in beside]
         if kind is FileKind.ISOXML:
             belongings = [
                 other

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
@@ -254,13 +254,13 @@ class HandoffPlan:
     def stops(self) -> tuple[Stop, ...]:
         """Stops in order; ``face`` is 0 where plants have but one, ``row`` where there are none."""
         route = self.route
-        label, there_s = row_label(self.grid, route.plant), route.leave_s - route.arrive_s
+        numbered, there_s = plant_numbers(self.grid, route.plant), route.leave_s - route.arrive_s
         lonlat = route.stops_lonlat().round(DECIMALS)
         columns = zip(
             range(1, len(route) + 1),
             route.plant.tolist(),
-            (label.line if self.in_rows else np.zeros_like(label.line)).tolist(),
-            label.number.tolist(),
+            (numbered.line if self.in_rows else np.zeros_like(numbered.line)).tolist(),
+            numbered.number.tolist(),
             faces(self.grid, route.plant).tolist(),
             lonlat[:, 0].tolist(),
             lonlat[:, 1].tolist(),
@@ -269,8 +269,8 @@ class HandoffPlan:
             np.round(there_s, 3).tolist(),
             np.round(route.believed, 6).tolist(),
             route.line_stop.tolist(),
-            block_label(self.grid, route.plant).tolist(),
-            [plain_text(self.grid.row_names.get(line, "")) for line in label.line.tolist()],
+            block_number(self.grid, route.plant).tolist(),
+            [plain_text(self.grid.row_names.get(line, "")) for line in numbered.line.tolist()],
             np.round(route.detects, 6).tolist(),
             np.round(np.maximum(there_s - route.stop_s, 0.0), 3).tolist(),
             strict=True,

@@ -116,7 +116,7 @@ def _row_numbers(plan: HandoffPlan, placed: _Map) -> Markup:
     texts = [
         Markup('<text x="{:.2f}" y="{:.2f}" text-anchor="middle">{}</text>').format(x, y, sign)
         for line, sign, (x, y) in zip(
-            lines.tolist(), grid.row_signs.values(), ends.tolist(), strict=True
+            lines.tolist(), grid.line_signs.values(), ends.tolist(), strict=True
         )
         if line == 0 or (line + 1) % every == 0
     ]

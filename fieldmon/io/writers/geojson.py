@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.io.writers.day_file import DECIMALS
-from fieldmon.plot.grid import block_label, row_label
+from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.projection import goes_round
 
@@ -111,18 +111,18 @@ def _line_feature(
 
 def _stop_features(route: DrivenRoute, notes: RouteNotes) -> list[dict[str, Any]]:
     grid = route.aisles.grid
-    label, names = row_label(grid, route.plant), grid.row_names if grid.in_rows else {}
+    numbered, names = plant_numbers(grid, route.plant), grid.row_names if grid.in_rows else {}
     columns = zip(
         route.stops_lonlat().round(DECIMALS).tolist(),
         route.plant.tolist(),
-        label.line.tolist(),
-        label.number.tolist(),
+        numbered.line.tolist(),
+        numbered.number.tolist(),
         route.arrive_s.tolist(),
         route.leave_s.tolist(),
         route.believed.tolist(),
         route.detects.tolist(),
         route.line_stop.tolist(),
-        block_label(grid, route.plant).tolist(),
+        block_number(grid, route.plant).tolist(),
         strict=True,
     )
     return [

@@ -97,7 +97,7 @@ def route_shapefile(plan: HandoffPlan) -> bytes:
 def _add_styles(path: Path, columns: Iterable[str]) -> None:
     """Let QGIS show stops by what was found, with their order, and offer what to fill in."""
     with closing(sqlite3.connect(path)) as db:
-        db.execute(qml.TABLE)
+        db.execute(qml.STYLES_TABLE)
         db.execute(
             "INSERT OR IGNORE INTO gpkg_contents (table_name, data_type, identifier) "
             "VALUES ('layer_styles', 'attributes', 'layer_styles')"

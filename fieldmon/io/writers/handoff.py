@@ -1,4 +1,4 @@
-"""The one door: a planned day into a file of the format that its name tells, or that is asked.
+"""The one way of a planned day into a file of the format that its name tells, or that is asked.
 
 A new format is a file beside this one, with a function from a `HandoffPlan` to bytes, and a line in
 `FORMATS`.

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 #: of the GeoPackages that we write, as the season's: QGIS 3.22 warns of later ones
 GPKG_VERSION = "1.3"
-TABLE = """
+STYLES_TABLE = """
 CREATE TABLE IF NOT EXISTS layer_styles (
   id INTEGER PRIMARY KEY AUTOINCREMENT, f_table_catalog TEXT(256), f_table_schema TEXT(256),
   f_table_name TEXT(256), f_geometry_column TEXT(256), styleName TEXT(30), styleQML TEXT,

@@ -127,17 +127,17 @@ def treatment_map_bytes(of: TreatmentMap, name: str) -> bytes:
     SettingError
         If the ending tells no format.
     """
-    return FORMATS[checked_ending(name)](of)
+    return MAP_FORMATS[checked_ending(name)](of)
 
 
 def checked_ending(name: str) -> str:
-    """Return the ending in `FORMATS` of a file's name; raise `SettingError` where it has none."""
-    ending = next((ending for ending in FORMATS if name.lower().endswith(ending)), None)
+    """Return which ending of `MAP_FORMATS` a name has; raise `SettingError` where it has none."""
+    ending = next((ending for ending in MAP_FORMATS if name.lower().endswith(ending)), None)
     if ending is None:
         raise SettingError(
             worded(
                 "A treatment map must be called *{names}, but it is {name!r}.",
-                names=", *".join(FORMATS),
+                names=", *".join(MAP_FORMATS),
                 name=name,
             )
         )
@@ -297,7 +297,7 @@ def _geotiff(of: TreatmentMap) -> bytes:
 
 
 #: by ending; one whose ending ends another's comes later
-FORMATS: dict[str, Callable[[TreatmentMap], bytes]] = {
+MAP_FORMATS: dict[str, Callable[[TreatmentMap], bytes]] = {
     **{
         f"{of}.grid{kind}.xml.zip": _taskdata(version, kind)
         for of, version in ((".v3", 3), ("", 4))

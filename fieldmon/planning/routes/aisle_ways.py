@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inner_loop, loop
 from fieldmon.planning.routes.frontier import (
     END_LEFT,
     END_LEFT_AND,
@@ -69,7 +69,7 @@ class LadderRoom(NamedTuple):
     of_side: Float
 
 
-@part
+@inner_loop
 def _put(
     room: LadderRoom, k: int, way: int, what: tuple[float, float], cut: tuple[int, int, int, int]
 ) -> None:
@@ -102,7 +102,7 @@ def value_ways(
                 _hang(room, k, ladder.hangs[k] - 1)
 
 
-@part
+@inner_loop
 def _hang(room: LadderRoom, k: int, side: int) -> None:
     """Let an aisle that hangs on a headland be one way in and out, however it is driven."""
     for into in range(2):
@@ -120,7 +120,7 @@ def _hang(room: LadderRoom, k: int, side: int) -> None:
         room.worth[k, to], room.reward[k, to] = worth, held
 
 
-@part
+@inner_loop
 def _value_through(
     ladder: Ladder, reward: Float, costs: Costs, state: tuple[int, float, bool], room: LadderRoom
 ) -> None:
@@ -167,7 +167,7 @@ def _value_through(
         _put(room, k, RIGHT_BACK, (worth, held), cut)
 
 
-@part
+@inner_loop
 def _once(
     ladder: Ladder,
     reward: Float,
@@ -207,7 +207,7 @@ def _once(
     return max(lower, upper, free, thrice)
 
 
-@part
+@inner_loop
 def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its speed
     ladder: Ladder, reward: Float, costs: Costs, state: tuple[int, float, bool], room: LadderRoom
 ) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inner_loop, loop
 from fieldmon.plot.travel import GATE, travel_s
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def ruin(travel: TravelTable, clock: Clock, tour: Tour, reward: Float, seconds: 
     _leave_out(travel, clock, tour, reward, seconds)
 
 
-@part
+@inner_loop
 def _reward(tour: Tour, reward: Float) -> float:
     total = 0.0
     for k in range(tour.size[0]):
@@ -82,7 +82,7 @@ def _reward(tour: Tour, reward: Float) -> float:
     return total
 
 
-@part
+@inner_loop
 def _leg_s(travel: TravelTable, clock: Clock, tour: Tour, a: int, b: int) -> float:
     """Return the seconds from the a-th to the b-th stop; -1 and one past the last: the gate."""
     n = tour.size[0]
@@ -95,7 +95,7 @@ def _leg_s(travel: TravelTable, clock: Clock, tour: Tour, a: int, b: int) -> flo
     return travel_s(travel, clock, tour.plant[a], tour.plant[b])
 
 
-@part
+@inner_loop
 def _seconds(travel: TravelTable, clock: Clock, tour: Tour) -> float:
     total: float = tour.size[0] * clock.visit_s
     for k in range(tour.size[0] + 1):
@@ -103,7 +103,7 @@ def _seconds(travel: TravelTable, clock: Clock, tour: Tour) -> float:
     return total
 
 
-@part
+@inner_loop
 def _leave_out(
     travel: TravelTable, clock: Clock, tour: Tour, reward: Float, seconds: float
 ) -> None:
@@ -125,7 +125,7 @@ def _leave_out(
     tour.used[0] = _seconds(travel, clock, tour)
 
 
-@part
+@inner_loop
 def _detour_s(travel: TravelTable, clock: Clock, tour: Tour, plant: int, k: int) -> float:
     """Return the seconds that a plant between the stops k - 1 and k adds, itself included."""
     before = tour.plant[k - 1] if k > 0 else GATE
@@ -137,7 +137,7 @@ def _detour_s(travel: TravelTable, clock: Clock, tour: Tour, plant: int, k: int)
     return more_s - _leg_s(travel, clock, tour, k - 1, k)
 
 
-@part
+@inner_loop
 def _find_place(travel: TravelTable, clock: Clock, tour: Tour, plant: int) -> None:
     """Find where a plant costs least: beside stops of its aisle, or between two aisles."""
     tour.more_s[plant] = np.inf
@@ -145,7 +145,7 @@ def _find_place(travel: TravelTable, clock: Clock, tour: Tour, plant: int) -> No
         _try_place(travel, clock, tour, plant, k)
 
 
-@part
+@inner_loop
 def _try_place(travel: TravelTable, clock: Clock, tour: Tour, plant: int, k: int) -> None:
     """Note a place for a plant if it costs less there; amid another aisle it hardly ever does."""
     aisle = travel.corridor[travel.row[plant]]
@@ -159,7 +159,7 @@ def _try_place(travel: TravelTable, clock: Clock, tour: Tour, plant: int, k: int
         tour.more_s[plant], tour.place[plant] = more_s, k
 
 
-@part
+@inner_loop
 def _fill(  # noqa: C901, PLR0912 - one loop over all
     travel: TravelTable, clock: Clock, tour: Tour, reward: Float, least: float
 ) -> None:
@@ -199,7 +199,7 @@ def _fill(  # noqa: C901, PLR0912 - one loop over all
                 _try_place(travel, clock, tour, i, k)
 
 
-@part
+@inner_loop
 def _shorten(travel: TravelTable, clock: Clock, tour: Tour) -> None:
     """Turn round stretches between changes of aisle as long as that shortens the drive."""
     n = tour.size[0]
@@ -228,7 +228,7 @@ def _shorten(travel: TravelTable, clock: Clock, tour: Tour) -> None:
                     shorter = True
 
 
-@part
+@inner_loop
 def _move(  # noqa: C901 - one loop over all
     travel: TravelTable, clock: Clock, tour: Tour
 ) -> bool:
@@ -270,7 +270,7 @@ def _move(  # noqa: C901 - one loop over all
     return moved
 
 
-@part
+@inner_loop
 def _turn(tour: Tour, low: int, high: int) -> None:
     """Turn a stretch of stops round."""
     while low < high:
@@ -280,7 +280,7 @@ def _turn(tour: Tour, low: int, high: int) -> None:
         high -= 1
 
 
-@part
+@inner_loop
 def _same_aisle(travel: TravelTable, tour: Tour, a: int, b: int) -> bool:
     aisle_a = travel.corridor[travel.row[tour.plant[a]]]
     return bool(aisle_a == travel.corridor[travel.row[tour.plant[b]]])

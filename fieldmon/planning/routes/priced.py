@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inner_loop, loop
 from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.planning.routes.aisle_ways import IMPOSSIBLE, Costs, LadderRoom, value_ways
 from fieldmon.planning.routes.frontier import GATE_CLOSED, GATE_OPEN, N_WAYS, Tables, tables
@@ -230,7 +230,7 @@ def least_by_kind(
     return least
 
 
-@part
+@inner_loop
 def _take_element(ladder: Ladder, tables: Tables, metre: float, room: LadderRoom, k: int) -> None:
     """Find the best way to every state after an element, its reward and its choice."""
     ways = tables.gate if k == ladder.gate else tables.aisle

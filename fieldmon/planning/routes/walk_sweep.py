@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inner_loop, loop
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -172,7 +172,7 @@ def _fill_worth(tables: Float, worth: StateWorth, room: tuple[Float, Int]) -> No
         _fill_up_to(tables, worth, p, room)
 
 
-@part
+@inner_loop
 def _price_row(tables: Float, price: float, room: tuple[Float, Int]) -> None:
     """Find the best half steps of each way of driving a row at a price."""
     best, half = room
@@ -184,7 +184,7 @@ def _price_row(tables: Float, price: float, room: tuple[Float, Int]) -> None:
                 best[table], half[table] = worth, k
 
 
-@part
+@inner_loop
 def _fill_onward(tables: Float, worth: StateWorth, p: int, room: tuple[Float, Int]) -> None:
     best, half = room
     price, m = worth.price[p], tables.shape[0]
@@ -214,7 +214,7 @@ def _fill_onward(tables: Float, worth: StateWorth, p: int, room: tuple[Float, In
                 after[ON[way, 0]] = max(after[ON[way, 0]], there)
 
 
-@part
+@inner_loop
 def _fill_up_to(tables: Float, worth: StateWorth, p: int, room: tuple[Float, Int]) -> None:
     best, _ = room
     price, m = worth.price[p], tables.shape[0]
@@ -303,7 +303,7 @@ def sweep(
             _go_on(kept, spans, row, room)
 
 
-@part
+@inner_loop
 def _worth_it(table: Float, limits: tuple[float, float], room: SweepRoom) -> int:
     """List the half steps of a row that bring more than fewer do, and enough; return how many."""
     price, least = limits
@@ -317,7 +317,7 @@ def _worth_it(table: Float, limits: tuple[float, float], room: SweepRoom) -> int
     return n
 
 
-@part
+@inner_loop
 def _spread(source: Float, target: Float, at: tuple[int, int], room: SweepRoom) -> None:
     """Raise target[h] to the most of source[h - by - k] + value of k, for the n listed k.
 
@@ -352,7 +352,7 @@ def _spread(source: Float, target: Float, at: tuple[int, int], room: SweepRoom) 
             k += 1
 
 
-@part
+@inner_loop
 def _go_on(kept: KeptStates, spans: Int, row: int, room: SweepRoom) -> None:
     """Take what is known after a row to before the next one."""
     for way in range(ON.shape[0]):

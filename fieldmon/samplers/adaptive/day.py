@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, loop, part
+from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.infestation.calibration_slope import note_inspection, proved_slope
 from fieldmon.infestation.chance_bounds import bounded_chance, bounded_pair_chance
 from fieldmon.infestation.clustering import (
@@ -113,7 +113,7 @@ def drive_day(
     return k
 
 
-@part
+@inner_loop
 def _inspect(
     travel: TravelTable,
     clock: Clock,
@@ -136,7 +136,7 @@ def _inspect(
     return arrive_s + times.stop_s[time], found
 
 
-@part
+@inner_loop
 def _fits(
     travel: TravelTable, clock: Clock, move: tuple[int, int], stop_s: float, now_s: float
 ) -> bool:
@@ -148,7 +148,7 @@ def _fits(
     return bool(end_s <= clock.seconds_left)
 
 
-@part
+@inner_loop
 def _value_finds(
     linked: Linked, belief: BeliefArrays, inspected: NDArray[np.bool_], spares: float
 ) -> None:
@@ -165,7 +165,7 @@ def _value_finds(
             belief.worth[i] = 1.0 + spares * clean / max(end - first, 1)
 
 
-@part
+@inner_loop
 def _learn(
     travel: TravelTable,
     linked: Linked,
@@ -196,7 +196,7 @@ def _learn(
         mark_changed(travel, rows, belief.near.plant[t])
 
 
-@part
+@inner_loop
 def _trace(
     travel: TravelTable,
     linked: Linked,
@@ -212,7 +212,7 @@ def _trace(
     traces.unseen[find[0]] = 0.0
 
 
-@part
+@inner_loop
 def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe how much infested plants stand together, once it differs enough from what was."""
     _learn_jumps(linked, belief, rows)
@@ -232,7 +232,7 @@ def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> N
     rows.stale[:], rows.most[:] = True, -1.0
 
 
-@part
+@inner_loop
 def _learn_level(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe in more or fewer infested plants, once finds differ enough from those expected.
 
@@ -249,7 +249,7 @@ def _learn_level(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     rows.stale[:], rows.most[:] = True, -1.0
 
 
-@part
+@inner_loop
 def _learn_trust(belief: BeliefArrays, rows: RowTours) -> None:
     """Rely on differences between plants as far as they have come true, where many are infested."""
     if belief.traces.kernel.size == 1 or belief.level[1] >= SETTLED_FINDS:
@@ -305,7 +305,7 @@ def times_odds(chance: float, ratio: float) -> float:
     return bounded_chance(chance * ratio / (1.0 - chance + chance * ratio))
 
 
-@part
+@inner_loop
 def _learn_jumps(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     """Believe in jumps beyond neighbours, once that differs enough from what was."""
     jumps = chance_apart(belief.clusters.evidence)
@@ -318,7 +318,7 @@ def _learn_jumps(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     rows.stale[:], rows.most[:] = True, -1.0
 
 
-@part
+@inner_loop
 def _next_in(
     travel: TravelTable,
     work: tuple[BeliefArrays, InspectionTimes],
@@ -344,7 +344,7 @@ def _next_in(
     return NOWHERE, 0
 
 
-@part
+@inner_loop
 def _best_left(
     travel: TravelTable, clock: Clock, work: Workspace, at: int, now_s: float
 ) -> tuple[int, int]:
@@ -377,7 +377,7 @@ def _best_left(
     return best, time
 
 
-@part
+@inner_loop
 def _least_s(travel: TravelTable, clock: Clock, at: int, row: int) -> float:
     """Return seconds that it takes at least from a place to any plant of a row."""
     own = row_of(travel, at)

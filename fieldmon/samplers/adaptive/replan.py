@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import part
+from fieldmon.compute.jit import inner_loop
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, NOWHERE, Stretch
 from fieldmon.samplers.adaptive.rows import most_in, value_row
 from fieldmon.samplers.adaptive.tours import best_from, extend_tours
@@ -21,7 +21,7 @@ _STEP, _FULL, _TRIES = 1.1, 0.9, 2
 _BISECTIONS, _CLOSE = 24, 1.04
 
 
-@part
+@inner_loop
 def first_price(
     travel: TravelTable,
     clock: Clock,
@@ -49,7 +49,7 @@ def first_price(
     return float(high)
 
 
-@part
+@inner_loop
 def plan_on(
     travel: TravelTable,
     clock: Clock,
@@ -73,13 +73,13 @@ def plan_on(
     return price, stretch
 
 
-@part
+@inner_loop
 def row_of(travel: TravelTable, at: int) -> int:
     """Return the row of a plant, -1 for the gate; of one integer type, as numba wants it."""
     return 0 + travel.row[at] if at >= 0 else NOWHERE
 
 
-@part
+@inner_loop
 def _plan_at(
     travel: TravelTable,
     clock: Clock,
@@ -90,7 +90,7 @@ def _plan_at(
     return _replan(travel, clock, work, state)
 
 
-@part
+@inner_loop
 def _replan(
     travel: TravelTable,
     clock: Clock,
@@ -113,7 +113,7 @@ def _replan(
     return _from_row(travel, clock, work, at, price)
 
 
-@part
+@inner_loop
 def _first_stretch(
     rows: RowTours, tours: BestTours, onto: tuple[int, int, int], seconds: float
 ) -> Stretch:
@@ -124,7 +124,7 @@ def _first_stretch(
     return Stretch(row, end, rows.last[row, way], seconds)
 
 
-@part
+@inner_loop
 def _from_row(travel: TravelTable, clock: Clock, work: Workspace, at: int, price: float) -> Stretch:
     """Return the first stretch of the best plan from the middle of a row.
 
@@ -153,7 +153,7 @@ def _from_row(travel: TravelTable, clock: Clock, work: Workspace, at: int, price
     return stretch
 
 
-@part
+@inner_loop
 def _along(
     travel: TravelTable,
     clock: Clock,

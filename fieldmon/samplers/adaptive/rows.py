@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, part
+from fieldmon.compute.jit import inlined, inner_loop
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, N_WAYS, NEARLY, NOWHERE
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def best_time(times: InspectionTimes, value: float, price: float) -> tuple[float
     return best, time
 
 
-@part
+@inner_loop
 def value_row(
     travel: TravelTable,
     clock: Clock,
@@ -146,7 +146,7 @@ def _after_clean(belief: BeliefArrays, i: int, detects: float) -> float:
     return float((p - detects * c) / max(1.0 - detects * q, LEAST))
 
 
-@part
+@inner_loop
 def _in_and_out(
     travel: TravelTable, clock: Clock, rows: RowTours, state: tuple[int, int], price: float
 ) -> None:
@@ -168,7 +168,7 @@ def _in_and_out(
     rows.net[row, way], rows.seconds[row, way], rows.last[row, way] = best, best_s, last
 
 
-@part
+@inner_loop
 def _through(travel: TravelTable, clock: Clock, rows: RowTours, row: int, price: float) -> None:
     """Value a row that is driven from end to end, either way."""
     first, n = travel.row_start[row], rows.n_pays[row]

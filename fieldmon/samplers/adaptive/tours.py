@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.jit import loop, part
+from fieldmon.compute.jit import inner_loop, loop
 from fieldmon.samplers.adaptive.arrays import N_WAYS, NOWHERE, REACH
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def measure_ways(travel: TravelTable, clock: Clock, next_s: Float, home_s: Float
                     next_s[down, row, end, step, other_end] = way_m / clock.speed_m_s
 
 
-@part
+@inner_loop
 def extend_tours(
     clock: Clock,
     rows: RowTours,
@@ -81,7 +81,7 @@ def extend_tours(
                     tours.way[down, row, end] = way
 
 
-@part
+@inner_loop
 def _best_after(tours: BestTours, place: tuple[int, int, int], price: float) -> None:
     """Find the best rest of the day after a row: home, or to one of the next rows in line."""
     down, row, end = place
@@ -102,7 +102,7 @@ def _best_after(tours: BestTours, place: tuple[int, int, int], price: float) -> 
     tours.to[down, row, end] = to
 
 
-@part
+@inner_loop
 def best_from(
     travel: TravelTable, clock: Clock, tours: BestTours, here: int, price: float
 ) -> tuple[float, float, tuple[int, int, int]]:

@@ -45,7 +45,7 @@ BELIEFS: dict[str, Believe] = {
     "ensemble": Ensemble.of,
 }
 # the one belief that follows a pest's kernel, warmth and stages
-OF_PESTS = {"traced pairs": BELIEFS["traced pairs"]}
+BELIEFS_OF_PESTS = {"traced pairs": BELIEFS["traced pairs"]}
 EDGES = (0.0, 0.001, 0.01, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 1.0)
 CLEAN_EDGES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 # the thesis knows only suspicious plants and others: this from a chance map, in chances

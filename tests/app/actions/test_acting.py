@@ -6,7 +6,7 @@ from unittest.mock import Mock
 import pytest
 import streamlit as st
 
-from app.actions import acting, morning
+from app.actions import acting, morning_steps
 from app.state import button_presses, plot_source, work_day
 from app.state.fresh_boxes import FreshBoxes
 from app.words import texts
@@ -139,7 +139,7 @@ def test_a_press_that_fails_does_not_wait_and_one_that_is_broken_off_does(boxes,
 
 
 def test_a_season_begins_though_the_run_of_the_press_is_broken_off(app, season, monkeypatch):
-    draw, breaks = morning.show, [True]
+    draw, breaks = morning_steps.show, [True]
 
     def show(choices, plan):
         if breaks and button_presses.waiting():
@@ -147,7 +147,7 @@ def test_a_season_begins_though_the_run_of_the_press_is_broken_off(app, season, 
             st.rerun()
         draw(choices, plan)
 
-    monkeypatch.setattr(morning, "show", show)
+    monkeypatch.setattr(morning_steps, "show", show)
     app.button(key="do_begin").click().run()
     assert not breaks
     assert "has begun" in app.success[0].value

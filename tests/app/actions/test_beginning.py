@@ -166,7 +166,7 @@ def test_another_season_of_one_opened_by_its_address_has_its_measured_plants_and
     before, after = season_named.plot, Season(seasons_folder / "Own again.gpkg").plot
     assert np.array_equal(before.field.plants, after.field.plants)
     assert np.allclose(before.grid.lonlat(), after.grid.lonlat(), rtol=0.0, atol=1e-8)
-    assert list(before.grid.row_signs.values()) == list(after.grid.row_signs.values())
+    assert list(before.grid.line_signs.values()) == list(after.grid.line_signs.values())
     assert np.array_equal(before.field.plant_names, after.field.plant_names)
 
 

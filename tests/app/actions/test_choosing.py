@@ -1,4 +1,4 @@
-"""Where, when and who: what is chosen counts in every room."""
+"""Where, when and who: what is chosen counts on every page."""
 
 from shapely import MultiPolygon, box
 

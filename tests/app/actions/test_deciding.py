@@ -8,13 +8,13 @@ from app.actions import deciding as acting
 from app.words import texts
 from fieldmon.decisions.thresholds import published
 from fieldmon.infestation.inspections import FOUND, Inspections
-from fieldmon.io.writers.treatment_map import FORMATS
+from fieldmon.io.writers.treatment_map import MAP_FORMATS
 from tests.app.driving import boxed, go, press, texts_of
 
 
 def test_every_file_that_the_library_writes_is_offered_by_name():
-    assert {ending[1:] for ending in acting._ENDINGS} == {ending[1:] for ending in FORMATS}
-    assert set(texts.DECIDE_FILES) == {ending[1:] for ending in FORMATS}
+    assert {ending[1:] for ending in acting._ENDINGS} == {ending[1:] for ending in MAP_FORMATS}
+    assert set(texts.DECIDE_FILES) == {ending[1:] for ending in MAP_FORMATS}
     assert set(texts.DECIDE_THRESHOLDS) == {one.name for one in published()}
 
 

@@ -11,7 +11,7 @@ from app.state import last_heard, scout_page
 from app.words import texts
 from fieldmon.errors import AccessError
 from fieldmon.monitoring import scouts
-from fieldmon.monitoring.day_ahead import Part, route_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, route_ahead
 from fieldmon.planning.members import team_of
 from tests.app.driving import go, opened, press, tap
 
@@ -115,7 +115,7 @@ def test_where_several_are_out_today_says_that_the_route_shown_is_nobodys(season
     for name in ("Ann", "Dan"):
         assert not any(one.value == texts.ROUTE_OF_NOBODY for one in season_app.run().info)
         scouts.let_in(season(), name)
-        route_ahead(season(), on, Part(None, name))
+        route_ahead(season(), on, WorkPart(None, name))
     assert any(one.value == texts.ROUTE_OF_NOBODY for one in season_app.run().info)
     assert any(" in all" in one.value for one in season_app.markdown)
 

@@ -18,7 +18,7 @@ from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
-from fieldmon.plot.grid import plant_at, row_label
+from fieldmon.plot.grid import plant_at, plant_numbers
 from tests.app.chosen import in_season
 from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
 from tests.monitoring.seasons import a_season
@@ -33,8 +33,8 @@ def test_one_plant_is_recorded_and_undone(season_app, season):
     send(season_app, "one")
     assert "1 recorded" in season_app.success[0].value
     (plant,) = season().history.inspections.plant
-    label = season().label
-    assert (label.line[plant], label.number[plant]) == (3, 4)
+    numbered = season().plant_numbers
+    assert (numbered.line[plant], numbered.number[plant]) == (3, 4)
     assert metric(go(season_app, "season"), "Found") == "1"
     go(season_app, "record")
     press(season_app, "Undo")
@@ -101,7 +101,7 @@ def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_it_was_ta
     send(app, "one")
     assert "1 recorded" in app.success[0].value
     (plant,) = season_named.history.inspections.plant
-    assert season_named.label.line[plant] == 2
+    assert season_named.plant_numbers.line[plant] == 2
 
 
 def test_a_row_is_typed_by_its_name_and_a_plant_that_may_be_another_by_its_name_is_refused(
@@ -116,8 +116,8 @@ def test_a_row_is_typed_by_its_name_and_a_plant_that_may_be_another_by_its_name_
         send(app, "one")
         assert [error in one.value for one in app.error] == ([True] if error else [])
     (plant,) = season_named.history.inspections.plant
-    label = season_named.label
-    assert (label.line[plant], label.number[plant]) == (1, 5)
+    numbered = season_named.plant_numbers
+    assert (numbered.line[plant], numbered.number[plant]) == (1, 5)
     # what was recorded, and what was undone, is called as it was typed
     go(app, "record")
     (recorded,) = [one for one in app.button if one.label == "Undo"]
@@ -216,7 +216,7 @@ def test_words_that_say_neither_and_other_plots_are_asked_about_in_a_file_too(se
     press(season_app, "They are of this plot")
     season_app.button(key="record_file").click().run()
     assert "3 recorded, 1 known" in season_app.success[0].value
-    plants = row_label(season().plot.grid, season().history.inspections.plant).number.tolist()
+    plants = plant_numbers(season().plot.grid, season().history.inspections.plant).number.tolist()
     result = season().history.inspections.result.tolist()
     assert sorted(zip(plants, result, strict=True)) == [(1, 1), (2, 1), (3, 1), (4, 0)]
 
@@ -681,8 +681,8 @@ def test_a_press_is_carried_out_though_what_is_typed_next_breaks_its_run_off(
     broken_off(monkeypatch, type_next if is_more_typed else None)
     send(season_app, "one")
     (plant,) = season().history.inspections.plant
-    label = season().label
-    assert (label.line[plant], label.number[plant]) == (3, 4)
+    numbered = season().plant_numbers
+    assert (numbered.line[plant], numbered.number[plant]) == (3, 4)
     assert boxed(season_app.number_input, "one_row").value == (5 if is_more_typed else None)
     assert boxed(season_app.number_input, "one_plant").value is None
 

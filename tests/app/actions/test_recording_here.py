@@ -38,9 +38,9 @@ def test_one_press_records_the_plant_shown_on_the_day_shown(tapped, season, resu
     assert "1 recorded" in tapped.success[0].value
     kept = season().history.inspections
     assert kept.result.tolist() == [result]
-    label = season().label
+    numbered = season().plant_numbers
     (plant,) = kept.plant.tolist()
-    assert (label.line[plant], label.number[plant]) == (3, 4)
+    assert (numbered.line[plant], numbered.number[plant]) == (3, 4)
     assert kept.date[0].item() == date(2026, 11, 16)
 
 

@@ -13,7 +13,7 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot import local_clock
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from tests.app.driving import go, map_of, opened, tap, texts_of
 
 
@@ -86,8 +86,8 @@ def test_a_scout_takes_back_what_is_said_beside_the_button_and_nobody_elses(seas
     go(season_app, "scout")
     tap(season_app, "scout_found")
     kept = season()
-    label = row_label(kept.plot.grid, kept.history.inspections.plant)
-    said = f"Last: row {label.line[0]}, plant {label.number[0]}: found"
+    numbered = plant_numbers(kept.plot.grid, kept.history.inspections.plant)
+    said = f"Last: row {numbered.line[0]}, plant {numbered.number[0]}: found"
     assert said in [one.value for one in season_app.caption]
     others = Inspections.of(np.array([7, 9]), np.array([0, 0]), np.datetime64("2026-11-16"))
     kept.record(others.take(slice(1)), "scout mode", "Ben")

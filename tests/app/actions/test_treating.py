@@ -110,7 +110,7 @@ def test_a_treatment_of_rows_is_of_their_plants_as_in_a_command(season_app, seas
     part_noted(season_app, rows="20-40")
     assert not season_app.error
     (one,) = season().treatments()
-    assert set(season().label.line[one.place.plants].tolist()) == set(range(20, 41))
+    assert set(season().plant_numbers.line[one.place.plants].tolist()) == set(range(20, 41))
     noted = f"Treatment noted, of {one.place.plants.sum():,}"
     assert any(one.value.startswith(noted) for one in season_app.warning)
     part_noted(season_app, rows="20-400")

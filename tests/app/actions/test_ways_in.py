@@ -2,7 +2,7 @@
 
 import shutil
 
-from app.state import rooms
+from app.state import menu
 from app.words import texts
 from tests.app.driving import go, heading, opened, texts_of
 
@@ -24,7 +24,7 @@ def test_each_way_leads_to_the_days_plan_whatever_was_shown_before(app):
     go(app, "plots")
     app.button(key="way_sample").click().run()
     assert not app.exception
-    assert app.session_state[rooms.key("today")] == "today"
+    assert app.session_state[menu.key("today")] == "today"
     assert texts.STEP_BUTTONS["send"] in [button.label for button in app.button]
 
 

@@ -24,7 +24,7 @@ from fieldmon.io.writers.csv import route_csv
 from fieldmon.io.writers.day_file import HandoffPlan
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.day_ahead import Part, route_ahead
+from fieldmon.monitoring.day_ahead import WorkPart, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.scouts_out import scouts_out
@@ -45,13 +45,13 @@ def test_plants_are_where_they_are_with_their_rows(served):
     name, made = plot_document(served.season)
     plot = json.loads(made)
     jsonschema.validate(plot, description.PLOT)
-    grid, label = served.season.plot.grid, served.season.label
+    grid, numbered = served.season.plot.grid, served.season.plant_numbers
     there = np.stack([plot["plants"]["lon"], plot["plants"]["lat"]], axis=1)
     assert np.abs(there - grid.lonlat()).max() < 1e-7
-    assert plot["plants"]["number"] == label.number.tolist()
+    assert plot["plants"]["number"] == numbered.number.tolist()
     start, row = plot["rows"]["start"], plot["rows"]["row"]
-    assert np.repeat(row, np.diff(start)).tolist() == label.line.tolist()
-    assert plot["rows"]["sign"] == [grid.row_signs[k] for k in row]
+    assert np.repeat(row, np.diff(start)).tolist() == numbered.line.tolist()
+    assert plot["rows"]["sign"] == [grid.line_signs[k] for k in row]
     assert plot["zone"] == "Asia/Jerusalem"
     _tells_where_the_aisles_are(served.season, plot)
     assert plot_document(served.season) == (name, made)
@@ -72,7 +72,7 @@ def test_the_day_is_what_the_season_says(served, scout):
     season = served.season
     day = json.loads(day_document(season, scout, BEGINS))
     jsonschema.validate(day, description.DAY)
-    route = route_ahead(season, BEGINS, Part(name="Ann"))
+    route = route_ahead(season, BEGINS, WorkPart(name="Ann"))
     assert day["route"]["plants"] == route.plant.tolist()
     seconds = np.cumsum(np.array(day["route"]["walk_s"]) + day["robot"]["visit_s"])
     assert seconds == pytest.approx(route.leave_s, abs=0.1 * len(route))
@@ -120,9 +120,9 @@ def test_who_has_a_part_is_sent_to_its_rows(served):
     scouts.withdraw_key(served.season, "Ann")
     key = scouts.let_in(served.season, "Ben", (1, 5))
     day = json.loads(day_document(served.season, scouts.key_owner(served.season, key), BEGINS))
-    label = served.season.label
+    numbered = served.season.plant_numbers
     assert day["route"]["plants"]
-    assert label.line[day["route"]["plants"]].max() <= 5
+    assert numbered.line[day["route"]["plants"]].max() <= 5
     assert day["rows"] == [1, 5]
 
 
@@ -238,7 +238,7 @@ def test_the_board_warns_until_a_phone_has_the_plan_given_last(tmp_path):
 
 
 def test_rows_that_nobody_may_enter_are_told_with_the_time_until_which(served, scout):
-    season, line = served.season, served.season.label.line
+    season, line = served.season, served.season.plant_numbers.line
     waits = Application("Acarol", reentry_hours=48.0, ended=time(9, 30))
     season.treat(BEGINS, 0.5, plants=np.isin(line, [3, 4, 7]), application=waits)
     day = json.loads(day_document(season, scout, BEGINS + timedelta(days=1)))

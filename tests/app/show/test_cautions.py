@@ -73,7 +73,7 @@ def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(
 ):
     season = a_season(tmp_path / "season.gpkg")
     given = season.plan(BEGINS).route.plant
-    line = season.label.line
+    line = season.plant_numbers.line
     row = int(line[given[0]])
     waits = Application("soap", reentry_hours=24.0, ended=time(5))
     season.treat(BEGINS, 0.0, plants=line == row, application=waits)

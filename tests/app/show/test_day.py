@@ -14,7 +14,7 @@ from app.state.chosen_day import DayRoute
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.history import BeliefSettings
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from tests.app.chosen import a_plot, chosen, in_season, records_at
 from tests.app.driving import apart, go, row_box, tap, texts_of
 from tests.monitoring.seasons import BEGINS, Insects, a_season
@@ -64,9 +64,9 @@ def test_stops_are_the_route_s_in_order_with_the_times_of_their_arrival():
     choices = chosen(plot, records_at(plot, [50], [1]))
     plan = choices.plan()
     table = day.stops(choices, DayRoute(plan.route, chosen_day.starts(choices, plan)))
-    label = row_label(plot.grid, plan.route.plant)
-    assert table["row"].tolist() == label.line.tolist()
-    assert table["plant"].tolist() == label.number.tolist()
+    numbered = plant_numbers(plot.grid, plan.route.plant)
+    assert table["row"].tolist() == numbered.line.tolist()
+    assert table["plant"].tolist() == numbered.number.tolist()
     assert table.index.tolist() == list(range(1, len(plan.route) + 1))
     begins = pd.Timestamp("2026-11-16 06:00")
     seconds = [

@@ -15,7 +15,7 @@ from app.words import texts
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import Application, Season
-from fieldmon.plot.grid import plant_at, row_label
+from fieldmon.plot.grid import plant_at, plant_numbers
 from tests.app.chosen import a_plot, chosen, in_season
 from tests.app.driving import apart
 from tests.monitoring.seasons import BEGINS, a_season
@@ -162,8 +162,8 @@ def test_the_plant_tapped_is_ringed_and_what_is_no_plant_changes_nothing():
     plant_history.take_plant(choices, "hot", 3)
     rings = plant_history.layers(choices)
     assert rings[0].data[0]["p"] == pytest.approx(plot.grid.lonlat()[PLANT].tolist(), abs=1e-6)
-    label = row_label(plot.grid, np.array([PLANT]))
-    assert st.session_state["history row"] == label.line[0]
+    numbered = plant_numbers(plot.grid, np.array([PLANT]))
+    assert st.session_state["history row"] == numbered.line[0]
     st.session_state["history row"] = 9999
     assert plant_history.layers(choices) == []
 
@@ -173,7 +173,7 @@ def test_what_is_shown_first_is_a_plant_also_where_rows_and_plants_have_numbers_
     called = np.arange(len(plot.grid.line_number))[::-1] + 101
     grid = replace(
         plot.grid, line_called=np.stack([called, called], axis=1),
-        plant_called=row_label(plot.grid).number * 5,
+        plant_called=plant_numbers(plot.grid).number * 5,
     )  # fmt: skip
     plant_history.show(chosen(replace(plot, aisles=replace(plot.aisles, grid=grid))))
     assert said[-1] == "Never inspected."

@@ -9,7 +9,7 @@ from shapely import MultiPolygon, box
 from app.show.recorded_batches import in_short, source
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, SKIPPED, Inspections
 from fieldmon.monitoring import Application, Season
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from tests.app.driving import go
 
 DAY = np.datetime64("2026-11-16")
@@ -17,7 +17,7 @@ DAY = np.datetime64("2026-11-16")
 
 def test_each_batch_is_told_by_what_it_says(season_app, season):
     kept = season()
-    one = row_label(kept.plot.grid, np.array([5, 6]))
+    one = plant_numbers(kept.plot.grid, np.array([5, 6]))
     first, second = (f"row {one.line[k]}, plant {one.number[k]}" for k in range(2))
     kept.record(Inspections.of(np.array([5]), np.array([FOUND]), DAY), "typed in")
     kept.record(Inspections.of(np.array([6]), np.array([SKIPPED]), DAY), "typed in", "Ann")

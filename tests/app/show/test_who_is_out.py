@@ -11,7 +11,7 @@ from app.state import last_heard
 from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.monitoring import scouts
-from fieldmon.monitoring.day_ahead import DayAhead, Part, route_ahead
+from fieldmon.monitoring.day_ahead import DayAhead, WorkPart, route_ahead
 from fieldmon.monitoring.findings import take
 from fieldmon.monitoring.scouts_out import ScoutOut
 from fieldmon.plot.local_clock import local_clock, utc_now
@@ -27,7 +27,7 @@ def choices(tmp_path):
                            clock=local_clock(season.plot.field))  # fmt: skip
 
 
-PART = Part((1, 8), "Ann")
+PART = WorkPart((1, 8), "Ann")
 
 
 def test_nobody_is_out_where_there_are_no_codes(choices):
@@ -39,7 +39,7 @@ def test_a_line_says_rows_code_phone_and_how_far(choices):
     (line,) = who_is_out.lines(choices)
     assert (line.title, line.cautions) == ("\u2068Ann\u2069, rows 1 to 8", ())
     assert texts.OUT_SILENT in line.said
-    route = route_ahead(choices.open_season, BEGINS, Part((1, 8), "Ann")).plant
+    route = route_ahead(choices.open_season, BEGINS, WorkPart((1, 8), "Ann")).plant
     take(choices.open_season, key, [a_finding(int(route[0]), on=BEGINS)],
          utc_now() + timedelta(hours=1))  # fmt: skip
     last_heard.note(

@@ -7,7 +7,7 @@ import pytest
 import streamlit as st
 
 from app.show import estate_map
-from app.state import estate, rooms, seasons_folder
+from app.state import estate, menu, seasons_folder
 from app.state.estate import PlotState
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import Observations
@@ -96,7 +96,7 @@ def test_states_tell_how_long_ago_a_plot_was_seen():
 
 def test_every_part_of_a_plot_opens_it():
     plots, _ = estate.plots()
-    assert rooms.ROOMS["plots"].parts == ("plots",)
+    assert menu.MENU["plots"].pages == ("plots",)
     content = estate_map.content(plots)
     areas, marks = content.layers
     for index, row in enumerate(areas.data):

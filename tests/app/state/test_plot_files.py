@@ -13,9 +13,9 @@ from app.state.brought_files import File
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.options import Upload
+from fieldmon.io.plot_request import PlotRequest, PlotSources, RecordSource
 from fieldmon.io.prepare import prepare
-from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
-from fieldmon.plot.grid import plant_at, row_label
+from fieldmon.plot.grid import plant_at, plant_numbers
 from fieldmon.plot.plot import Plot
 from tests.app.driving import (
     geotiff,
@@ -61,10 +61,10 @@ def test_records_by_row_and_plant_are_planned_as_the_commands_plan_them(app, tmp
     chance = prior_chance(
         made.plot.grid, made.plot.field, made.records, np.datetime64("2026-11-16"), PriorSettings()
     )
-    label = row_label(made.plot.grid)
+    numbered = plant_numbers(made.plot.grid)
     shade = colours.by_chance(chance)
-    assert shown.row.tolist() == label.line.tolist()
-    assert shown.number.tolist() == label.number.tolist()
+    assert shown.row.tolist() == numbered.line.tolist()
+    assert shown.number.tolist() == numbered.number.tolist()
     assert shown.colour.tolist() == shade.table[shade.rank].tolist()
     assert shown.chance == pytest.approx(chance, abs=1e-7)
     two_three, two_four, five_one = (

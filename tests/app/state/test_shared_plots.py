@@ -99,7 +99,7 @@ def test_rows_are_closed_by_the_hours_at_which_somebody_is_there(
     project, settings = season(), season().settings
     project.change(replace(settings, starts=time(7)), settings)
     on = max(local_clock(project.plot.field).today(), settings.begins)
-    line = project.label.line
+    line = project.plant_numbers.line
 
     def planned(rows):
         until_half_past_six = Application(

@@ -13,9 +13,9 @@ from fieldmon.reports import words
 
 
 def test_a_text_is_read_in_the_language_that_is_spoken(speaking):
-    assert texts.ROOMS["today"] == "Today"
+    assert texts.MENU["today"] == "Today"
     speaking("he")
-    assert texts.ROOMS["today"] == "היום"
+    assert texts.MENU["today"] == "היום"
     assert texts.COMPASS[0] == "צפונה"
     assert texts.TITLE == "fieldmon"
 

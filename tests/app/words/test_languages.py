@@ -172,7 +172,7 @@ def test_pages_speak_the_language_of_the_address(code, speaking):
         assert english_left(app, code) == [], part
 
 
-def test_every_part_of_every_room_speaks_another_language(season_app, speaking):
+def test_every_page_speaks_another_language(season_app, speaking):
     left = {}
     for code in SPOKEN:
         season_app.session_state[chosen_language.KEY] = code

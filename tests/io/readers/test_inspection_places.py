@@ -11,7 +11,7 @@ from fieldmon.io.import_report import Severity
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import plant_at, row_label
+from fieldmon.plot.grid import plant_at, plant_numbers
 from fieldmon.plot.layout import lay
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
@@ -94,8 +94,8 @@ def test_positions_that_would_lie_on_the_plot_with_their_axes_exchanged_are_offe
 def test_both_faces_of_a_plant_are_told_apart_by_number_or_by_face():
     grid = two_faced()
     twin = int(grid.twin[3])
-    label = row_label(grid, np.array([3]))
-    place = f"{label.line[0]},{label.number[0]}"
+    numbered = plant_numbers(grid, np.array([3]))
+    place = f"{numbered.line[0]},{numbered.number[0]}"
     imported = read(
         f"plant,row,number,face,found\n3,,,,x\n{twin},,,,x\n,{place},1,no\n,{place},2,no\n"
         f",{place},,skipped\n",

@@ -18,7 +18,7 @@ from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_file.rows import rows_in
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import dated, look_up, read_inspections
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.layout import rectangle
 
 GRID = rectangle(6, 10)
@@ -93,8 +93,8 @@ def test_plants_are_named_by_row_and_number_in_every_dialect():
         "row,nr,found\n2,3,x\n",
     ):
         findings = read(text).value
-        label = row_label(GRID, findings.plant)
-        assert (label.line.tolist(), label.number.tolist()) == ([2], [3])
+        numbered = plant_numbers(GRID, findings.plant)
+        assert (numbered.line.tolist(), numbered.number.tolist()) == ([2], [3])
 
 
 def test_plants_that_the_plot_does_not_have_are_named_and_left_out():

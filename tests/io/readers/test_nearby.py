@@ -19,7 +19,7 @@ from fieldmon.io.readers.nearby import (
 )
 from fieldmon.io.readers.places import NamedPlaces, Plants
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 
@@ -66,9 +66,9 @@ def test_a_record_between_everything_lies_on_no_plant_unless_its_accuracy_reache
 
 def test_places_of_a_grid_carry_the_labels_that_people_count():
     places = NamedPlaces.of((), GRID)
-    label = row_label(GRID)
+    numbered = plant_numbers(GRID)
     for line, number in ((1, 1), (3, 7), (6, 10)):
-        (i,) = np.flatnonzero((label.line == line) & (label.number == number))
+        (i,) = np.flatnonzero((numbered.line == line) & (numbered.number == number))
         (j,) = np.flatnonzero(
             (places.plants.row == str(line)) & (places.plants.plant == str(number))
         )

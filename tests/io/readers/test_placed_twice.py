@@ -15,14 +15,14 @@ from fieldmon.io.readers.placed_twice import PlacedTwice
 from fieldmon.io.readers.places import NamedPlaces, labelled
 from fieldmon.io.readers.records import records_of
 from fieldmon.plot.field import Field
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 
 # 30 rows of 20, 3 m and 2 m apart
 GRID = rectangle(30, 20, Planting(row_spacing_m=3.0, plant_spacing_m=2.0, row_bearing_deg=90.0))
 PLACES = NamedPlaces((), labelled(GRID))
-LABEL = row_label(GRID)
+LABEL = plant_numbers(GRID)
 
 
 def read(moved_m, options=None, of=slice(0, 100), **columns):

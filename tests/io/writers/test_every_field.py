@@ -17,7 +17,7 @@ from fieldmon.compute.wording import chance_figure
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import write_handoff
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from tests.io.writers.handed import (
     NAMES,
     START,
@@ -195,7 +195,7 @@ def said_of(plan):
     """Return all that a format of a table says of each stop, by name: these fields and no more."""
     route, grid, notes = plan.route, plan.grid, plan.notes
     told = {name: values for name, values in wanted(plan).items() if name not in ("number", "face")}
-    told["number"] = [int(row_label(grid, np.array([p])).number[0]) for p in route.plant]
+    told["number"] = [int(plant_numbers(grid, np.array([p])).number[0]) for p in route.plant]
     told["arrive"] = [
         "" if notes.start is None else (notes.start + timedelta(seconds=round(s))).isoformat()
         for s in route.arrive_s.tolist()

@@ -9,7 +9,7 @@ import pytest
 
 from app.show.maps import colours, plant_layers
 from app.show.maps.plant_layers import PlantNotes
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.layout import rectangle
 from tests.app.shown_plants import plants_in, shown_plants
 from tests.paths import ROOT
@@ -22,11 +22,11 @@ CM = 1e-7
 
 def test_every_plant_is_sent_with_its_place_its_row_and_number_and_the_colour_of_its_state():
     shown = plants_in(plant_layers.plants(GRID, colours.by_state(STATE)))
-    label = row_label(GRID, np.arange(len(GRID)))
+    numbered = plant_numbers(GRID, np.arange(len(GRID)))
     assert shown.lonlat == pytest.approx(GRID.lonlat(), abs=CM)
     assert (shown.row, shown.number) == (
-        pytest.approx(label.line),
-        pytest.approx(label.number),
+        pytest.approx(numbered.line),
+        pytest.approx(numbered.number),
     )
     assert shown.rank.tolist() == (STATE + 1).tolist()
     assert shown.of_colour(colours.FOUND).tolist() == np.flatnonzero(STATE == 1).tolist()

@@ -14,7 +14,7 @@ from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Application, Season
-from fieldmon.monitoring.record_tables import (
+from fieldmon.monitoring.certifier_tables import (
     csv_bytes,
     inspections_table,
     log_table,
@@ -92,10 +92,10 @@ def test_inspections_and_log_are_there_line_by_line(season):
     lines = read(inspections_table(season))
     assert [line["result"] for line in lines].count("found") == 1
     assert len(lines) == len(done) == 4
-    label = season.label
+    numbered = season.plant_numbers
     found = int(done.plant[done.result == FOUND][0])
     (here,) = (line for line in lines if line["result"] == "found")
-    assert (int(here["row"]), int(here["number"])) == (label.line[found], label.number[found])
+    assert (int(here["row"]), int(here["number"])) == (numbered.line[found], numbered.number[found])
     place = [float(here["lon"]), float(here["lat"])]
     assert place == pytest.approx(season.plot.grid.lonlat(np.array([found]))[0], abs=1e-7)
     log = read(log_table(season))

@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from fieldmon.cli import waiting
+from fieldmon.cli import progress
 from fieldmon.compute import jit_progress
 from fieldmon.compute.jit_progress import FirstUse
 
@@ -16,8 +16,8 @@ from fieldmon.compute.jit_progress import FirstUse
 def test_a_command_says_that_it_compiles_and_wipes_it_away_where_it_can(monkeypatch, capsys, tty):
     monkeypatch.setattr(sys.stderr, "isatty", lambda: tty, raising=False)
     use = FirstUse()
-    monkeypatch.setattr(waiting, "FIRST_USE", use)
-    shown = waiting.Waiting()
+    monkeypatch.setattr(progress, "FIRST_USE", use)
+    shown = progress.Waiting()
     with shown:
         use.began()
         use.waited(jit_progress.LEAST_S)
@@ -52,18 +52,18 @@ def fast(monkeypatch):
     """Let seconds be counted at a terminal as fast as can be; return their clock."""
     made = Clock()
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    monkeypatch.setattr(waiting, "monotonic", made)
-    monkeypatch.setattr(waiting, "_SILENT_S", 0.0)
-    monkeypatch.setattr(waiting, "_EVERY_S", 0.001)
+    monkeypatch.setattr(progress, "monotonic", made)
+    monkeypatch.setattr(progress, "_SILENT_S", 0.0)
+    monkeypatch.setattr(progress, "_EVERY_S", 0.001)
     return made
 
 
 def test_a_long_command_counts_the_seconds_at_a_terminal_unless_a_bar_does(monkeypatch, capsys):
     clock, written = fast(monkeypatch), []
-    monkeypatch.setattr(waiting, "_show", written.append)
-    with waiting.WAITING:
+    monkeypatch.setattr(progress, "_show", written.append)
+    with progress.WAITING:
         clock.goes_on()
-        with waiting.progress("Simulating"):
+        with progress.progress("Simulating"):
             clock.goes_on()
             assert written[-1] == "\r\x1b[K"
         clock.goes_on()
@@ -84,8 +84,8 @@ def test_no_second_is_counted_after_the_count_was_wiped_away(monkeypatch, leavin
             time.sleep(0.02)  # whoever leaves meanwhile must wait for it
         written.append(text)
 
-    monkeypatch.setattr(waiting, "_show", slow)
-    shown = waiting.Waiting()
+    monkeypatch.setattr(progress, "_show", slow)
+    shown = progress.Waiting()
     with shown:
         (count,) = {*threading.enumerate()} - others
         assert writing.wait(5)
@@ -105,8 +105,8 @@ def test_a_bar_that_is_told_what_is_done_is_as_far_as_that(monkeypatch):
             self.pos += more
 
     bar = Bar()
-    monkeypatch.setattr(waiting, "progress", lambda _: contextlib.nullcontext(bar))
-    with waiting.counting("Simulating") as count:
+    monkeypatch.setattr(progress, "progress", lambda _: contextlib.nullcontext(bar))
+    with progress.counting("Simulating") as count:
         for done in (2, 3, 7):
             count(done, 9)
             assert (bar.pos, bar.length) == (done, 9)

@@ -1,7 +1,7 @@
 """What a plot is prepared from."""
 
 from fieldmon.io.options import Upload
-from fieldmon.io.sources import PlantingChoices, PlotRequest, PlotSources, RecordSource
+from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources, RecordSource
 
 
 def test_only_what_is_said_of_rows_is_given_on():

@@ -2,7 +2,7 @@
 
 import threading
 
-from app.state.background import BackgroundWork
+from app.state.background_work import BackgroundWork
 from fieldmon.errors import FieldmonError
 
 

@@ -13,14 +13,14 @@ from ..show import day, report
 from ..state import (
     browser,
     chosen_day,
-    morning,
+    menu,
+    morning_steps,
     notices,
     plot_source,
-    rooms,
     widget_memory,
     work_day,
 )
-from ..state.morning import BEGIN, LOOK_BACK, NEXT_DAY, PLAN, RECORD, REPORT, SEND
+from ..state.morning_steps import BEGIN, LOOK_BACK, NEXT_DAY, PLAN, RECORD, REPORT, SEND
 from ..words import texts
 from ..words.language import listed
 from . import acting, beginning, changing_strategy, handing_out, news
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
 
     from ..state.choices import Choices
-    from ..state.morning import Step
+    from ..state.morning_steps import Step
 
 
 def show(choices: Choices, plan: DayPlan) -> None:
     """Show the steps of the day."""
     with st.container(key="steps", gap=None):
-        for step in morning.steps(choices, plan):
+        for step in morning_steps.steps(choices, plan):
             with st.container(
                 key=f"step_{step.name}", horizontal=True, vertical_alignment="center"
             ):
@@ -59,7 +59,7 @@ def _sign(step: Step) -> str:
 
 def _said(choices: Choices, plan: DayPlan, step: Step) -> str:
     name = texts.STEPS[step.name]
-    if step.name == LOOK_BACK and (left := morning.left_unsaid(choices)) is not None:
+    if step.name == LOOK_BACK and (left := morning_steps.left_unsaid(choices)) is not None:
         name = texts.STEP_PLANNED_FOR.format(day=choices.units.said_day(left, choices.on))
         return f"**{name}** {texts.STEP_UNRECORDED}"
     if step.name == LOOK_BACK and not choices.is_past:
@@ -68,7 +68,7 @@ def _said(choices: Choices, plan: DayPlan, step: Step) -> str:
 
 
 def _visit(choices: Choices, _: DayPlan) -> str:
-    on = morning.last_visit(choices)
+    on = morning_steps.last_visit(choices)
     if on is None:
         return texts.STEP_NO_VISIT
     was = chosen_day.figures(choices, str(on))
@@ -141,15 +141,15 @@ def _shown(step: Step) -> dict[str, Any]:
 
 
 def _look_back(choices: Choices, _: DayPlan, step: Step) -> None:
-    if (left := morning.left_unsaid(choices)) is not None:
+    if (left := morning_steps.left_unsaid(choices)) is not None:
         _button(step, texts.STEP_BUTTONS[RECORD], _record_of, left)
     else:
-        _button(step, texts.STEP_BUTTONS[LOOK_BACK], rooms.turn_to, "season")
+        _button(step, texts.STEP_BUTTONS[LOOK_BACK], menu.turn_to, "season")
 
 
 def _record_of(on: date) -> None:
     work_day.choose(plot_source.chosen(), on)
-    rooms.open_part("record")
+    menu.open_page("record")
 
 
 def _plan(choices: Choices, plan: DayPlan, step: Step) -> None:
@@ -172,7 +172,7 @@ def _begin(choices: Choices, _: DayPlan, step: Step) -> None:
 def _note_sent(choices: Choices) -> None:
     """Note that the day is taken along where who looks at the codes has it already."""
     if handing_out.is_out(choices):
-        morning.note(choices, SEND)
+        morning_steps.note(choices, SEND)
 
 
 def _send(choices: Choices, plan: DayPlan, step: Step) -> None:
@@ -184,9 +184,9 @@ def _send(choices: Choices, plan: DayPlan, step: Step) -> None:
 
 def _record(_: Choices, __: DayPlan, step: Step) -> None:
     if browser.is_phone():
-        _button(step, texts.START_SCOUTING, rooms.open_part, "scout")
+        _button(step, texts.START_SCOUTING, menu.open_page, "scout")
     else:
-        _button(step, texts.STEP_BUTTONS[RECORD], rooms.open_part, "record")
+        _button(step, texts.STEP_BUTTONS[RECORD], menu.open_page, "record")
 
 
 def _report(choices: Choices, _: DayPlan, step: Step) -> None:
@@ -195,7 +195,7 @@ def _report(choices: Choices, _: DayPlan, step: Step) -> None:
     # made when it is asked for: fonts are cut and plants are drawn, in a second or two
     st.download_button(
         texts.STEP_BUTTONS[REPORT], lambda: pdf_bytes(made(), paper), f"day_{choices.day}.pdf",
-        "application/pdf", on_click=morning.note, args=(choices, REPORT), **_shown(step),
+        "application/pdf", on_click=morning_steps.note, args=(choices, REPORT), **_shown(step),
     )  # fmt: skip
 
 

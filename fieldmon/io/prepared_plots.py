@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiLineString
 
-    from fieldmon.io.sources import (
+    from fieldmon.io.plot_request import (
         Role,
     )
     from fieldmon.plot.assumed import Assumed

@@ -2,10 +2,10 @@
 
 import pytest
 
-from fieldmon.cli.preparing import estate, prepared
+from fieldmon.cli.files_to_plot import estate, prepared
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.options import PlotOptions, RecordOptions, Upload
-from fieldmon.io.sources import PlotRequest, PlotSources, RecordSource
+from fieldmon.io.plot_request import PlotRequest, PlotSources, RecordSource
 from tests.cli.estate import ZIP
 
 ROWS = RecordSource(Upload("r.csv", b"row,plant,date,count\n3,7,2026-03-01,4\n"), RecordOptions())

@@ -7,7 +7,7 @@ import pyogrio
 import pytest
 import shapely
 
-from fieldmon.monitoring import Season, routes
+from fieldmon.monitoring import Season, kept_routes
 from fieldmon.monitoring.settings import MonitoringSettings
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot
@@ -97,7 +97,7 @@ def test_a_route_has_the_digest_that_season_files_hold(season):
 def test_each_field_of_a_kept_route_and_of_its_stops_is_what_the_route_says(season):
     season.plan(BEGINS)
     today = season.plan(BEGINS)
-    route, grid, label = today.route, season.plot.grid, season.label
+    route, grid, numbered = today.route, season.plot.grid, season.plant_numbers
     kept = season.path.with_name("read.gpkg")
     season.store.back_up(kept)
     frame = pyogrio.read_dataframe(kept, layer="routes").set_index("revision").loc[2]
@@ -117,8 +117,8 @@ def test_each_field_of_a_kept_route_and_of_its_stops_is_what_the_route_says(seas
     plants = route.plant
     assert stops.get_coordinates().to_numpy() == pytest.approx(grid.lonlat()[plants])
     for name, values in (
-        ("stop", range(1, len(route) + 1)), ("plant", plants), ("line", label.line[plants]),
-        ("number", label.number[plants]), ("arrive_s", route.arrive_s), ("chance", route.chance),
+        ("stop", range(1, len(route) + 1)), ("plant", plants), ("line", numbered.line[plants]),
+        ("number", numbered.number[plants]), ("arrive_s", route.arrive_s), ("chance", route.chance),
     ):  # fmt: skip
         assert stops[name].tolist() == list(values), name
     clock = [(begin + timedelta(seconds=round(s))).isoformat() for s in route.arrive_s.tolist()]
@@ -134,15 +134,15 @@ def test_the_route_of_one_of_a_team_begins_when_that_one_does(tmp_path):
     for today, name in zip(days, ("Ann", "Ben"), strict=True):
         assert season.kept_route(BEGINS, name).tolist() == today.route.plant.tolist()
         with season.store.reading() as db:
-            assert routes.is_kept(db, today, name)
-            assert not routes.is_kept(db, today, "")
+            assert kept_routes.is_kept(db, today, name)
+            assert not kept_routes.is_kept(db, today, "")
 
 
 def test_all_plans_of_a_day_are_told_with_the_last_apart(season):
     rest = season.plan(BEGINS)
     with season.store.reading() as db:
-        (kept,) = routes.of_day(db, 0)
-        assert routes.of_day(db, 1) == []
+        (kept,) = kept_routes.of_day(db, 0)
+        assert kept_routes.of_day(db, 1) == []
     assert kept.last.tolist() == rest.route.plant.tolist()
     assert {*kept.last} < {*kept.of_all}
     assert kept.hours() <= ROBOT.hours

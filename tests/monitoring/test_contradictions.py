@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.monitoring.recorded_before import contradicting, contradictions, said_before
+from fieldmon.monitoring.contradictions import contradicting, contradictions, said_before
 from fieldmon.plot.layout import rectangle
 from tests.monitoring.seasons import BEGINS, a_season
 

@@ -11,7 +11,7 @@ from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
 from fieldmon.monitoring.inspection_table import time_text
-from fieldmon.plot.grid import row_label
+from fieldmon.plot.grid import plant_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -56,12 +56,12 @@ class Contradictions:
 
     def sentences(self, grid: PlantGrid) -> list[str]:
         """Return one sentence for each, with rows as the plot's file names them."""
-        label = row_label(grid, self.plant)
-        told = (*label, self.date, self.recorded, self.brought, self.together)
+        numbered = plant_numbers(grid, self.plant)
+        told = (*numbered, self.date, self.recorded, self.brought, self.together)
         sentences: list[str] = []
         for line, number, date, was, now, together in zip(*(v.tolist() for v in told), strict=True):
             values = {
-                "line": grid.row_signs[line],
+                "line": grid.line_signs[line],
                 "number": number,
                 "date": date,
                 "result_names": worded(RESULT_NAMES[was]),

@@ -8,7 +8,7 @@ import typer
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.cli.numbers import of_robot, refusing, within
+from fieldmon.cli.option_ranges import of_robot, refusing, within
 from fieldmon.cli.options import WorkerOptions
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
-    from fieldmon.plot.grid import RowLabel
+    from fieldmon.plot.grid import PlantNumbers
 
 # hexadecimal digits that a phone, too, counts exactly
 _PLAN_DIGITS = 12
@@ -41,7 +41,7 @@ def begins(settings: MonitoringSettings, today: DayPlan, begun_s: float) -> date
 def keep(
     db: sqlite3.Connection,
     settings: MonitoringSettings,
-    label: RowLabel,
+    numbered: PlantNumbers,
     today: DayPlan,
     who: str = "",
 ) -> bool:
@@ -58,7 +58,7 @@ def keep(
         f"INSERT INTO routes ({', '.join(row)}) VALUES ({', '.join('?' * len(row))})",  # noqa: S608 - ours
         tuple(row.values()),
     )
-    insert(db, schema.STOPS, _stops(cursor.lastrowid, label, today.route))
+    insert(db, schema.STOPS, _stops(cursor.lastrowid, numbered, today.route))
     bounds = (*line.min(axis=0).tolist(), *line.max(axis=0).tolist())
     for table in (schema.ROUTES, schema.STOPS):
         touch(db, table.name, bounds)
@@ -86,7 +86,7 @@ def _row(
     }
 
 
-def _stops(number: int | None, label: RowLabel, route: Route) -> list[tuple[object, ...]]:
+def _stops(number: int | None, numbered: PlantNumbers, route: Route) -> list[tuple[object, ...]]:
     """Return the rows of the stops of a route with a number."""
     begin, clock = _start(route), grid_clock(route.aisles.grid)
     stops = zip(
@@ -94,8 +94,8 @@ def _stops(number: int | None, label: RowLabel, route: Route) -> list[tuple[obje
         [number] * len(route),
         range(1, len(route) + 1),
         route.plant.tolist(),
-        label.line[route.plant].tolist(),
-        label.number[route.plant].tolist(),
+        numbered.line[route.plant].tolist(),
+        numbered.number[route.plant].tolist(),
         route.arrive_s.tolist(),
         [clock.after(begin, round(s)).isoformat() for s in route.arrive_s.tolist()],
         route.believed.tolist(),

@@ -17,7 +17,7 @@ from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.brought_findings import counting_copy, read_brought, record_saved
+from fieldmon.monitoring.inspection_import import counting_copy, read_brought, record_saved
 from tests.monitoring.seasons import BEGINS, a_season
 from tests.monitoring.test_outside_changes import outside
 

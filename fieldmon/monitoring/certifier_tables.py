@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.open_season import OpenSeason
-    from fieldmon.monitoring.season_records import SeasonRecords
+    from fieldmon.monitoring.season_inspections import SeasonInspections
     from fieldmon.monitoring.season_treatments import SeasonTreatments
 
 #: what stands in each line, by column
@@ -113,15 +113,15 @@ def _treatments(season: SeasonTreatments) -> Iterator[dict[str, object]]:
         yield dict(zip(_TREATMENT, values, strict=True))
 
 
-def inspections_table(season: SeasonRecords) -> Table:
+def inspections_table(season: SeasonInspections) -> Table:
     """Return a line for each inspection that counts: recorded again, they change nothing."""
     with season.one_moment():
         done, corrected = season.history.inspections, season.corrected_by()
-    label, plot, grid = season.label, season.plot.field.name, season.plot.grid
+    numbered, plot, grid = season.plant_numbers, season.plot.field.name, season.plot.grid
     plants, of = np.unique(done.plant, return_inverse=True)
     lon, lat = np.round(grid.lonlat(plants), 7).T
     results = [RESULT_NAMES[result] for result in done.result.tolist()]
-    lines = label.line[done.plant].tolist()
+    lines = numbered.line[done.plant].tolist()
     dates = np.datetime_as_string(done.date).tolist()
     counts = _each(done.count, float)
     which = zip(done.plant.tolist(), dates, results, counts, strict=True)
@@ -139,7 +139,7 @@ def inspections_table(season: SeasonRecords) -> Table:
         # of all seasons, as they share columns: empty where the number says all
         "row_name": [grid.row_names.get(line, "") for line in lines],
         # no column "plant": in route files that is the number on the plot, from 0
-        "number": label.number[done.plant].tolist(),
+        "number": numbered.number[done.plant].tolist(),
         "lon": lon[of].tolist(),
         "lat": lat[of].tolist(),
         "result": results,

@@ -9,8 +9,8 @@ from fieldmon.errors import SettingError
 from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.field import Field
 from fieldmon.samplers import sampler
-from fieldmon.samplers.answers import Checked, must_detect
 from fieldmon.samplers.base import InspectionTimes, Stops
+from fieldmon.samplers.checked_sampler import Checked, must_detect
 from tests.scenes import GRIDS, scene_on
 
 

@@ -33,16 +33,16 @@ from fieldmon.monitoring import (
     treatments,
 )
 from fieldmon.monitoring.batches import Recorded, Undone, more_in_words
-from fieldmon.monitoring.merging import Merged
-from fieldmon.monitoring.open_season import OpenSeason, settings_of
-from fieldmon.monitoring.people import as_written, names_written, written_in
-from fieldmon.monitoring.recorded_before import (
+from fieldmon.monitoring.contradictions import (
     Contradictions,
     contradicting,
     contradictions,
     known_before,
     said_before,
 )
+from fieldmon.monitoring.merging import Merged
+from fieldmon.monitoring.open_season import OpenSeason, settings_of
+from fieldmon.monitoring.people import as_written, names_written, written_in
 from fieldmon.monitoring.settings import seconds
 from fieldmon.monitoring.told_detection import said_now
 from fieldmon.monitoring.transactions import Store
@@ -71,7 +71,7 @@ _GONE = (
 
 
 @checked
-class SeasonRecords(OpenSeason):
+class SeasonInspections(OpenSeason):
     """The inspections of a season, whoever brings them; each batch can be undone."""
 
     def contradictions(self, inspections: Inspections) -> Contradictions:
@@ -227,7 +227,7 @@ class SeasonRecords(OpenSeason):
             against = contradictions(inspections, held).which
             others = inspections.take(np.setdiff1d(np.arange(len(inspections)), against))
             done, news = self._add(db, others, held, (source, who, None))
-            holding, plot = inspections.take(against), (self.plot.grid, self.label)
+            holding, plot = inspections.take(against), (self.plot.grid, self.plant_numbers)
             taken: tuple[str, ...] = ()
             if len(holding):
                 said = settings_of(db), (source, who)
@@ -253,7 +253,7 @@ class SeasonRecords(OpenSeason):
         if into is not None:
             batches.must_count(db, into)
         batch = batches.begin(db, "findings", source, "") if into is None else into
-        how = self.plot.grid, self.label, settings_of(db), (batch, who)
+        how = self.plot.grid, self.plant_numbers, settings_of(db), (batch, who)
         named = np.where(inspections.who == "", who, inspections.who).astype(object)
         inspections = replace(inspections, who=named)
         known = said_before(inspections, held)
@@ -326,7 +326,7 @@ class SeasonRecords(OpenSeason):
                     inspection=inspection,
                 )
             )
-        signs = self.plot.grid.row_signs
+        signs = self.plot.grid.line_signs
         with self._lock, self.store.writing() as db:
             if inspection is None:
                 number, before = batches.to_undo(db, batch)
@@ -351,7 +351,7 @@ class SeasonRecords(OpenSeason):
         """
         with self._lock, self.store.writing() as db:
             but = season_log.left_out_of(db, batch)
-            changed, said = batches.redo(db, batch, but, self.plot.grid.row_signs)
+            changed, said = batches.redo(db, batch, but, self.plot.grid.line_signs)
             told = phone_tables.undo_as_told(db)
             changed |= {number for number, _ in told}
             for one in changed:
@@ -385,7 +385,7 @@ class SeasonRecords(OpenSeason):
         """
         with self._lock, self.store.writing() as db:
             outside_changes.refuse_more(db)
-            settings, plot = settings_of(db), (self.plot.grid, self.label)
+            settings, plot = settings_of(db), (self.plot.grid, self.plant_numbers)
             who = written_in(db, who)
             taken = outside_changes.correct(db, plot, settings, who)
             self._may_be_taken(db, taken, confirmed=confirmed)
@@ -427,7 +427,7 @@ class SeasonRecords(OpenSeason):
             to correct.
         """
         with self._writing() as db:
-            plot, settings = (self.plot.grid, self.label), settings_of(db)
+            plot, settings = (self.plot.grid, self.plant_numbers), settings_of(db)
             if on is not None:
                 settings.day(on)
             day, held_at = corrections.made(db, inspection)
@@ -498,7 +498,7 @@ class SeasonRecords(OpenSeason):
         They are a batch of their own. Return a sentence for each that does not count, and why; it
         stays as it is. Where more was changed, nothing is taken before that is settled.
         """
-        plot = self.plot.grid, self.label
+        plot = self.plot.grid, self.plant_numbers
         with self._lock, self.store.reading() as db:
             if not drafts.any_waiting(db) or outside_changes.waiting(db):
                 return ()
@@ -519,7 +519,7 @@ class SeasonRecords(OpenSeason):
         self, db: sqlite3.Connection, taken: list[drafts.Draft], settings: MonitoringSettings
     ) -> None:
         batch = batches.begin(db, "findings", drafts.SOURCE, "")
-        said = (self.plot.grid, self.label), settings, batch
+        said = (self.plot.grid, self.plant_numbers), settings, batch
         news = drafts.keep(db, taken, *said)
         batches.end(db, batch, len(taken))
         known = [one for one in taken if one.known is not None]
@@ -599,7 +599,7 @@ class SeasonRecords(OpenSeason):
                 )
             )
         with Store(copy).reading() as theirs:
-            plot, who = (self.plot.grid, self.label), written_in(db, who)
+            plot, who = (self.plot.grid, self.plant_numbers), written_in(db, who)
             taken = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who))
         self._may_be_taken(db, taken, confirmed=confirmed)
         self._corrected(db, taken, who)
@@ -645,7 +645,7 @@ class SeasonRecords(OpenSeason):
             if states != was:
                 _log_merged(db, states, told, taken, ended)
             twice = _recorded_twice(treatments.kept(db, self._inside, clock), taken)
-            overlaps = scouts.overlaps(db, int(self.label.line.max()))
+            overlaps = scouts.overlaps(db, int(self.plant_numbers.line.max()))
         no_more = (
             cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in ended
         )

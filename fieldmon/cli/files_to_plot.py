@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.prior_settings import PriorSettings
-    from fieldmon.io.prepared import Estate, Prepared
-    from fieldmon.io.sources import PlotRequest
+    from fieldmon.io.plot_request import PlotRequest
+    from fieldmon.io.prepared_plots import Estate, Prepared
 
 
 def prepared(request: PlotRequest, terminal: Terminal | None = None) -> Prepared:

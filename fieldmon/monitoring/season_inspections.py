@@ -581,7 +581,8 @@ class SeasonInspections(OpenSeason):
 
         They are a batch of their own, of `who`; `name` is what the copy is called.
         Raise `FileProblem` if a changed row makes no sense or is not here, `SettingError` if
-        nobody is named, and `ContradictionError` as `correct` does.
+        nobody is named, and `ContradictionError` if they contradict what else is recorded and are
+        not `confirmed`.
         """
         with self._writing() as db:
             return self._take_corrections(db, copy, (name, who), confirmed=confirmed)

@@ -37,7 +37,7 @@ def test_ages_are_whole_days_without_a_gap():
 @pytest.mark.parametrize("dark", [False, True])
 def test_every_layer_that_can_be_switched_has_its_signs_in_its_own_colours(dark):
     parts = {part["of"]: part["items"] for part in legends.signs(dark=dark)}
-    # words are no signs, a plan has its own in `legends.plan`, and what was before is named by its switch
+    # words are no signs, a plan has its own in `legends.plan`, what was before only a switch
     without = {"numbers", "rows", "plan", "before"}
     assert set(parts) == set(map_layers.PARTS) - without, (
         "each switch of PARTS needs a part of its name in `legends.signs`, or stands in `without`"

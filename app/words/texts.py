@@ -8,6 +8,7 @@ import sys
 from types import ModuleType
 from typing import Any
 
+from fieldmon.reports import words
 from fieldmon.samplers import of_equal_times
 
 from . import language
@@ -198,7 +199,7 @@ SEVERITIES = {
     "doubtful": "Please look",
 }
 STOPS = "Stops in order"
-LEGEND_CHANCE = "Chance that a plant is infested"
+LEGEND_CHANCE = words.LEGEND_CHANCE
 LEGEND_ROUTE, LEGEND_GATE = "route; numbers: its legs, stops from near", "gate: start and end"
 LEGEND_DAYS, LEGEND_NEVER = "{n} days ago", "never inspected"
 LEGEND_HOT = "hot spot: finds cluster more than chance allows"

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
 
 _NOT_ONLY_PLOTS = frozenset({"locality", "site"})
-_NAMED = 5
 _OURS = Remedy("columns", "plot=", worded("They are of this plot"))
 
 
@@ -50,7 +49,7 @@ def of_this_plot(
     said = {
         "n": len(named),
         "column": column,
-        "names": first_few(sorted(set(named)), _NAMED),
+        "names": first_few(sorted(set(named))),
         "plot": called[0],
     }
     if options.take_doubtful:

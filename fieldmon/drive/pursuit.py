@@ -76,7 +76,7 @@ class Pursuit(Whole):
     def __init__(self, line_m: Float, pace: Pace) -> None:
         self._pace, self._stretches = pace, [LineToFollow(one) for one in stretches(line_m)]
         self._k, self._aimed = 0, False
-        self._whole = shapely.linestrings(line_m) if len(line_m) > 1 else None
+        self._whole = shapely.LineString(line_m) if len(line_m) > 1 else None
 
     @property
     def done(self) -> bool:

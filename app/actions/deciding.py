@@ -88,13 +88,15 @@ def _box(key: str, learnt: float | None = None) -> None:
     )  # fmt: skip
 
 
-def known_thresholds() -> None:
+def known_thresholds(choices: Choices) -> None:
     """Offer the published thresholds and those of one's own, each with its source.
 
+    Those of the season's pest come first; of one for another pest it is said.
     A share of the plants is taken for the answer above; of leaves there is a verdict here.
     """
     with st.expander(texts.DECIDE_LEAVES):
-        known = deciding.thresholds()
+        pest = _pest_of(choices)
+        known = deciding.thresholds(pest)
         name = widget_memory.show(
             st.selectbox, texts.DECIDE_THRESHOLD, list(known), key="decide leaves of",
             default=next(iter(known)),
@@ -102,6 +104,8 @@ def known_thresholds() -> None:
         )  # fmt: skip
         asked = known[name]
         st.caption(texts.isolated(asked.source))
+        if doubt := asked.doubt(pest):
+            st.warning(in_words(doubt))
         if asked.measure == "share of plants":
             st.button(texts.DECIDE_TAKE.format(share=asked.level), key="take threshold",
                       on_click=widget_memory.put,
@@ -109,6 +113,12 @@ def known_thresholds() -> None:
         else:
             _leaves(asked)
         _own()
+
+
+def _pest_of(choices: Choices) -> str:
+    """Return the name of the season's pest; empty: it has none."""
+    pest = None if choices.season is None else choices.season.settings.pest
+    return "" if pest is None else pest.name
 
 
 def _own() -> None:

@@ -324,16 +324,6 @@ _OF_PHOTO = {
 def description() -> dict[str, Any]:
     """Return the OpenAPI document."""
     season = f"{PATH}/seasons/{{season}}"
-    done = _answer({"type": "object"}, "On the disk.")
-    kept = _answer({"type": "object", "properties": {"new": {"type": "boolean"}}}, "On the disk.")
-    send_photo = _query(**_OF_PHOTO) | {
-        "requestBody": {
-            "required": True,
-            "description": f"JPEG, PNG or WebP of {photos.MOST_BYTES // 2**20} MB at most; "
-            f"{photos.MOST_A_DAY} a person and day. `Content-Digest: sha-256=:...:` is checked.",
-            "content": _PICTURE["content"],
-        }
-    }
     return {
         "openapi": "3.1.0",
         "info": {
@@ -381,19 +371,36 @@ def description() -> dict[str, Any]:
                 "parameters": [_AT],
                 "post": _operation("Tell findings.", _answer(TAKEN, "Taken."), _body(FINDINGS)),
             },
-            f"{season}/photos/{{photo}}": {
-                "parameters": [_AT, _PHOTO],
-                "get": _operation("A photo.", _PICTURE),
-                "put": _operation("Send a photo.", kept, send_photo),
-            },
-            f"{season}/photos_asked/{{photo}}": {
-                "parameters": [_AT, _PHOTO],
-                "put": _operation(
-                    "Ask for a photo of a plant: it is asked for until one has come.",
-                    done,
-                    _body(ASKED_PHOTO),
-                ),
-                "delete": _operation("Ask for it no more.", done),
-            },
+            **_photos(season),
+        },
+    }
+
+
+def _photos(season: str) -> dict[str, Any]:
+    """Return the paths of photos, sent and asked for."""
+    done = _answer({"type": "object"}, "On the disk.")
+    kept = _answer({"type": "object", "properties": {"new": {"type": "boolean"}}}, "On the disk.")
+    send_photo = _query(**_OF_PHOTO) | {
+        "requestBody": {
+            "required": True,
+            "description": f"JPEG, PNG or WebP of {photos.MOST_BYTES // 2**20} MB at most; "
+            f"{photos.MOST_A_DAY} a person and day. `Content-Digest: sha-256=:...:` is checked.",
+            "content": _PICTURE["content"],
+        }
+    }
+    return {
+        f"{season}/photos/{{photo}}": {
+            "parameters": [_AT, _PHOTO],
+            "get": _operation("A photo.", _PICTURE),
+            "put": _operation("Send a photo.", kept, send_photo),
+        },
+        f"{season}/photos_asked/{{photo}}": {
+            "parameters": [_AT, _PHOTO],
+            "put": _operation(
+                "Ask for a photo of a plant: it is asked for until one has come.",
+                done,
+                _body(ASKED_PHOTO),
+            ),
+            "delete": _operation("Ask for it no more.", done),
         },
     }

@@ -51,10 +51,9 @@ def day_map(
     driven = chosen_day.route(choices)
     route = driven.route
     shades = shaded(choices, first)
-    sprayed = treated(choices)
     layers = [
         *plan(choices),
-        *sprayed,
+        *treated(choices),
         *marks.with_hot(plants(choices), _hot_layers(choices)),
         *route_of(choices, route),
         gate(choices),
@@ -67,7 +66,7 @@ def day_map(
     return MapContent(
         **field_map.of_plot(choices, len(route)), layers=layers,
         switches=switches(layers, off, ("numbers", "rows")), shades=shades,
-        legend=legend(choices, treated=bool(sprayed)), play=play,
+        legend=legend(choices), play=play,
         labels=[*labels.stops(route), *words(choices)],
     )  # fmt: skip
 
@@ -110,11 +109,11 @@ def switches(
     )
 
 
-def legend(choices: Choices, *, treated: bool = False) -> list[legends.LegendPart]:
-    """Return the legend of a day's map."""
+def legend(choices: Choices) -> list[legends.LegendPart]:
+    """Return the legend of a day's map; the browser leaves out what has no switch."""
     dark, recorded = choices.dark, bool(chosen_day.states_apart(choices)[1].any())
     return [legends.by_chance(dark=dark), legends.by_state(recorded=recorded),
-            legends.by_age(dark=dark), *legends.signs(dark=dark, treated=treated), legends.gate(),
+            legends.by_age(dark=dark), *legends.signs(dark=dark), legends.gate(),
             *legends.plan(choices.plot.field, dark=dark)]  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
-from fieldmon.decisions.thresholds import published
+from fieldmon.decisions.thresholds import in_order_for, published
 from fieldmon.monitoring.advice import AdviceSettings
 
 from . import cached, widget_memory
@@ -87,10 +87,11 @@ def asked(known: TreatmentEffect | None = None) -> AdviceSettings:
     )  # fmt: skip
 
 
-def thresholds() -> dict[str, Threshold]:
-    """Return the thresholds that are known by their names: the published ones, and one's own."""
+def thresholds(pest: str = "") -> dict[str, Threshold]:
+    """Return published thresholds and one's own by their names; those of other pests come last."""
     own: tuple[Threshold, ...] = st.session_state.get(_OWN, ())
-    return {one.name: one for one in (*published(), *own)}
+    known = {one.name: one for one in (*published(), *own)}
+    return {one.name: one for one in in_order_for(pest, known.values())}
 
 
 def keep_thresholds(own: tuple[Threshold, ...]) -> None:

@@ -34,5 +34,5 @@ def show(choices: Choices) -> None:
     deciding.files(choices, advice)
     cautions.show(choices)
     deciding.treated(choices, advice)
-    deciding.known_thresholds()
+    deciding.known_thresholds(choices)
     assuming.show(choices)

@@ -8,6 +8,7 @@ import sys
 from types import ModuleType
 from typing import Any
 
+from fieldmon.reports import words
 from fieldmon.samplers import of_equal_times
 
 from . import language
@@ -198,7 +199,7 @@ SEVERITIES = {
     "doubtful": "Please look",
 }
 STOPS = "Stops in order"
-LEGEND_CHANCE = "Chance that a plant is infested"
+LEGEND_CHANCE = words.LEGEND_CHANCE
 LEGEND_ROUTE, LEGEND_GATE = "route; numbers: its legs, stops from near", "gate: start and end"
 LEGEND_DAYS, LEGEND_NEVER = "{n} days ago", "never inspected"
 LEGEND_HOT = "hot spot: finds cluster more than chance allows"
@@ -266,7 +267,7 @@ PEST_PARTS = {
     "course": "Its course in a plant",
 }  # fmt: skip
 CELSIUS = "{n} °C"
-PEST_COLUMNS = ("Stage", "Threshold (°C)", "Degree-days")
+PEST_COLUMNS = ("Stage", "Development threshold (°C)", "Degree-days")
 PEST_NOT_FOUND = "Not found, or our choice"
 PEST_GENERATION = "A generation takes {degree_days} degree-days above {threshold}."
 PEST_INCREASE = "Rate of increase a day"
@@ -748,7 +749,7 @@ DECIDE_SAVING_HELP = (
     "Less than spraying the whole plot, in the currency in which the costs are given. The infested "
     "plants elsewhere lose {lost}, which is no part of it."
 )
-DECIDE_ENOUGH_HELP = "That the plot is below the threshold once the zones are treated."
+DECIDE_ENOUGH_HELP = "That the plot is below the action threshold once the zones are treated."
 DECIDE_ZONES = Plural("{n} zone", "{n} zones")
 DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"
 DECIDE_INFESTED, DECIDE_ITSELF, DECIDE_WRONG = "infested", "by itself", "may be wrong"
@@ -770,8 +771,9 @@ DECIDE_BOXES = {
     "days": "Days that it stays infested", "works": "Treating cleans, %",
     "reserve": "Never sprayed, for predators, %",
 }  # fmt: skip
-DECIDE_LEAVES, DECIDE_THRESHOLD = "By another threshold, or by leaves counted", "Threshold"
-DECIDE_OWN, DECIDE_OWN_TAKE = "Thresholds of your own (CSV)", "Take these thresholds"
+DECIDE_LEAVES = "By another action threshold, or by leaves counted"
+DECIDE_THRESHOLD = "Action threshold"
+DECIDE_OWN, DECIDE_OWN_TAKE = "Action thresholds of your own (CSV)", "Take these thresholds"
 DECIDE_OWN_HELP = (
     "Columns name, measure, level and source; the measure is share of plants, share of leaves or "
     "mean per leaf. They are kept until the page is closed."

@@ -43,10 +43,13 @@ class DecideOptions:
     season: SeasonFile
     threshold: Annotated[
         str,
-        typer.Option(help="Threshold: a share of the plants (5%), or the name of a published one."),
+        typer.Option(
+            help="Action threshold: a share of the plants (5%), or the name of a published one."
+        ),
     ]
     thresholds: Annotated[
-        Path | None, typer.Option(help="CSV of thresholds of your own: name,measure,level,source.")
+        Path | None,
+        typer.Option(help="CSV of action thresholds of your own: name,measure,level,source."),
     ] = None
     on: LastDate = None
     sure: Annotated[
@@ -258,6 +261,9 @@ def decide(
     said, short = _in_words(advice, threshold, leaves)
     where = advice.said_of_zones(above=of_plants)
     typer.echo("\n".join([f"{when}, after the day's work.", threshold.sentence(), *said, *where]))
+    pest = kept.settings.pest
+    if doubt := threshold.doubt("" if pest is None else pest.name):
+        typer.echo(f"warning: {doubt}", err=True)
     for caution in kept.cautions_if_treated(when, files.product, advice.sprayed):
         typer.echo(f"warning: {caution.sentence}", err=True)
     refused = _write(_AdviceAsked(kept, when, advice, files.product), files.output or [])

@@ -25,9 +25,6 @@ if TYPE_CHECKING:
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
 
-# files in a sentence
-_NAMED = 5
-
 
 def opened(files: Iterable[Path]) -> list[Season]:
     """Open the seasons that go into one table or report.
@@ -140,7 +137,7 @@ def refuse_unrecorded(season: Season | None, files: Iterable[Path]) -> None:
     if season is None:
         if not filled_in:
             return
-        some = first_few([str(file) for file in filled_in], _NAMED)
+        some = first_few([str(file) for file in filled_in])
         were = "were" if len(filled_in) > 1 else "was"
         raise SettingError(
             f"{some} would be written over, but {were} filled in, and only a season records "

@@ -15,7 +15,9 @@ from fieldmon.compute.ranges import SEASONS, AllowedRange
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
+    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.studies.samplers.calibration import Calibration
+    from fieldmon.studies.samplers.scenarios import Scenario
 
 # how long the seasons are
 _DAYS = 12
@@ -63,6 +65,22 @@ def beliefs(
         calibration,
         report_html,
     )
+
+    can_be_folder(output)
+    pest_in_weather = pest_in_weather_of(pest)
+    chosen = _scenario(scenario or "", pest_in_weather)
+    made, inspects = {}, named(sampler)
+    visited = replace(chosen, visit_every=visit_every)
+    for name, believe in (BELIEFS if pest_in_weather is None else BELIEFS_OF_PESTS).items():
+        made[name] = c = calibration([visited], inspects, believe, seeds, _DAYS)
+        typer.echo(f"{name:24} {_scores(c)}")
+    days = "on each" if visit_every == 1 else f"every {visit_every} days"
+    about = f"{chosen.name}; {seeds} seasons of {_DAYS} days, inspected {days} by {sampler}."
+    write_all(output, {"beliefs.html": report_html(made, about, seeds)})
+
+
+def _scenario(begins: str, pest: PestInWeather | None) -> Scenario:
+    """Return the first scenario whose name begins so; of a pest, as that spreads."""
     from fieldmon.studies.samplers.scenarios import (
         Scenario,
         all_scenarios,
@@ -70,26 +88,21 @@ def beliefs(
         with_pest,
     )
 
-    can_be_folder(output)
-    pest_in_weather = pest_in_weather_of(pest)
     known = [Scenario(), *all_scenarios(), *in_worlds()]
-    known = known if pest_in_weather is None else with_pest(known, pest_in_weather)
-    chosen = next((each for each in known if each.name.startswith(scenario or "")), None)
+    known = known if pest is None else with_pest(known, pest)
+    chosen = next((each for each in known if each.name.startswith(begins)), None)
     if chosen is None:
-        raise SettingError(f"A scenario must begin with {scenario!r}, but none does.")
-    made, inspects = {}, named(sampler)
-    visited = replace(chosen, visit_every=visit_every)
-    for name, believe in (BELIEFS if pest_in_weather is None else BELIEFS_OF_PESTS).items():
-        made[name] = c = calibration([visited], inspects, believe, seeds, _DAYS)
-        typer.echo(
-            f"{name:24} Brier {c.brier:.5f}, log score {c.log_score:.4f} "
-            f"(as suspicious or not {c.suspicious_log_score:.4f}), skill {c.skill:.2f}, intervals "
-            f"of 90 and 50 % hold on {_held(c)}, "
-            f"{1000 * c.seconds_a_day:.0f} ms a day"
-        )
-    days = "on each" if visit_every == 1 else f"every {visit_every} days"
-    about = f"{chosen.name}; {seeds} seasons of {_DAYS} days, inspected {days} by {sampler}."
-    write_all(output, {"beliefs.html": report_html(made, about, seeds)})
+        raise SettingError(f"A scenario must begin with {begins!r}, but none does.")
+    return chosen
+
+
+def _scores(of: Calibration) -> str:
+    """Return in a line how well a chance map said what came true, and what it cost."""
+    return (
+        f"Brier {of.brier:.5f}, log score {of.log_score:.4f} "
+        f"(as suspicious or not {of.suspicious_log_score:.4f}), skill {of.skill:.2f}, intervals "
+        f"of 90 and 50 % hold on {_held(of)}, {1000 * of.seconds_a_day:.0f} ms a day"
+    )
 
 
 def _held(of: Calibration) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,6 +13,11 @@ from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.progress import counting
 from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.compute.ranges import PAIRED
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fieldmon.studies.verdicts.until_verdict import VerdictSummary
 
 # 1.96 standard deviations of a share of one half
 _WIDEST = 0.98
@@ -46,7 +51,6 @@ def verdicts(
     from fieldmon.simulation.experiment import run
     from fieldmon.studies.outcome_table import OutcomeTable
     from fieldmon.studies.verdicts.until_verdict import (
-        APART,
         VerdictOutcome,
         real_questions,
         study_of_verdicts,
@@ -69,7 +73,14 @@ def verdicts(
     table = OutcomeTable(file, [chunk.key for chunk in study.chunks()], VerdictOutcome)
     with going_on(file), counting("Plots") as count, table, executor.threads() as workers:
         run(study, workers, table, count)
-    told = summaries(table.asked())
+    _tell(summaries(table.asked()), seeds)
+    typer.echo(f"Written: {file}")
+
+
+def _tell(told: Sequence[VerdictSummary], seeds: int) -> None:
+    """Print what each contender came to on each question, and what the columns mean."""
+    from fieldmon.studies.verdicts.until_verdict import APART
+
     wide = max(34, *(len(one.question) for one in told))
     typer.echo(f"{'question':{wide}} {'contender':26} looks  of W  right  apart  none")
     for one in told:
@@ -84,4 +95,3 @@ def verdicts(
         f"plots without a verdict. With {seeds} plots a question a share may be off by "
         f"{_WIDEST / seeds**0.5:.2f} (95 %)."
     )
-    typer.echo(f"Written: {file}")

@@ -190,7 +190,7 @@ def joined(between: str, parts: Iterable[str]) -> Worded:
     return made
 
 
-def first_few(names: Sequence[str], most: int) -> str:
+def first_few(names: Sequence[str], most: int = 5) -> str:
     """Return the names that a sentence has room for, and a sign where there are more.
 
     Examples

@@ -1,1 +1,1 @@
-"""From finds to a decision: thresholds, sequential plans, where to treat."""
+"""From finds to a decision: action thresholds, sequential plans, where to treat."""

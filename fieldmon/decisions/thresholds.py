@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import Upload, source_name
-from fieldmon.io.packaged import packaged_table
+from fieldmon.io.packaged import packaged_table, pest_names
 from fieldmon.io.parse.own_table import own_table
 from fieldmon.io.parse.values import told_number
 
@@ -39,8 +39,11 @@ class Threshold:
         Treat from this on: a share between 0 and 1, or a mean above 0.
     source
         Who says so.
-    crop, pest, when
+    crop, when
         Where it holds, in words; empty: not said.
+    pest
+        For which pest; of fieldmon's pests by their names, as ``"spider-mite; thesis"``. Empty:
+        not said.
 
     Raises
     ------
@@ -60,7 +63,8 @@ class Threshold:
         if self.measure not in MEASURES:
             raise SettingError(
                 worded(
-                    "A threshold must count one of {names}, but {name!r} counts {measure!r}.",
+                    "An action threshold must count one of {names}, but {name!r} counts "
+                    "{measure!r}.",
                     names=", ".join(MEASURES),
                     name=self.name,
                     measure=self.measure,
@@ -70,7 +74,7 @@ class Threshold:
         if not 0.0 < self.level < most:
             raise SettingError(
                 worded(
-                    "The threshold {name!r} must be above 0{below}, but it is {level:g}.",
+                    "The action threshold {name!r} must be above 0{below}, but it is {level:g}.",
                     name=self.name,
                     below=worded(" and below 1 (100 %)") if most == 1.0 else "",
                     level=self.level,
@@ -81,6 +85,27 @@ class Threshold:
     def is_share(self) -> bool:
         """Return whether it is a share, so that presence is all that need be seen."""
         return self.measure != "mean per leaf"
+
+    @property
+    def pests(self) -> tuple[str, ...]:
+        """Return the pests that it is for, each by its name."""
+        return tuple(filter(None, map(str.strip, self.pest.split(";"))))
+
+    def is_for_another(self, pest: str) -> bool:
+        """Tell whether it is for other pests of fieldmon's than the one of this name."""
+        known = pest_names()
+        return bool(pest and self.pests) and all(one in known and one != pest for one in self.pests)
+
+    def doubt(self, pest: str) -> str:
+        """Return in a sentence that it is for another pest than `pest`; empty: it is not."""
+        if not self.is_for_another(pest):
+            return ""
+        return worded(
+            "The action threshold {name!r} is for {pests}, but the season's pest is {pest}.",
+            name=self.name,
+            pests=", ".join(self.pests),
+            pest=pest,
+        )
 
     def sentence(self) -> str:
         """Return it in words, with its source."""
@@ -101,6 +126,18 @@ class Threshold:
 def published() -> tuple[Threshold, ...]:
     """Return the thresholds that come with fieldmon, each with its source."""
     return tuple(map(_of_row, packaged_table("fieldmon/decisions/thresholds.csv")))
+
+
+def in_order_for(pest: str, known: Iterable[Threshold]) -> tuple[Threshold, ...]:
+    """Return thresholds with those first that are for the pest of this name, or for any.
+
+    Examples
+    --------
+    >>> mine = Threshold("mine", "share of plants", 0.05, pest="whitefly")
+    >>> in_order_for("whitefly", (*published(), mine))[0].name
+    'mine'
+    """
+    return tuple(sorted(known, key=lambda one: one.is_for_another(pest)))
 
 
 def read_thresholds(source: Path | Upload) -> tuple[Threshold, ...]:
@@ -185,8 +222,8 @@ def threshold_of(said: str, known: Iterable[Threshold] | None = None) -> Thresho
             return Threshold(said, "share of plants", share)
     raise SettingError(
         worded(
-            "A threshold must be a share of the plants, as 5%, or one of {names}; but it "
-            "is {said!r}.",
+            "An action threshold must be a share of the plants, as 5%, or one of {names}; but "
+            "it is {said!r}.",
             names=", ".join(options),
             said=said,
         )

@@ -40,7 +40,19 @@ class Pace(NamedTuple):
     gathers_m_s2: float = GATHERS_M_S2
 
 
-class Pursuit:
+class Whole:
+    """The whole of a way, from which a robot strays."""
+
+    _whole: shapely.Geometry | None
+
+    def off_m(self, xy_m: tuple[float, float]) -> float:
+        """Return how far a place is from the way, its turns included."""
+        if self._whole is None:
+            return 0.0
+        return float(shapely.distance(self._whole, shapely.points(xy_m)))
+
+
+class Pursuit(Whole):
     """Follows one line from its first point to its last, and stops there.
 
     A robot with two driven wheels drives as well backwards: it turns a right angle at most.
@@ -64,7 +76,7 @@ class Pursuit:
     def __init__(self, line_m: Float, pace: Pace) -> None:
         self._pace, self._stretches = pace, [LineToFollow(one) for one in stretches(line_m)]
         self._k, self._aimed = 0, False
-        self._whole = shapely.linestrings(line_m) if len(line_m) > 1 else None
+        self._whole = shapely.LineString(line_m) if len(line_m) > 1 else None
 
     @property
     def done(self) -> bool:
@@ -101,12 +113,6 @@ class Pursuit:
             self._k, self._aimed = self._k + 1, False
             return 0.0, 0.0
         return self._along(line, (gone_m, left_m), (*xy_m, yaw), abs(v), dt)
-
-    def off_m(self, xy_m: tuple[float, float]) -> float:
-        """Return how far a place is from the line."""
-        if self._whole is None:
-            return 0.0
-        return float(shapely.distance(self._whole, shapely.points(xy_m)))
 
     def _along(
         self,

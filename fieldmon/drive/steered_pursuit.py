@@ -6,10 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 from shapely import MultiLineString
 
-from fieldmon.drive.pursuit import REACH_M, LineToFollow
+from fieldmon.drive.pursuit import REACH_M, LineToFollow, Whole
 from fieldmon.plot.steered_way import IN_BENDS, STEERS_S, is_straight
 from fieldmon.plot.turning import turn_of
 
@@ -22,7 +21,7 @@ _LOOK_AHEAD_M, _STRAIGHT_M = 0.5, 0.6
 _SLOWEST_M_S = 0.03
 
 
-class SteeredPursuit:
+class SteeredPursuit(Whole):
     """Follows pieces of a way, each in its gear, and stops at the end of each.
 
     Parameters
@@ -71,12 +70,6 @@ class SteeredPursuit:
             self._stood_s += dt
             return 0.0, piece.bend or bend
         return gear * self._speed(abs(v), bend, left_m, dt), bend
-
-    def off_m(self, xy_m: tuple[float, float]) -> float:
-        """Return how far a place is from the way, its turns included."""
-        if self._whole is None:
-            return 0.0
-        return float(shapely.distance(self._whole, shapely.points(xy_m)))
 
     def _speed(self, v: float, bend: float, left_m: float, dt: float) -> float:
         # what only corrects noise is no bend

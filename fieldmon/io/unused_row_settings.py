@@ -22,7 +22,6 @@ _CALLED = {
     "faces": worded("faces"),
     "half_canopy_m": worded("reach of plants"),
 }
-_NAMED = 5
 _SEVERAL = 2
 
 
@@ -76,7 +75,7 @@ def _in_blocks(field: Field, given: Iterable[str]) -> tuple[ImportMessage, ...]:
                 "{n:its|their} own: {names}.",
                 setting=_CALLED[name],
                 n=len(own),
-                names=first_few(own, _NAMED),
+                names=first_few(own),
             )
             found.append(dropped(said, field.name))
     return tuple(found)

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring import Season
 
-_NAMED = 5
-
 
 @dataclass(frozen=True, eq=False)
 class BroughtFile:
@@ -150,14 +148,14 @@ def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:
             "{n} {n:treatment|treatments} of that copy {n:is|are} not taken ({some}), nor "
             "{n:its|their} waiting periods. Take all that it holds with: fieldmon merge",
             n=len(alone),
-            some=first_few(named, _NAMED),
+            some=first_few(named),
         )
     else:
         said = worded(
             "{n} {n:treatment|treatments} of that season {n:is|are} not taken ({some}), nor "
             "{n:its|their} waiting periods. Record {n:it|them} here, too.",
             n=len(alone),
-            some=first_few(named, _NAMED),
+            some=first_few(named),
         )
     return [doubtful(said)]
 

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.io.parse.result_words import GONE
 from fieldmon.io.writers.qml import choice_list, field, numbered, option
+from fieldmon.io.writers.zipped import zipped
 from fieldmon.monitoring.qgis_styles import ASKED_STYLES, PHOTO_STYLES, STYLES, routes_of
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ PROJECT = "fieldmon"
 _TABLE = (
     "CREATE TABLE IF NOT EXISTS qgis_projects (name TEXT PRIMARY KEY, metadata BLOB, content BLOB)"
 )
-_EPOCH = (1980, 1, 1, 0, 0, 0)
 _MOST_DAYS = 14
 _MOST_BYTES = 20_000_000  # of a project that somebody brings with a season
 _LAST_DAY = '(SELECT max("date") FROM "routes")'
@@ -162,11 +162,7 @@ def _last_routes(day: str, gone: Iterable[str]) -> str:
 
 
 def _packed(project: str) -> str:
-    data = io.BytesIO()
-    with zipfile.ZipFile(data, "w") as archive:
-        info = zipfile.ZipInfo(f"{PROJECT}.qgs", _EPOCH)  # equal projects are equal bytes
-        archive.writestr(info, project, zipfile.ZIP_DEFLATED)
-    return data.getvalue().hex()
+    return zipped({f"{PROJECT}.qgs": project.encode()}).hex()
 
 
 def _unpacked(content: object) -> str | None:

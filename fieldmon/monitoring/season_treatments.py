@@ -50,8 +50,6 @@ if TYPE_CHECKING:
 
 # kinds of caution that can be told of a treatment before it is done
 _BEFORE_TREATING = ("harvest", "uses", "group", "label")
-# products in a sentence
-_NAMED = 5
 
 
 @checked
@@ -215,7 +213,7 @@ class SeasonTreatments(OpenSeason):
             used = [one.application.product for one in self.treatments()]
             named = next((one for one in used if plain_name(one) == plain_name(product)), "")
             if not named:
-                known = first_few([*dict.fromkeys(filter(None, used))], _NAMED) or worded("none")
+                known = first_few([*dict.fromkeys(filter(None, used))]) or worded("none")
                 raise SettingError(
                     worded(
                         "A wait can be said of a product that was used, but no treatment is with "

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     Index: TypeAlias = NDArray[np.intp]
     Lists: TypeAlias = tuple[NDArray[np.int32], NDArray[np.int32]]
 
-# what is further away than this many spacings is no longer the next one
-_NEXT = 1.5
+#: what is further away than this many spacings is no longer the next one
+NEXT = 1.5
 _NOBODY = -1
 
 
@@ -36,7 +36,7 @@ def along(x_m: Float, row: NDArray[np.integer], plant_spacing_m: Float | float) 
     A gap of more than one and a half spacings (one for all, or ``(n,)``) parts neighbours: a
     plant is missing there.
     """
-    reach_m = _NEXT * np.broadcast_to(plant_spacing_m, row.shape)[1:]
+    reach_m = NEXT * np.broadcast_to(plant_spacing_m, row.shape)[1:]
     near = (row[1:] == row[:-1]) & (np.diff(x_m) <= reach_m)
     pair = np.flatnonzero(near)
     return lists(len(x_m), pair, pair + 1)
@@ -98,7 +98,7 @@ def across_aisles(
         found: Index = np.where(nearer, before, after)
         far_m = off_m[:, own] + off_m[found, 1 - own]
         alone = np.abs(other[found] - key[:, own]) > reach_m
-        found[alone | (far_m > _NEXT * row_spacing_m)] = _NOBODY
+        found[alone | (far_m > NEXT * row_spacing_m)] = _NOBODY
         return found
 
     return _either_way(over(1), over(0))
@@ -158,7 +158,7 @@ def _nearest(
     found: Index = np.where(nearer_before, before, after)
     out_of_reach = (
         (np.abs(x[found] - x) > (0.5 + 1e-6) * plant_spacing_m)
-        | (np.abs(y[found] - y) > _NEXT * row_spacing_m)
+        | (np.abs(y[found] - y) > NEXT * row_spacing_m)
         | (line[found] != line + step)
     )
     found[out_of_reach] = _NOBODY

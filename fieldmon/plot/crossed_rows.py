@@ -24,7 +24,6 @@ _LEAST, _MOST_MISSING = 3, 2
 _ACROSS_DEG, _NEXT = 30.0, 1.3
 # which way a row runs is seen over so many steps; none turns so far between two such stretches
 _REACH, _SHARP_DEG = 4, 60.0
-_NAMED = 5
 
 
 class CrossedRows(NamedTuple):
@@ -53,7 +52,7 @@ class CrossedRows(NamedTuple):
                     "{n:its|their} own, at rows {some}: blocks may be mixed there. Look at these "
                     "rows, and give blocks or name each plant's row if they are wrong.",
                     n=self.n_plants,
-                    some=first_few(some, _NAMED),
+                    some=first_few(some),
                 )
             )
         if self.turned:
@@ -63,7 +62,7 @@ class CrossedRows(NamedTuple):
                     "be taken for one. Look at {n:it|them}, and give blocks or name each plant's "
                     "row if {n:it is|they are} wrong.",
                     n=len(self.turned),
-                    some=first_few([f"{line + 1}" for line in self.turned], _NAMED),
+                    some=first_few([f"{line + 1}" for line in self.turned]),
                 )
             )
         return tuple(said)

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _DEGREES = "EPSG:4326"
-_NAMED = 5
 
 
 def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> GeoDataFrame:
@@ -139,7 +138,7 @@ def _of_no_place(frame: GeoDataFrame | GeoSeries, there: NDArray[np.intp]) -> li
     gone = np.setdiff1d(np.arange(len(frame)), there)
     if not len(gone):
         return []
-    named = first_few([str(one) for one in frame.index[gone]], _NAMED)
+    named = first_few([str(one) for one in frame.index[gone]])
     n = f"{len(gone)} of {len(frame)}"
     return [f"Lines of the GeoDataFrame without a place were left out: {n} ({named})."]
 

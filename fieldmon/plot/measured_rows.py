@@ -12,7 +12,7 @@ from fieldmon.compute.arrays import offsets
 from fieldmon.plot.bent_layout import bent_grid
 from fieldmon.plot.names_on_ground import Stray, strays
 from fieldmon.plot.row_curves import row_lines_of
-from fieldmon.plot.row_detection import frame_around, rows_from_plants, split_lines
+from fieldmon.plot.row_detection import NO_ROWS, frame_around, rows_from_plants, split_lines
 from fieldmon.plot.row_lines import Ground, RowLines
 from fieldmon.plot.row_tracing import TracedRows, trace
 
@@ -33,8 +33,6 @@ _STRAIGHT_M = 0.005
 # rows bend if straight lines stray by so many times what the rows traced do, and a little more,
 # in row spacings
 _BETTER, _LITTLE = 1.3, 0.04
-# what strays by more from the rows traced is in no rows
-_NO_ROWS = 0.2
 _LEAST_FREE = 6.0
 _NONSENSE = 0.5
 # so much nearer to a plant of another row than to those of its own, a plant may be of a row that
@@ -93,7 +91,7 @@ class SaidRows(NamedTuple):
         if misnamed > _NONSENSE:
             return self._replace(label=None, misnamed=misnamed)
         # amid which row a plant stands is only seen where plants keep to theirs
-        gone = strays(xy_m, traced, self.label) if blur(traced) <= _NO_ROWS else ()
+        gone = strays(xy_m, traced, self.label) if blur(traced) <= NO_ROWS else ()
         return self._replace(misnamed=misnamed, strays=gone)
 
 
@@ -208,7 +206,7 @@ def bent_rows(
     if exact and crossed < _CROSSED:
         return None
     traced = trace(xy_m)
-    if traced is None or not np.isfinite(traced.row_spacing_m) or blur(traced) > _NO_ROWS:
+    if traced is None or not np.isfinite(traced.row_spacing_m) or blur(traced) > NO_ROWS:
         return None
     if exact:  # lines laid out by a program may be straight the other way, too
         row = np.empty(n, np.int64)

@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 
-_NAMED = 5  # names of rows that a sentence has room for
-
-
 def plants_in_rows(grid: PlantGrid, rows: str) -> NDArray[np.bool_]:
     """Return which plants ``(n,)`` stand in rows as people count or name them.
 
@@ -183,7 +180,7 @@ class CalledRows:
         return worded(
             "{numbers} (in the file of plants: {names})",
             numbers=numbers,
-            names=first_few(list(names), _NAMED),
+            names=first_few(list(names)),
         )
 
     def meant(self, said: str, block: int | None = None) -> set[int]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import joined, worded
+from fieldmon.plot.adjacency import NEXT
 from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.plant_names import numbers_in
 
@@ -34,8 +35,6 @@ _ACROSS, _BETWEEN = 1.5, 0.8
 _END, _IN_LINE = 3, 0.25
 # and so many beside the line of so many plants of that row; fewer than so many make none
 _BESIDE, _LINE, _LEAST_LINE = 0.7, 8, 4
-# plants next to each other in a row are so many spacings apart at most
-_NEXT = 1.5
 # fewer rows tell no order; of more, so many may be exchanged, or such a share
 _LEAST_ROWS, _FEW, _SHARE = 7, 2, 0.1
 # rows of fewer plants tell none either
@@ -123,7 +122,7 @@ def _is_between(traced: TracedRows, row: Int, right: Mask) -> Mask:
     """Return which plants stand between two next to them, whose names are those of their row."""
     of, good = row[traced.plant], right[traced.plant]
     step_m = np.hypot(*np.diff(traced.line_m, axis=0).T)
-    joined = (np.diff(of) == 0) & (step_m < _NEXT * traced.plant_spacing_m)
+    joined = (np.diff(of) == 0) & (step_m < NEXT * traced.plant_spacing_m)
     between = np.zeros(len(row), np.bool_)
     between[traced.plant[1:-1]] = joined[:-1] & joined[1:] & good[:-2] & good[2:]
     return between
@@ -139,7 +138,7 @@ def _ends_row(traced: TracedRows, row: Int, right: Mask) -> Mask:
         for end, way in ((first, 1), (stop - 1, -1)):
             beside = end + way * np.arange(1, _END + 1)
             step_m = float(np.hypot(*(traced.line_m[end] - traced.line_m[beside[0]])))
-            close = step_m < _NEXT * traced.plant_spacing_m and traced.off_m[end] < near_m
+            close = step_m < NEXT * traced.plant_spacing_m and traced.off_m[end] < near_m
             ends[traced.plant[end]] = close and bool(right[traced.plant[beside]].all())
     return ends
 

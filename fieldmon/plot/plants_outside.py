@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
-import pyproj
 import shapely
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
+from fieldmon.plot.projection import GEOD
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 #: what may be done with plants outside their plot
 FAR = ("keep", "drop")
 
-_GEOD = pyproj.Geod(ellps="WGS84")
 _FAR_M = 100_000.0
 # a plant so far outside a boundary may be one of the plot: a phone is off by as much
 _GPS_M = 5.0
@@ -95,7 +94,7 @@ def distance_m(lonlat: NDArray[np.float64], field: Field) -> NDArray[np.float64]
     lon, lat = (west + east) / 2, (south + north) / 2
     possible = np.clip(lonlat[:, 1], -90, 90)
     away = np.asarray(
-        _GEOD.inv(np.full(len(lonlat), lon), np.full(len(lonlat), lat), lonlat[:, 0], possible)[2]
+        GEOD.inv(np.full(len(lonlat), lon), np.full(len(lonlat), lat), lonlat[:, 0], possible)[2]
     )
     close = away < _FAR_M
     frame = field.frame()

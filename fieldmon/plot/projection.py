@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
-from pyproj import CRS, Transformer
+from pyproj import CRS, Geod, Transformer
 from pyproj.enums import TransformDirection
 
 from fieldmon.compute.kinds import must_be_of
@@ -19,6 +19,8 @@ from fieldmon.errors import PlotError, SettingError
 
 Float = NDArray[np.float64]
 G = TypeVar("G", bound=shapely.Geometry)
+#: the earth, for metres between degrees WGS 84
+GEOD = Geod(ellps="WGS84")
 _FARTHEST_M = 200_000.0
 #: roughly, of latitude anywhere and of longitude at the equator
 M_PER_DEGREE = 111_320.0

@@ -27,8 +27,8 @@ _BINS_PER_DEG = 4
 _EDGE_SMOOTH_DEG = 2.0
 # plants this part of the usual distance beside a line are on it
 _IN_LINE = 0.3
-# plants scattered anyhow stray by about 0.3 row spacings from any lines seen in them
-_NO_ROWS = 0.2
+#: in row spacings: plants scattered anyhow stray by about 0.3 from any lines seen in them
+NO_ROWS = 0.2
 # directions with lines as wide apart as the best, and as straight as this, are rows as well
 _AS_WIDE, _IN_ROWS, _LONGER = 0.93, 0.05, 1.15
 _MOST_PAIRS = 200_000
@@ -134,7 +134,7 @@ def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Ro
     best, others = _longest(seen, min(seen, key=_unlikeliness))
     rows = f"{best.n_lines} row" + "s" * (best.n_lines != 1)
     stray = f", {best.off_m:.2f} m beside their line" if np.isfinite(best.off_m) else ""
-    doubt = "; they hardly stand in rows, so check the bearing" if best.blur > _NO_ROWS else ""
+    doubt = "; they hardly stand in rows, so check the bearing" if best.blur > NO_ROWS else ""
     return Rows(
         best.bearing_deg % 180.0,
         best.row_spacing_m,
@@ -175,7 +175,7 @@ def _direction(lonlat: Float, lines: _LinesSeen) -> RowDirection:
 
 def _longest(seen: list[_LinesSeen], best: _LinesSeen) -> tuple[_LinesSeen, list[_LinesSeen]]:
     """Return of directions as good as the best one that with the longest lines, and the others."""
-    if best.blur > _NO_ROWS or best.row_spacing_m is None:
+    if best.blur > NO_ROWS or best.row_spacing_m is None:
         return best, []
     least_m = _AS_WIDE * best.row_spacing_m
     good = [

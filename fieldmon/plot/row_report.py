@@ -12,6 +12,7 @@ from fieldmon.compute.wording import Worded, counted, worded
 from fieldmon.plot.crossed_rows import CrossedRows, crossed_rows
 from fieldmon.plot.measured_rows import LEAST_TRACED, nearer_share
 from fieldmon.plot.planting import Planting
+from fieldmon.plot.row_detection import NO_ROWS
 from fieldmon.plot.strands import row_deviations
 
 if TYPE_CHECKING:
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
 _OFF = 0.25
 # so many off their rows, or in others than their names say, are worth a word
 _WORTH_A_WORD = 0.01
-# plants in no rows stray so far from any lines seen in them, in row spacings
-_NO_ROWS = 0.2
 # so much nearer to one other than to a third, a plant is in a pair; so many are worth a word
 _CLOSE, _PAIRED, _FEW = 0.6, 0.4, 6
 # plants of a double row stand about as far from its middle, much unlike plants that stray, and
@@ -307,7 +306,7 @@ def row_report(
     typical_m = float(np.sqrt(np.sum(left_m**2) / free)) if free > 0 else 0.0
     # what bends was only taken since plants stand in it; of straight lines that is not known
     straight = grid.aisles_m is None and "hardly" in found.how
-    scattered = straight or typical_m > _NO_ROWS * grid.row_spacing_m
+    scattered = straight or typical_m > NO_ROWS * grid.row_spacing_m
     parallel = grid.aisles_m is None
     return RowReport(
         _how(grid, len(faces), typical_m),

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 _MOST = 3_000
 # one stands so far beside a tree, in metres and in parts of the way to the nearest one
 _STAND_OFF_M, _STAND_OFF = 0.5, 0.2
-# trees this many usual distances apart are no neighbours
-_NEXT = 1.5
 # one walks this many usual distances about each tree where nobody drew a boundary
 _ABOUT = 1.5
 _UPPER = -1
@@ -72,7 +70,7 @@ def trees_grid(lonlat: Float, field: Field | None = None) -> PlantGrid:
     usual_m = float(np.median(length_m)) if len(pairs) else 3.0
     order = _in_bands(xy_m, 2 * usual_m)
     xy_m, place = xy_m[order], np.argsort(order)
-    near = place[pairs[length_m <= _NEXT * usual_m]]
+    near = place[pairs[length_m <= adjacency.NEXT * usual_m]]
     stand_off_m = (
         min(_STAND_OFF_M, _STAND_OFF * float(length_m.min())) if len(pairs) else _STAND_OFF_M
     )

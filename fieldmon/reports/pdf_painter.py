@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 #: a point of type in millimetres
 PT_MM = 25.4 / 72
-_ALIGN = {"start": "L", "middle": "C", "end": "R"}
 # a disc with an edge has so many corners: smaller than a plant, a hundredth of a curve's bytes
 _CORNERS = 16
 #: how wide texts are in each file that is written, by font and size

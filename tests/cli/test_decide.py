@@ -92,6 +92,16 @@ def test_a_threshold_of_leaves_asks_for_leaves_and_then_answers(run, season):
     assert "more you can decide" in run(*words, "--leaves", "5", "--counted", "1")[1]
 
 
+def test_a_threshold_for_another_pest_than_the_season_s_is_warned_of(run, season):
+    words = ["decide", season, "--threshold", "almond"]
+    assert "is for" not in run(*words)[2], "nobody named a pest"
+    for pest, doubted in (("whitefly", True), ("spider-mite", False)):
+        assert run("change", season, "--pest", pest)[0] == 0
+        code, _, said, *_ = run(*words)
+        assert code == 0
+        assert (f"but the season's pest is {pest}." in said) == doubted
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

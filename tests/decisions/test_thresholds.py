@@ -2,8 +2,15 @@
 
 import pytest
 
-from fieldmon.decisions.thresholds import Threshold, published, read_thresholds, threshold_of
+from fieldmon.decisions.thresholds import (
+    Threshold,
+    in_order_for,
+    published,
+    read_thresholds,
+    threshold_of,
+)
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.io.packaged import pest_names
 
 NAMES = "name,measure,level,source"
 
@@ -19,6 +26,22 @@ def test_the_published_ones_are_those_of_their_sources():
         15,
     ]
     assert all(one.source for one in published())
+
+
+def test_the_published_ones_name_pests_of_fieldmon_and_those_of_the_season_s_come_first():
+    assert {pest for one in published() for pest in one.pests} <= {*pest_names()}
+    mine = Threshold("mine", "share of plants", 0.1, pest="whitefly")
+    anyones = Threshold("anyone's", "share of plants", 0.1, pest="mites and all that")
+    known = (*published(), mine, anyones)
+    assert in_order_for("whitefly", known) == (mine, anyones, *published())
+    assert in_order_for("spider-mite", known) == (*published(), anyones, mine)
+    assert in_order_for("", known) == known
+    almond = threshold_of("almond")
+    assert almond.doubt("whitefly") == (
+        "The action threshold 'almond' is for spider-mite, thesis, but the season's pest is "
+        "whitefly."
+    )
+    assert almond.doubt("thesis") == almond.doubt("") == anyones.doubt("whitefly") == ""
 
 
 def test_a_share_of_the_plants_is_a_threshold_of_ones_own():

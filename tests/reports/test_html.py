@@ -23,6 +23,7 @@ def test_it_says_what_the_pdf_says_and_every_row_besides(of_season, of_day, of_w
         page = Page(html_text(report))
         blocks = [block for sheet in report.sheets for block in sheet.blocks]
         tables = [block for block in blocks if isinstance(block, Table)]
+        assert tables
         for block in tables:
             assert [[*row] for row in (block.columns, *block.rows)] in page.tables
         for block in blocks:

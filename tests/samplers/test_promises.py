@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
@@ -58,7 +58,7 @@ def test_the_promises_hold_on_crooked_fields_of_one_face_or_two(field, seed, fac
         grid = lay(field, Planting(faces=faces))
         scene = scene_on(grid, hours=2.0, seed=seed)
     except PlotError:
-        return
+        assume(False)
     found = np.random.default_rng(seed).random(len(grid)) < 0.1
     for name in NAMES:
         work = work_day(scene, sampler(name), found)

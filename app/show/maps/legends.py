@@ -98,8 +98,8 @@ def records(*, dark: bool = False, unknown: bool = False) -> list[LegendPart]:
     return [part("", seen, "records")]
 
 
-def signs(*, dark: bool = False, treated: bool = False) -> list[LegendPart]:
-    """Return the signs of route, hot spots and records, and of what was treated, if there is."""
+def signs(*, dark: bool = False) -> list[LegendPart]:
+    """Return the signs of route, hot spots, records and what was treated, each of its switch."""
     route = colours.ROUTE_IN_DARK if dark else colours.ROUTE
     hot = colours.HOT_IN_DARK if dark else colours.HOT
     sprayed = colours.TREATED_IN_DARK if dark else colours.TREATED
@@ -107,5 +107,5 @@ def signs(*, dark: bool = False, treated: bool = False) -> list[LegendPart]:
         part("", [("line", route, texts.LEGEND_ROUTE)], "route"),
         part("", [("outline", hot, texts.LEGEND_HOT)], "hot"),
         *records(dark=dark),
-        *([part("", [("outline", sprayed, texts.LEGEND_TREATED)], "treated")] if treated else []),
-    ]  # fmt: skip
+        part("", [("outline", sprayed, texts.LEGEND_TREATED)], "treated"),
+    ]

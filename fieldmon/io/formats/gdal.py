@@ -28,7 +28,6 @@ _UNREADABLE = (DataSourceError, DataLayerError, RuntimeError, ValueError, OSErro
 _OWN_TABLE = re.compile(rb'\btype\s+"?(native|dbf)\b')
 # of a column in it: its name and what follows
 _COLUMN = re.compile(r"\s*(\S+?)_* +(\S.*;\s*)$")
-_NAMED = 5
 _BYTE_FOR_BYTE = "ISO-8859-1"
 
 
@@ -123,7 +122,7 @@ def read_mapinfo(path: Path, name: str) -> Layer:
         mended = repaired(
             worded(
                 "Names of columns that were cut in the midst of a letter are read as {names}.",
-                names=first_few([repr(one) for one in names], _NAMED),
+                names=first_few([repr(one) for one in names]),
             )
         )
         return replace(layer, messages=(*layer.messages, mended))

@@ -13,7 +13,7 @@ from shapely.errors import ShapelyError
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.formats.layer import Layer
+from fieldmon.io.formats.layer import WGS84, Layer
 from fieldmon.io.formats.wkb import closed
 from fieldmon.io.import_report import ImportMessage, dropped, seen
 from fieldmon.io.parse.text import decode
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-_WGS84 = "OGC:CRS84"
 _GEOMETRIES = frozenset(
     {
         "Point",
@@ -143,7 +142,7 @@ def _crs(root: dict[str, Any]) -> tuple[str | None, list[ImportMessage]]:
     """Return what the old `crs` member says; without one it is WGS84 (RFC 7946)."""
     stated = root.get("crs")
     if stated is None:
-        return _WGS84, []
+        return WGS84, []
     if not isinstance(stated, dict) or stated.get("type") == "link":
         raise ChoiceNeeded(
             worded(

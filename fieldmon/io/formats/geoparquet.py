@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.io.formats.layer import Layer
+from fieldmon.io.formats.layer import WGS84, Layer
 from fieldmon.io.formats.wkb import shapes
 from fieldmon.io.sandbox import limits
 
@@ -69,7 +69,7 @@ def read_parquet(path: Path, name: str) -> Layer:
 def _crs(stated: dict[str, Any]) -> str | None:
     """Return the coordinate system: without one it is OGC:CRS84, with null it is unknown."""
     if "crs" not in stated:
-        return "OGC:CRS84"
+        return WGS84
     return None if stated["crs"] is None else json.dumps(stated["crs"])
 
 

@@ -15,7 +15,7 @@ from shapely.errors import ShapelyError
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.io.formats.layer import Layer
+from fieldmon.io.formats.layer import WGS84, Layer
 from fieldmon.io.import_report import ImportMessage, dropped, seen
 from fieldmon.io.sandbox import limits
 
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-_WGS84 = "OGC:CRS84"
 _BOUNDARY, _EXTERIOR, _INTERIOR = "1", "1", "2"
 _POLYGONS = {
     "2": "treatment zone",
@@ -117,7 +116,7 @@ def _layer(name: str, parts: list[_Part], messages: list[ImportMessage]) -> Laye
         "name": _objects([part.name for part in parts]),
         "kind": _objects([part.kind for part in parts]),
     }
-    return Layer(name, columns, geometry, _WGS84, tuple(messages))
+    return Layer(name, columns, geometry, WGS84, tuple(messages))
 
 
 def _trees(path: Path, name: str) -> tuple[list[ET.Element], list[ImportMessage]]:

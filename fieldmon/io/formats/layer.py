@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
     from fieldmon.io.import_report import ImportMessage
 
+#: longitude, then latitude: the coordinate system of files that name none and have no other
+WGS84 = "OGC:CRS84"
+
 
 @dataclass(frozen=True, eq=False)
 class Layer:

@@ -12,7 +12,7 @@ from shapely.errors import GEOSException
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.formats.layer import WGS84, Layer, text
 from fieldmon.io.formats.wkb import closed, understood
 from fieldmon.io.import_report import ImportMessage, dropped, guessed, seen
 from fieldmon.io.sandbox import limits
@@ -37,7 +37,6 @@ _KINDS, _COLLECTION, _CURVED = range(1, 18), 7, range(8, 18)
 #: what stands with the kind: that a system follows, and, as some write it, heights and measures
 _WITH_SYSTEM, _KIND = 0x20000000, 0x0FFFFFFF
 _LOOKED_AT = 50
-_WGS84 = "OGC:CRS84"
 
 
 class _Cell(NamedTuple):
@@ -89,7 +88,7 @@ def with_shapes(layer: Layer, stated: str | None) -> Layer:
     systems = {cell.srid for cell in cells if cell and cell.srid}
     crs = f"EPSG:{systems.pop()}" if len(systems) == 1 else stated
     if crs is None and _could_be_degrees(geometry):
-        crs = _WGS84
+        crs = WGS84
         said = worded(
             "They name no coordinate system and were read as longitude and latitude (WGS 84)."
         )

@@ -18,8 +18,10 @@ from pyproj.transformer import TransformerGroup
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.io.formats.layer import WGS84
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, seen
 from fieldmon.plot.local_clock import at_sea
+from fieldmon.plot.projection import GEOD
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,8 +29,6 @@ if TYPE_CHECKING:
 
     from fieldmon.io.options import ReadOptions
 
-WGS84 = "OGC:CRS84"
-_GEOD = pyproj.Geod(ellps="WGS84")
 # national grids that people forget to name, the Israeli ones first
 _COMMON = (
     *("EPSG:2039", "EPSG:28193", "EPSG:28191", "EPSG:6984", "EPSG:32636", "EPSG:32637"),
@@ -390,7 +390,7 @@ def _distinct(found: list[CrsCandidate]) -> list[CrsCandidate]:
 
 def km_between(one: tuple[float, float], other: tuple[float, float]) -> float:
     """Return how far two places (lon, lat) are from each other."""
-    return float(_GEOD.inv(*one, *other)[2]) / 1000
+    return float(GEOD.inv(*one, *other)[2]) / 1000
 
 
 def km_outside(crs: pyproj.CRS, lon: float, lat: float) -> float:

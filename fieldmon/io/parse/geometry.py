@@ -5,20 +5,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pyproj
 import shapely
 from shapely import MultiPolygon, Polygon
 from shapely.errors import GEOSException
 
 from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, doubtful, dropped, repaired
+from fieldmon.plot.projection import GEOD
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Floats = NDArray[np.float64]
 
-_GEOD = pyproj.Geod(ellps="WGS84")
 #: a plot smaller or larger than this is questioned
 SMALLEST_M2, LARGEST_M2 = 10.0, 100_000_000.0
 #: nobody reads a smaller area as a number
@@ -51,7 +50,7 @@ def area_m2(geometry: shapely.Geometry) -> float:
 
 def steps_m(lonlat: Floats) -> Floats:
     """Return how far each lon/lat position ``(n, 2)`` is from the next ``(n - 1,)``."""
-    return np.array(_GEOD.line_lengths(lonlat[:, 0], lonlat[:, 1]), dtype=np.float64)
+    return np.array(GEOD.line_lengths(lonlat[:, 0], lonlat[:, 1]), dtype=np.float64)
 
 
 class _PolygonSizes(NamedTuple):
@@ -77,20 +76,20 @@ def _measured_parts(polygons: NDArray[np.object_]) -> _PolygonSizes:
     lonlat, ring = shapely.get_coordinates(rings, return_index=True)
     lon, lat = np.deg2rad(lonlat).T
     sin = np.sin(lat)
-    eccentricity = np.sqrt(_GEOD.es)
-    whole = (1 - _GEOD.es) * (
-        sin / (1 - _GEOD.es * sin**2) + np.arctanh(eccentricity * sin) / eccentricity
+    eccentricity = np.sqrt(GEOD.es)
+    whole = (1 - GEOD.es) * (
+        sin / (1 - GEOD.es * sin**2) + np.arctanh(eccentricity * sin) / eccentricity
     )
     first = np.searchsorted(ring, np.arange(len(rings)))
     band = whole - whole[first][ring]  # from the ring's first corner, so that no digits are lost
     inside = ring[1:] == ring[:-1]
     east = np.where(inside, (np.diff(lon) + np.pi) % (2 * np.pi) - np.pi, 0.0)
-    swept = _GEOD.a**2 / 2 * east * (band[1:] + band[:-1]) / 2
+    swept = GEOD.a**2 / 2 * east * (band[1:] + band[:-1]) / 2
     area = np.abs(np.bincount(ring[1:], swept, len(rings)))
     area[np.diff(polygon, prepend=-1) == 0] *= -1  # all but the first ring of a polygon are holes
-    curve = np.sqrt(1 - _GEOD.es * ((sin[1:] + sin[:-1]) / 2) ** 2)
-    x = east * _GEOD.a / curve * np.cos((lat[1:] + lat[:-1]) / 2)
-    y = np.where(inside, np.diff(lat), 0.0) * _GEOD.a * (1 - _GEOD.es) / curve**3
+    curve = np.sqrt(1 - GEOD.es * ((sin[1:] + sin[:-1]) / 2) ** 2)
+    x = east * GEOD.a / curve * np.cos((lat[1:] + lat[:-1]) / 2)
+    y = np.where(inside, np.diff(lat), 0.0) * GEOD.a * (1 - GEOD.es) / curve**3
     length = np.bincount(ring[1:], np.hypot(x, y), len(rings))
     n = len(polygons)
     of_polygon = (np.bincount(polygon, values, n).astype(np.float64) for values in (area, length))

@@ -15,7 +15,7 @@ from pyproj.exceptions import CRSError
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.formats.layer import WGS84, Layer, text
 from fieldmon.io.import_report import (
     ImportMessage,
     Remedy,
@@ -48,7 +48,6 @@ if TYPE_CHECKING:
 
     from fieldmon.io.options import ReadOptions
 
-_WGS84 = "OGC:CRS84"
 #: coordinates rounded to more than this cannot tell neighbouring plants apart, whatever their
 #: spacing is
 _COARSE_M = 1.5
@@ -230,13 +229,13 @@ def _coordinates(
         return np.stack([numbers(c, options.decimal) for c in columns], axis=1), None, []
     if how == "together":
         read = positions_in_cells([text(v) for v in columns[0]], options.degrees)
-        return read.values, _WGS84, _order_of(read.is_certain or options.swap_axes, names[0])
+        return read.values, WGS84, _order_of(read.is_certain or options.swap_axes, names[0])
     read_as = partial(all_degrees, decimal=options.decimal, how=options.degrees)
     xy = np.stack([read_as(c) for c in columns], axis=1)
     if _letters_are_crossed(layer, names):
         said = worded("Longitudes stood in the column of latitudes; exchanged.")
-        return xy[:, ::-1], _WGS84, [repaired(said)]
-    return xy, _WGS84, []
+        return xy[:, ::-1], WGS84, [repaired(said)]
+    return xy, WGS84, []
 
 
 def _letters_are_crossed(layer: Layer, names: tuple[str, ...]) -> bool:

@@ -29,7 +29,6 @@ class KnownRows(NamedTuple):
     plant_spacing_m: float | None = None
 
 
-_NAMED = 5
 # to which a longer name is cut
 _LETTERS_OF_SHAPEFILE = 10
 # nothing that is grown in rows stands so far apart
@@ -121,7 +120,7 @@ def _unread(columns: list[str]) -> list[ImportMessage]:
     alike = [column for column in columns if _OF_ROWS.search(plain(column))]
     if not alike:
         return []
-    names = first_few([repr(column) for column in alike], _NAMED)
+    names = first_few([repr(column) for column in alike])
     if any(len(column) == _LETTERS_OF_SHAPEFILE for column in alike):
         said = worded(
             "What seems to be said of rows or plants is not read: {names}. Call such columns "
@@ -152,7 +151,7 @@ def left_aside(
                 "{n} {n:plot|plots}: {some}.",
                 column=column,
                 n=len(wrong),
-                some=first_few([f"{names[k]} ({text(cells[k])!r})" for k in wrong], _NAMED),
+                some=first_few([f"{names[k]} ({text(cells[k])!r})" for k in wrong]),
             )
         )
     ]

@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.units import distance_figure
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.infestation.observations import NEARBY_M
 from fieldmon.io.import_report import Imported, ImportMessage, Remedy, doubtful, dropped, seen
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _DEGREE_M = 111_000.0
-_MOST_NAMED = 5
 #: a tenth of a millimetre: one position, read twice
 _SAME_DEG = 1e-9
 
@@ -164,7 +163,7 @@ def on_other_plots(
     most_first = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
     if not most_first:
         return None
-    named = [f"{name} ({counts[name]})" for name in most_first[:_MOST_NAMED]]
+    named = [f"{name} ({counts[name]})" for name in most_first]
     return ObservationError(
         worded(
             "Records must lie on plot {name} or near it, but none of these {n} does. On other "
@@ -172,7 +171,7 @@ def on_other_plots(
             "{name}.",
             name=field.name,
             n=len(observations),
-            some=", ".join(named) + (", ..." if len(most_first) > _MOST_NAMED else ""),
+            some=first_few(named),
         )
     )
 

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _NOT_ONLY_PLOTS = frozenset({"locality", "site"})
-_NAMED = 5
 _OURS = Remedy("columns", "plot=", worded("They are of this plot"))
 
 
@@ -75,7 +74,7 @@ def _by_name(
     said = {
         "n": len(named),
         "column": column,
-        "names": first_few(sorted(set(named)), _NAMED),
+        "names": first_few(sorted(set(named))),
         "plot": plot,
     }
     if options.take_doubtful:
@@ -105,7 +104,7 @@ def _lying_here(
         "{n} {n:record names|records name} another plot ({names}), but {n:lies|lie} on this one: "
         "taken by {n:its position|their positions}.",
         n=len(at),
-        names=first_few(sorted(set(rows.plot_called[at].tolist())), _NAMED),
+        names=first_few(sorted(set(rows.plot_called[at].tolist()))),
     )
     return [doubtful(said)]
 

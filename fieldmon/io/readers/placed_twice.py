@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 _SIGMAS = 4.0
 # where most disagree, and not just a few, rows are counted otherwise
 _FEW = 3
-# so many plots are named
-_NAMED = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +113,7 @@ class PlacedTwice(ImportMessage):
                 "which is right.",
                 n=int(np.count_nonzero(strangers)),
                 plot=plot.name,
-                others=first_few(own, _NAMED),
+                others=first_few(own),
                 example=self._first(int(np.argmax(strangers))),
             )
             said.append(doubtful(sentence, remedy=_by_plant()))
@@ -127,7 +125,7 @@ class PlacedTwice(ImportMessage):
                 "which is right.",
                 n=len(lost),
                 plot=plot.name,
-                others=first_few(on, _NAMED),
+                others=first_few(on),
                 example=self._first(int(lost[0])),
             )
             said.append(doubtful(sentence, remedy=_by_plant()))

@@ -147,7 +147,7 @@ def _in_another_zone(
                 "of that zone, bring all plots into one, or those of each into a file of its own.",
                 n=len(some),
                 away=far.away_km,
-                names=first_few(some, _MOST_NAMED),
+                names=first_few(some),
                 zone=far.zone,
                 near=far.near_km,
             )
@@ -529,8 +529,6 @@ def _fields(
     return tuple(fields), [*messages, *_parts(fields), *_duplicates(fields)]
 
 
-# names of plots in a sentence
-_MOST_NAMED = 5
 _TWO = 2
 # a table of more positions with a number of their row or plant lists plants
 _MOST_CORNERS_NUMBERED = 20
@@ -553,7 +551,7 @@ def _parts(fields: list[Field]) -> list[ImportMessage]:
                 worded(
                     "{n} {n:plot has|plots have} several parts, which were kept: {names}.",
                     n=len(several),
-                    names=first_few(several, _MOST_NAMED),
+                    names=first_few(several),
                 )
             )
         )
@@ -563,7 +561,7 @@ def _parts(fields: list[Field]) -> list[ImportMessage]:
                 worded(
                     "{n} {n:plot has|plots have} holes, kept as places without plants: {names}.",
                     n=len(holed),
-                    names=first_few(holed, _MOST_NAMED),
+                    names=first_few(holed),
                 )
             )
         )
@@ -576,7 +574,7 @@ def _parts(fields: list[Field]) -> list[ImportMessage]:
                     "{n} {n:plot has|plots have} a part in a hole of another, and routes lead "
                     "straight across that hole: {names}. Where nobody can, make the part a plot.",
                     n=len(around),
-                    names=first_few(around, _MOST_NAMED),
+                    names=first_few(around),
                 )
             )
         )

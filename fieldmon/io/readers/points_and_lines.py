@@ -51,7 +51,6 @@ _STRAY_M, _STRAY_TIMES, _ENOUGH = 100.0, 20.0, 20
 _FAR_M, _RARE = 1000.0, 10
 # no plot is so wide
 _ELSEWHERE_DEG = 1.0
-_NAMED = 5
 # so many positions may be corners of a plot that holds such a share of the others, and so many
 # marks tell them from plants
 _LEAST_CORNERS, _MOST_CORNERS, _MOST_MARKS = 3, 20, 20
@@ -313,7 +312,7 @@ def _strays(
 
 def _some(lonlat: NDArray[np.float64], names: NDArray[np.str_]) -> str:
     """Return which plants these are; of many the first few."""
-    return first_few([_at(*one) for one in zip(lonlat, names, strict=True)], _NAMED)
+    return first_few([_at(*one) for one in zip(lonlat, names, strict=True)])
 
 
 def _at(place: NDArray[np.float64], name: str) -> str:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import sqlite3
-import zipfile
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -21,6 +19,7 @@ from fieldmon.io.atomic_write import why_not_written
 from fieldmon.io.writers import qml
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
+from fieldmon.io.writers.zipped import zipped_folder
 from fieldmon.plot.projection import goes_round, turned_to
 
 if TYPE_CHECKING:
@@ -47,7 +46,6 @@ _SHOWN = {
     "": ("to inspect", qml.Symbol("marker", qml.YELLOW, 2.2)),
 }
 _NOT_FILLED_IN = {"fid", "plant", "arrive_s", "inspect_s", "chance", "detects"}
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can name: equal days make equal files
 
 
 def route_gpkg(plan: HandoffPlan) -> bytes:
@@ -83,13 +81,7 @@ def route_shapefile(plan: HandoffPlan) -> bytes:
         ):
             path = folder / f"{name}.shp"
             _write(frame, path, "ESRI Shapefile", encoding="UTF-8", geometry_type=kind)
-        packed = io.BytesIO()
-        with zipfile.ZipFile(packed, "w") as archive:
-            for part in sorted(folder.iterdir()):
-                info = zipfile.ZipInfo(part.name, _EPOCH)
-                info.external_attr = 0o644 << 16  # else nobody may read what is unpacked
-                archive.writestr(info, part.read_bytes(), zipfile.ZIP_DEFLATED)
-        return packed.getvalue()
+        return zipped_folder(folder)
 
     return _made(write)
 

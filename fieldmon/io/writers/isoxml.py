@@ -5,8 +5,6 @@ Where to spray is said by polygons, or by a grid of cells in a binary file besid
 
 from __future__ import annotations
 
-import io
-import zipfile
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
@@ -16,6 +14,7 @@ import shapely
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.parse.geometry import area_m2
+from fieldmon.io.writers.zipped import zipped
 from fieldmon.io.writers.zone_cells import ZoneCells
 
 if TYPE_CHECKING:
@@ -28,7 +27,6 @@ _VOLUME_PER_AREA, _PER_L_HA = "0001", 10_000
 _PARTFIELD, _ZONE = "1", "2"
 _OUTER, _INNER = "1", "2"
 _MINOR = {3: "3", 4: "3"}
-_EPOCH = (1980, 1, 1, 0, 0, 0)
 _GRID = "GRD00001"
 _MOST_LETTERS = 32  # of a designator, as the standard has it
 _END_LETTERS = 10  # that a shortened one keeps of its end
@@ -101,16 +99,8 @@ def isoxml_taskdata(
     scale = f"{1 / _PER_L_HA:.9f}"
     ET.SubElement(root, "VPN", A="VPN1", B="0", C=scale, D="1", E="l/ha")
     written = ET.tostring(root, encoding="utf-8", xml_declaration=True)
-    return _zipped({"TASKDATA.XML": written, **binary})
-
-
-def _zipped(files: dict[str, bytes]) -> bytes:
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w") as archive:
-        for name, data in files.items():
-            info = zipfile.ZipInfo(f"TASKDATA/{name}", _EPOCH)
-            archive.writestr(info, data, zipfile.ZIP_DEFLATED)
-    return packed.getvalue()
+    files = {"TASKDATA.XML": written, **binary}
+    return zipped({f"TASKDATA/{name}": data for name, data in files.items()})
 
 
 def _grid(task: ET.Element, cells: ZoneCells, rate_l_ha: float) -> bytes:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import re
-import zipfile
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -22,6 +20,7 @@ from fieldmon.io.parse.geometry import area_m2
 from fieldmon.io.spray_rate import must_be_rate
 from fieldmon.io.writers.isoxml import isoxml_taskdata
 from fieldmon.io.writers.qml import GPKG_VERSION
+from fieldmon.io.writers.zipped import zipped_folder
 from fieldmon.io.writers.zone_cells import (
     MOST_CELLS,
     ZoneCells,
@@ -42,7 +41,6 @@ _IN_CELLS = re.compile(r"\.grid\d|\.tif$")
 # what is narrower than twice that, between zones and beside them, comes of how plants were measured
 _SLIM_M = 0.1
 _GRID_DEG = 1e-8  # a millimetre, as GeoJSON is written: nothing collapses there
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can name: equal maps make equal files
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,12 +222,7 @@ def _kml(of: TreatmentMap) -> bytes:
 def _shapefile(of: TreatmentMap) -> bytes:
     with working_folder() as folder:
         _write(_frame(of), Path(folder) / "treatment.shp", "ESRI Shapefile", encoding="UTF-8")
-        packed = io.BytesIO()
-        with zipfile.ZipFile(packed, "w") as archive:
-            for part in sorted(Path(folder).iterdir()):
-                info = zipfile.ZipInfo(part.name, _EPOCH)
-                archive.writestr(info, part.read_bytes(), zipfile.ZIP_DEFLATED)
-        return packed.getvalue()
+        return zipped_folder(Path(folder))
 
 
 def _one_file(

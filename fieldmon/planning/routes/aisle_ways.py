@@ -208,7 +208,43 @@ def _once(
 
 
 @inner_loop
-def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its speed
+def _left_if_better(
+    best: tuple[float, float, int, int], what: tuple[float, float], end: int, sides: int
+) -> tuple[float, float, int, int]:
+    """Return the best of the plants on the left: worth, reward, up to which plant, which sides."""
+    if what[0] > best[0]:
+        return what[0], what[1], end, sides
+    return best
+
+
+@inner_loop
+def _put_from_right(
+    room: LadderRoom,
+    aisle: tuple[int, int],
+    what: tuple[float, float, float],
+    at: tuple[int, int],
+    left: tuple[tuple[float, float, int, int], tuple[float, float, int, int]],
+) -> None:
+    """Put what plants from one on to the right end come to, alone and with the best on the left.
+
+    `aisle` and its first plant; `what` they are worth, hold, and cost by metres; `at` which plant
+    they begin and on which sides they stand; `left`, driven back and ended in.
+    """
+    (k, first), (gains, held, deep), (i, sides) = aisle, what, at
+    cut = (first, i, _NONE, sides)
+    _put(room, k, FROM_RIGHT, (gains - 2.0 * deep, held), cut)
+    _put(room, k, END_RIGHT, (gains - deep, held), cut)
+    (worth, left_held, end, left_sides), (ended, ended_held, ended_end, ended_sides) = left
+    if end > first:
+        cut = (end, i, left_sides, sides)
+        _put(room, k, FROM_BOTH, (worth + gains - 2.0 * deep, left_held + held), cut)
+        _put(room, k, END_RIGHT_AND, (worth + gains - deep, left_held + held), cut)
+        cut = (ended_end, i, ended_sides, sides)
+        _put(room, k, END_LEFT_AND, (ended + gains - 2.0 * deep, ended_held + held), cut)
+
+
+@inner_loop
+def _value_in(  # noqa: C901, PLR0912 - one pass over the plants
     ladder: Ladder, reward: Float, costs: Costs, state: tuple[int, float, bool], room: LadderRoom
 ) -> None:
     """Value an aisle that is entered and left by the same end, or in which the day ends.
@@ -227,8 +263,7 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
             side = 1 if ladder.upper[i] else 0
             gains_of[side] += reward[i] - stop
             held_of[side] += reward[i]
-    in_left, in_left_held, in_sides, in_cut = IMPOSSIBLE, 0.0, 0, first
-    end_left, end_left_held, end_sides, end_cut = IMPOSSIBLE, 0.0, 0, first
+    into, ending = (IMPOSSIBLE, 0.0, first, 0), (IMPOSSIBLE, 0.0, first, 0)
     for i in range(first, end):
         side = 1 if ladder.upper[i] else 0
         if reward[i] <= stop:
@@ -236,25 +271,10 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
                 continue
             gains, held = reward[i] - stop - change, reward[i]
             deep = metre * (ladder.across_m[k] - ladder.in_m[i])
-            cut = (first, i, _NONE, side + 1)
-            _put(room, k, FROM_RIGHT, (gains - 2.0 * deep, held), cut)
-            _put(room, k, END_RIGHT, (gains - deep, held), cut)
-            if in_cut > first:
-                cut = (in_cut, i, in_sides, side + 1)
-                what = in_left + gains - 2.0 * deep, in_left_held + held
-                _put(room, k, FROM_BOTH, what, cut)
-                what = in_left + gains - deep, in_left_held + held
-                _put(room, k, END_RIGHT_AND, what, cut)
-                cut = (end_cut, i, end_sides, side + 1)
-                what = end_left + gains - 2.0 * deep, end_left_held + held
-                _put(room, k, END_LEFT_AND, what, cut)
+            _put_from_right(room, (k, first), (gains, held, deep), (i, side + 1), (into, ending))
             deep = metre * ladder.in_m[i]
-            if gains - 2.0 * deep > in_left:
-                in_left, in_left_held = gains - 2.0 * deep, held
-                in_cut, in_sides = i + 1, side + 1
-            if gains - deep > end_left:
-                end_left, end_left_held = gains - deep, held
-                end_cut, end_sides = i + 1, side + 1
+            into = _left_if_better(into, (gains - 2.0 * deep, held), i + 1, side + 1)
+            ending = _left_if_better(ending, (gains - deep, held), i + 1, side + 1)
             continue
         deep = metre * (ladder.across_m[k] - ladder.in_m[i])
         for sides in range(1, 4):
@@ -267,18 +287,7 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
                 continue
             if sides == 3:
                 gains -= both_sides
-            cut = (first, i, _NONE, sides)
-            _put(room, k, FROM_RIGHT, (gains - 2.0 * deep, held), cut)
-            _put(room, k, END_RIGHT, (gains - deep, held), cut)
-            if in_cut > first:
-                cut = (in_cut, i, in_sides, sides)
-                what = in_left + gains - 2.0 * deep, in_left_held + held
-                _put(room, k, FROM_BOTH, what, cut)
-                what = in_left + gains - deep, in_left_held + held
-                _put(room, k, END_RIGHT_AND, what, cut)
-                cut = (end_cut, i, end_sides, sides)
-                what = end_left + gains - 2.0 * deep, end_left_held + held
-                _put(room, k, END_LEFT_AND, what, cut)
+            _put_from_right(room, (k, first), (gains, held, deep), (i, sides), (into, ending))
         left_of[side] += reward[i] - stop
         left_held_of[side] += reward[i]
         deep = metre * ladder.in_m[i]
@@ -292,12 +301,8 @@ def _value_in(  # noqa: C901, PLR0912, PLR0915 - one pass; parts would cost its 
                     held += left_held_of[of]
             if sides == 3 and left_held_of[1 - side] > 0.0:
                 gains -= both_sides
-            if gains - 2.0 * deep > in_left:
-                in_left, in_left_held = gains - 2.0 * deep, held
-                in_cut, in_sides = i + 1, sides
-            if gains - deep > end_left:
-                end_left, end_left_held = gains - deep, held
-                end_cut, end_sides = i + 1, sides
-    if in_cut > first:
-        _put(room, k, FROM_LEFT, (in_left, in_left_held), (in_cut, end, in_sides, _NONE))
-        _put(room, k, END_LEFT, (end_left, end_left_held), (end_cut, end, end_sides, _NONE))
+            into = _left_if_better(into, (gains - 2.0 * deep, held), i + 1, sides)
+            ending = _left_if_better(ending, (gains - deep, held), i + 1, sides)
+    if into[2] > first:
+        _put(room, k, FROM_LEFT, into[:2], (into[2], end, into[3], _NONE))
+        _put(room, k, END_LEFT, ending[:2], (ending[2], end, ending[3], _NONE))

@@ -17,7 +17,7 @@ from scipy.spatial.distance import squareform
 
 from fieldmon.planning.routes.aisle_ways import Costs
 from fieldmon.planning.routes.binned import proposals
-from fieldmon.planning.routes.priced import REACH, Priced, least_by_kind
+from fieldmon.planning.routes.priced import REACH, AtPrices, Priced, least_by_kind
 from fieldmon.planning.routes.stops import stops_of
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class Tours(NamedTuple):
     before: Int
 
 
-class Blocks:
+class Blocks(AtPrices):
     """Best drives through blocks of a plot at any price, as `Priced` gives them on one ladder."""
 
     def __init__(self, ladders: Ladders, block: Int, reward: Float, robot: Robot) -> None:
@@ -211,14 +211,6 @@ class Blocks:
             (k, True, opened[k]) if opened and k == last else (k, False, closed[k]) for k in order
         )
         return Visited(worth, sum(drive.reward for _, _, drive in drives), drives)
-
-    def bound(self, drawn: Visited, price: float, seconds: float) -> float:
-        """Return what no drive in so many seconds can reach, by the best drive at a price."""
-        return max(drawn.worth + price * (seconds + self.costs.change_s), 0.0)
-
-    def seconds(self, drawn: Visited, price: float) -> float:
-        """Return the seconds that a drive takes at least."""
-        return (drawn.reward - drawn.worth) / price - self.costs.change_s
 
     def stops(self, drawn: Visited, price: float) -> Int:
         """Return the plants of a drive in the order of one way to drive it."""

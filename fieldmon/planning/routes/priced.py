@@ -78,7 +78,35 @@ class HangingPart(Protocol):
         ...
 
 
-class Priced:
+class ADrive(Protocol):
+    """A drive, on one ladder (`Drawn`) or on several, with its worth and its reward."""
+
+    @property
+    def worth(self) -> float:
+        """Reward less the priced time."""
+        ...
+
+    @property
+    def reward(self) -> float:
+        """What its plants hold."""
+        ...
+
+
+class AtPrices:
+    """What a drive at a price of time says of seconds: its own, and those of all others."""
+
+    costs: Costs
+
+    def bound(self, drawn: ADrive, price: float, seconds: float) -> float:
+        """Return what no drive in so many seconds can reach, by the best drive at a price."""
+        return max(drawn.worth + price * (seconds + self.costs.change_s), 0.0)
+
+    def seconds(self, drawn: ADrive, price: float) -> float:
+        """Return the seconds that a drive takes, at least."""
+        return (drawn.reward - drawn.worth) / price - self.costs.change_s
+
+
+class Priced(AtPrices):
     """Best drives on a ladder at any price."""
 
     def __init__(self, ladder: Ladder, reward: Float, robot: Robot) -> None:
@@ -140,10 +168,6 @@ class Priced:
         self._room.reward[gate] = 0.0
         self._room.worth[gate, :4] = -metre * (self._gate_passes * self.ladder.stub_m).sum(axis=1)
 
-    def bound(self, drawn: Drawn, price: float, seconds: float) -> float:
-        """Return what no drive in so many seconds can reach, by the best drive at a price."""
-        return max(drawn.worth + price * (seconds + self.costs.change_s), 0.0)
-
     def bound_by_kind(self, seconds: float, price: float, until_s: float) -> float:
         """Return what no drive in so many seconds can reach: the most of all kinds of drives."""
         least = least_by_kind(self.kinds, seconds + self.costs.change_s, price, until_s)
@@ -163,10 +187,6 @@ class Priced:
         metre = price * self.costs.metre_s
         _sweep_kinds(self.ladder, self.tables, metre, self._room, (low, high, worth, reward))
         return worth, reward
-
-    def seconds(self, drawn: Drawn, price: float) -> float:
-        """Return the seconds that a drive takes on the ladder."""
-        return (drawn.reward - drawn.worth) / price - self.costs.change_s
 
 
 def _stretches(first: int, end: int) -> Int:

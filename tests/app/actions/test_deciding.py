@@ -1,6 +1,7 @@
 """What can be done on the page Decide: leaves, and the files."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from app.actions import deciding as acting
 from app.words import texts
 from fieldmon.decisions.thresholds import published
 from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.io.writers.treatment_map import MAP_FORMATS
 from tests.app.driving import boxed, go, press, texts_of
 
@@ -27,6 +29,19 @@ def test_leaves_that_were_counted_have_a_verdict_with_its_source(season_app):
     assert "Zalom" in texts_of(season_app)
     season_app.number_input(key="decide counted").set_value(50).run()
     assert "No more leaves can be infested" in season_app.warning[0].value
+
+
+def test_of_a_threshold_for_another_pest_than_the_season_s_it_is_said(season_app, season):
+    before = season().settings
+    season().change(replace(before, pest=shipped_pest("whitefly")), before)
+    go(season_app, "decide")
+    assert "'almond' is for" in season_app.warning[0].value
+    table = b"name,measure,level,source,pest\ntomato,share of plants,0.2,our adviser,whitefly\n"
+    season_app.file_uploader(key="thresholds_file").upload("own.csv", table, "text/csv").run()
+    press(season_app, texts.DECIDE_OWN_TAKE)
+    box = season_app.selectbox(key="decide leaves of")
+    assert (box.value, box.options[0]) == ("tomato", "tomato")
+    assert not season_app.warning
 
 
 def test_thresholds_of_ones_own_are_brought_and_the_answer_takes_them(season_app):

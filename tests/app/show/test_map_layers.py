@@ -188,7 +188,6 @@ def test_what_was_treated_lately_is_shown_with_its_day_and_product(tmp_path):
         shown = [layer for layer in day.layers if layer.id == "treated"]
         assert [row["t"] for layer in shown for row in layer.data] == said
         assert ("treated" in {one.key for one in day.switches if one.on}) == bool(said)
-        assert ("treated" in {one["of"] for one in day.legend}) == bool(said)
     season.undo(done.batch)
     day = map_layers.day_map(in_season(season, BEGINS + timedelta(days=3)))
     (shown,) = [layer for layer in day.layers if layer.id == "treated"]

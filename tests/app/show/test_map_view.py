@@ -129,9 +129,14 @@ def test_the_ground_lies_below_all_else_can_be_switched_and_names_its_source(sen
     assert sent(content())["switches"] == []
 
 
-def test_what_nobody_wants_to_hear_of_changes_nothing(session):
-    session[map_view.KEY] = {"tapped": {"layer": "x", "index": 1}, "drawn": None}
+def test_only_what_was_done_is_heard_and_only_by_who_asked_for_it(session):
+    done = {"tapped": {"layer": "x", "index": 1}, "drawn": None, "selected": {"runs": [[1, 2]]}}
+    session[map_view.KEY], heard = dict(done), []
+    map_view._heard(MapAnswers(drawn=lambda *what: heard.append(what), selected=heard.append))
+    assert heard == [(1, 2)]
     map_view._heard(MapAnswers())
+    assert heard == [(1, 2)]
+    assert session[map_view.KEY] == done
 
 
 def test_a_page_sends_little_however_many_plants_it_shows(app):

@@ -251,9 +251,10 @@ def test_enough_files_may_be_open():
         "print(r.getrlimit(r.RLIMIT_NOFILE));"
         "r.setrlimit(r.RLIMIT_NOFILE, (500, 500)); print(lan._open_files())"
     )
-    if resource.getrlimit(resource.RLIMIT_NOFILE)[1] not in range(1000):
-        said = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
-        assert said.stdout.split(b"\n")[:3] == [b"1000", b"(1000, 1000)", b"500"]
+    if resource.getrlimit(resource.RLIMIT_NOFILE)[1] in range(1000):
+        pytest.skip("fewer files may be open here")
+    said = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+    assert said.stdout.split(b"\n")[:3] == [b"1000", b"(1000, 1000)", b"500"]
 
 
 def test_a_port_that_somebody_else_has_is_a_sentence(served):

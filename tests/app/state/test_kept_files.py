@@ -174,7 +174,7 @@ def test_half_a_folder_is_none(brought):
     assert "Bring a plot" in texts_of(reloaded(brought))
 
 
+@pytest.mark.skipif(os.name != "posix", reason="no modes of this kind")
 @pytest.mark.usefixtures("brought")
 def test_nobody_else_on_the_machine_can_read_them():
-    if os.name == "posix":
-        assert kept_files.folder().stat().st_mode & 0o077 == 0
+    assert kept_files.folder().stat().st_mode & 0o077 == 0

@@ -14,7 +14,7 @@ from fieldmon.io.readers.weather_json import is_weather_json
 from fieldmon.io.readers.weather_options import WeatherOptions
 from fieldmon.io.sandbox.workroom import Workroom
 
-#: the first hours of the example in docs/weather_service.md of the platform's weather service
+#: the first hours of the example in which a service's own documentation shows its answers
 EXAMPLE = {
     "timeStart": "2020-04-30T22:00:00Z",
     "timeEnd": "2020-05-01T01:00:00Z",

@@ -6,6 +6,7 @@ from fieldmon.decisions.sequential import WaldPlan
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.pests.pest import Pest
+from fieldmon.studies.verdicts import until_verdict
 from fieldmon.studies.verdicts.until_verdict import (
     CONTENDERS,
     DECIDE,
@@ -31,10 +32,16 @@ def test_every_contender_answers_and_the_same_seed_gives_the_same(answered):
     assert answers(Question("clusters"), 1) == [one for one in answered if one.seed == 1]
 
 
-def test_a_verdict_is_right_where_the_truth_is_on_its_side(answered):
-    for one in answered:
-        says = {"treat": True, "do not treat": False}.get(one.verdict)
-        assert one.right == float(says is (one.share >= 1.0))
+def test_a_verdict_is_right_where_the_truth_is_on_its_side(monkeypatch):
+    verdicts = ("treat", "do not treat", "look on")
+    monkeypatch.setattr(
+        until_verdict, "_ANSWERS", {one: lambda *_, one=one: (one, 1) for one in verdicts}
+    )
+    told = [answers(Question("clusters"), seed) for seed in range(6)]
+    treating_pays = [each[0].share >= 1.0 for each in told]
+    assert {*treating_pays} == {True, False}
+    for each, pays in zip(told, treating_pays, strict=True):
+        assert [one.right for one in each] == [pays, not pays, False]
 
 
 def test_the_whole_w_is_as_long_as_its_two_levels_need(answered):

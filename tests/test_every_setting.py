@@ -3,9 +3,11 @@
 What a place rightly has not is named here with the reason, so that a new field needs a line.
 """
 
+import json
 from dataclasses import fields, is_dataclass, replace
 from datetime import date, time
 from inspect import signature
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,11 +16,15 @@ import pytest
 from fieldmon.cli.change import ChangeOptions, change
 from fieldmon.cli.options import OF_ROBOT, RobotOptions, WorkerOptions
 from fieldmon.compute.units import Units
+from fieldmon.errors import FileProblem
+from fieldmon.infestation.earlier_season import Believed, EarlierSeason
+from fieldmon.infestation.origins import N_ORIGINS
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.io.readers.team import SETTINGS, read_team
-from fieldmon.monitoring import MonitoringSettings, settings_log
+from fieldmon.monitoring import MonitoringSettings, schema, settings_log
 from fieldmon.monitoring.settings import as_json, from_json
 from fieldmon.monitoring.settings_words import changed, taken_back
+from fieldmon.pests.pest import Citation, Increase, Pest, Stage
 from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.planning.members import TeamMember, Teamwork
 from fieldmon.planning.team_bound import quickest_of
@@ -272,3 +278,73 @@ def test_what_bounds_a_team_is_as_quick_as_the_best_of_it_in_every_setting(name)
     other = replace(ROBOT, **{name: OTHER_ROBOT[name]})
     alike = quickest_of([ROBOT, other]) == quickest_of([other, ROBOT])
     assert alike == (name not in NOT_OF_WAYS)
+
+
+EARLIER = EarlierSeason(
+    "West", BEGINS, Believed("mite", 0.1, 0.8, 3.0, 1.0), (1.0,) * N_ORIGINS, (1.0,) * N_ORIGINS,
+    (1.0,) * 4,
+)  # fmt: skip
+#: settings that say something of everything
+WHOLE = replace(
+    SEASON, team=(replace(MEMBER, robot=replace(ROBOT, turning_radius_m=2.0)),),
+    robot=replace(ROBOT, turning_radius_m=2.0),
+    belief=replace(SEASON.belief, earlier=EARLIER),
+    pest=Pest(
+        "own", stages=(Stage("egg", 10.0, 100.0),), generation=Stage("all", 10.0, 200.0),
+        increase=Increase((10.0, 20.0), (0.1, 0.2)), viewpoints=Viewpoints(),
+        citations=(Citation("movement", "a book"),),
+    ),
+    weather=WEATHER, harvest=OTHER["harvest"], language="he",
+)  # fmt: skip
+
+
+def within(plain, path=""):
+    """Yield the path of each setting that a season's file names, and what it is of."""
+    for name, value in plain.items():
+        yield f"{path}{name}", plain
+        for one in value if isinstance(value, list) else [value]:
+            if isinstance(one, dict):
+                yield from within(one, f"{path}{name} ")
+
+
+def kept():
+    """Return the parts of a season's settings, but for a year of hours."""
+    return {name: json.loads(part) for name, part in as_json(WHOLE).items() if name != "weather"}
+
+
+FORMATS = Path(__file__).parent / "monitoring" / "seasons_of_old"
+
+
+def test_a_new_setting_raises_the_version_of_a_season_s_file():
+    """An older fieldmon must not open what it would not understand."""
+    names = [path for path, _ in within(kept())]
+    known = (FORMATS / f"settings_of_format_{schema.VERSION}.txt").read_text().split("\n")[:-1]
+    assert sorted({*names}) == known, (
+        "Raise VERSION in fieldmon/monitoring/schema.py, and list the names of the new version."
+    )
+
+
+@pytest.mark.parametrize("path", sorted({p.rpartition(" ")[0] for p, _ in within(kept())}))
+def test_a_setting_of_a_newer_fieldmon_is_said_and_not_taken_for_damage(path):
+    parts = kept()
+    if path == "":
+        parts["colour"] = {"red": 3}
+    else:
+        next(of for at, of in within(parts) if at.rpartition(" ")[0] == path)["colour"] = 3
+    unknown = f"know {path} colour." if path else "know colour."
+    with pytest.raises(FileProblem) as problem:
+        from_json({name: json.dumps(part) for name, part in parts.items()})
+    said = str(problem.value)
+    assert unknown in said
+    assert "written by a newer fieldmon" in said
+    assert "salvage" not in said
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "unknown"),
+    [("cleverest", "{}", "sampler cleverest"), ("bouncy", '{"n": 3}', "sampler settings n")],
+)
+def test_a_sampler_of_a_newer_fieldmon_is_said(name, settings, unknown):
+    newer = as_json(SEASON) | {"sampler": f'{{"name": "{name}", "settings": {settings}}}'}
+    with pytest.raises(FileProblem, match=rf"know {unknown}\. .*newer fieldmon"):
+        from_json(newer)

@@ -240,10 +240,19 @@ Rover = Annotated[
         help="A robot 0.58 m wide and 0.8 m long, as in simulated drives (docs: drive).",
     ),
 ]
+
+
+def _usual_n(*, of_share: bool) -> str:
+    """Return the samplers that take an N, of every N-th or of a share, each with its own."""
+    having = [(name, kind) for name, kind in SAMPLERS.items() if kind.every is not None]
+    return ", ".join(f"{name} {of.every}" for name, of in having if of.draws_share == of_share)
+
+
 Every = Annotated[
     int | None,
     typer.Option(
-        help="Every N-th plant or stop (bouncy 2, snake 1, neighbor 1) or 1/N (random 3).",
+        help=f"Every N-th plant or stop ({_usual_n(of_share=False)}) or 1/N "
+        f"({_usual_n(of_share=True)}).",
         callback=within(EVERY),
     ),
 ]

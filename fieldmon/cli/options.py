@@ -13,6 +13,7 @@ from fieldmon.cli.numbers import of_robot, within
 from fieldmon.cli.raster_options import RasterFiles
 from fieldmon.compute.ranges import CHANCE, DAYS, SEED, SHARE
 from fieldmon.errors import SettingError
+from fieldmon.io.formats.signatures import USUAL
 from fieldmon.planning.members import TEAMWORK
 from fieldmon.plot.planting import PLANTED
 from fieldmon.plot.robot import SAID_IN
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
 
-PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
+PLOT_HELP = f"Plot file: shapefile (.shp or .zip), {', '.join(USUAL)}, ..."
 
 PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
 MaybePlotFile = Annotated[

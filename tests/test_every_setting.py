@@ -159,7 +159,7 @@ NOT_IN_REPORTS = {
     "starts": "the times of each stop say it",
     "sampler_settings": "a sampler is named; fieldmon status has the rest",
     "seed": "nobody works by it",
-    "teamwork": "it is of the library alone but for what the commands say of it",
+    "teamwork": "it says how routes are given out, not how anybody works on one",
     "weather": "of no effect, and not said, without a pest",
     "harvest": "it stands with the treatments",
     "language": "the report is in it",
@@ -226,7 +226,7 @@ SAID = {
 NOT_CHANGED = {
     "begins": "another season begins on another day",
     "seed": "of samplers that draw; nobody wants another draw",
-    "teamwork": "it is of the library alone",
+    "teamwork": "fieldmon init alone is told how a team works together",
 }
 
 

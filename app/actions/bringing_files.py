@@ -9,6 +9,7 @@ import streamlit as st
 
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.io.formats.signatures import USUAL_FILES
 from fieldmon.io.import_report import Severity
 from fieldmon.io.parse.result_words import words_in, words_told
 
@@ -27,7 +28,7 @@ from ..state.brought_files import (
 from ..state.tried_answers import tried_of_records
 from ..words import texts
 from ..words.answers import in_short
-from ..words.language import in_words, of_error, unformatted
+from ..words.language import in_words, listed, of_error, unformatted
 from . import bringing_seasons
 
 if TYPE_CHECKING:
@@ -59,8 +60,9 @@ _MEANINGS = {FOUND: "found", CLEAN: "clean"}
 
 def show() -> None:
     """Show the boxes for a plot's files; what was dropped is kept while the session lasts."""
-    labels = {PLOT: texts.PLOT_FILE, RECORDS: texts.RECORD_FILE, PLANTS: texts.PLANT_FILE,
-              ROWS: texts.ROWS_FILE, BLOCKS: texts.BLOCKS_FILE}  # fmt: skip
+    labels = {PLOT: texts.PLOT_FILE.format(formats=listed(USUAL_FILES)), RECORDS: texts.RECORD_FILE,
+              PLANTS: texts.PLANT_FILE, ROWS: texts.ROWS_FILE,
+              BLOCKS: texts.BLOCKS_FILE}  # fmt: skip
     for kind, label in labels.items():
         dropped = st.file_uploader(label, key=brought_files.box(kind), accept_multiple_files=True,
                                    on_change=_take, args=(kind,))  # fmt: skip

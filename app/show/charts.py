@@ -249,7 +249,7 @@ def season_days(
         .mark_bar(color=_COLOURS[5])
         .encode(
             x=x,
-            y=alt.Y("inspected:Q", title=axes[1], axis=alt.Axis(orient=_sides()[0])),
+            y=_counts("inspected", axes[1], _sides()[0], table),
             tooltip=tip,
         )
     )
@@ -259,11 +259,19 @@ def season_days(
                    invalid="break-paths-filter-domains")
         .encode(
             x=x, tooltip=tip,
-            y=alt.Y("found:Q", title=axes[2], axis=alt.Axis(orient=_sides()[1])),
+            y=_counts("found", axes[2], _sides()[1], table),
         )
     )  # fmt: skip
     both: alt.LayerChart = alt.LayerChart(layer=[bars, found_]).resolve_scale(y="independent")
     return both.properties(height=220)
+
+
+def _counts(name: str, title: str, side: Side, table: pd.DataFrame) -> alt.Y:
+    """Return the axis of what is counted: whole numbers from 0, also where all are 0."""
+    most = table[name].max()
+    scale = alt.Scale(domain=[0, 1 if pd.isna(most) else max(int(most), 1)], nice=True)
+    return alt.Y(f"{name}:Q", title=title, scale=scale,
+                 axis=alt.Axis(orient=side, tickMinStep=1, format=",d"))  # fmt: skip
 
 
 def _work_by_day(days: list[DayFigures], named: DayName) -> pd.DataFrame:

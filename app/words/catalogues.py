@@ -1,19 +1,24 @@
 """What there is to translate, and the files that hold it: ``python -m app.words.catalogues``.
 
 The command writes each language's file anew: new texts with no translation yet, gone ones left
-out, all others as they were. A translator needs nothing but that file.
+out, all others as they were and where they were. A text whose English changed keeps the translation
+of before, marked as gettext does: ``#, fuzzy``, and behind ``#|`` what it was in English. Users are
+shown English until somebody corrects it and takes these lines out. A translator needs nothing but
+that file.
 """
 
 from __future__ import annotations
 
 import ast
 from dataclasses import dataclass
+from difflib import get_close_matches
+from io import BytesIO
 from pathlib import Path
 from string import Formatter
 from typing import TYPE_CHECKING, Any
 
 from babel.messages.catalog import Catalog
-from babel.messages.pofile import read_po, write_po
+from babel.messages.pofile import normalize, read_po, write_po
 
 import fieldmon
 from fieldmon.compute.units import IN_UNIT
@@ -26,10 +31,16 @@ from . import texts
 from .language import DRAFTS, ENGLISH, FOLDER, LANGUAGES, LIBRARY, SAME, Plural
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
+
+    from babel.messages.catalog import Message
+
+    #: a text's context, and its words
+    Key = tuple[str, str]
 
 #: functions of the library that word a sentence: their first argument is what is translated
 _WORDING = frozenset({"worded"})
+_WIDTH = 100
 _SAME_ON_PAPER = frozenset({report_words.FOOTER})
 
 
@@ -45,6 +56,11 @@ class TextEntry:
     def id(self) -> str | tuple[str, str]:
         """Return what a catalogue calls it."""
         return (self.one, self.words) if self.one else self.words
+
+    @property
+    def key(self) -> Key:
+        """Return where it stands and its words: no other text has both."""
+        return self.context, self.words
 
 
 def entries() -> list[TextEntry]:
@@ -166,16 +182,72 @@ def update(language: str) -> list[TextEntry]:
         last_translator=before.last_translator, language_team=before.language_team,
         msgid_bugs_address=before.msgid_bugs_address, fuzzy=False,
     )  # fmt: skip
-    missing = []
-    for entry in entries():
-        known = before.get(entry.id, entry.context)
-        string = known.string if known else ""
-        after.add(entry.id, string, context=entry.context)
-        if not string or not all(string if isinstance(string, tuple) else (string,)):
+    wanted = {entry.key: entry for entry in entries()}
+    known = {_key(message): message for message in before if message.id}
+    gone = {key: message for key, message in known.items() if key not in wanted}
+    missing, of_before = [], list[list[str]]()
+    found = {key: known.get(key) or _before(entry, gone) for key, entry in wanted.items()}
+    places = {key: _key(message) for key, message in found.items() if message}
+    for key in _in_place(wanted, known, places):
+        entry, message = wanted[key], found[key]
+        string = message.string if message else ""
+        doubtful = message is not None and (message.fuzzy or places[key] != key)
+        flags = ["fuzzy"] if doubtful else []
+        after.add(entry.id, string, context=entry.context, flags=flags)
+        if message is not None and doubtful:
+            of_before.append(_said_before(message))
+        if doubtful or not string or not all(string if isinstance(string, tuple) else (string,)):
             missing.append(entry)
-    with path_of(language).open("wb") as file:
-        write_po(file, after, width=100, omit_header=False)
+    written = BytesIO()
+    write_po(written, after, width=_WIDTH, omit_header=False)
+    path_of(language).write_bytes(_with_before(written.getvalue(), of_before))
     return missing
+
+
+def _key(message: Message) -> Key:
+    return message.context or "", message.id if isinstance(message.id, str) else message.id[1]
+
+
+def _before(entry: TextEntry, gone: dict[Key, Message]) -> Message | None:
+    """Return what a text was whose English changed: of those gone, by its place or its words."""
+    alike = {
+        key: message
+        for key, message in gone.items()
+        if key[0] == entry.context and isinstance(message.id, str) != bool(entry.one)
+    }
+    words = [words for _, words in alike]
+    if entry.context == LIBRARY:
+        words = get_close_matches(entry.words, words, 1)
+    return alike[entry.context, words[0]] if words else None
+
+
+def _in_place(wanted: Iterable[Key], known: Iterable[Key], places: dict[Key, Key]) -> list[Key]:
+    """Return texts in the order of a file: what is new comes behind what it stands behind now."""
+    at = {key: number for number, key in enumerate(known)}
+    order: dict[Key, tuple[int, int]] = {}
+    last = (-1, 0)
+    for number, key in enumerate(wanted):
+        last = (at[places[key]], 0) if key in places else (last[0], number + 1)
+        order[key] = last
+    return sorted(order, key=order.__getitem__)
+
+
+def _said_before(message: Message) -> list[str]:
+    """Return the lines of a file that say in English what was translated."""
+    if message.fuzzy:  # they are there already
+        return [f"#{line}" for line in message.user_comments if line.startswith("|")]
+    ids = (message.id,) if isinstance(message.id, str) else message.id
+    names = ("msgid", "msgid_plural")
+    said = (f"{name} {normalize(id_, width=_WIDTH)}" for name, id_ in zip(names, ids, strict=False))
+    return [f"#| {line}" for one in said for line in one.splitlines()]
+
+
+def _with_before(data: bytes, of_before: list[list[str]]) -> bytes:
+    """Return a file with what was translated behind each mark: babel breaks it where it is long."""
+    lines, left = list[str](), iter(of_before)
+    for line in data.decode().split("\n"):
+        lines += [line, *(next(left) if line.startswith("#, fuzzy") else ())]
+    return "\n".join(lines).encode()
 
 
 def main() -> None:

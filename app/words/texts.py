@@ -46,7 +46,7 @@ SAMPLE_NOTE = (
     "{day}."
 )
 PLOT_FROM = "Plot or season"
-PLOT_FILE = "Plot: zipped shapefile, GeoPackage, GeoJSON, KML"
+PLOT_FILE = "Plot: zipped shapefile, {formats}"
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
 ROWS_FILE = "Rows as lines, or their end posts (optional)"

@@ -11,15 +11,9 @@ from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import (
     Background,
-    Hours,
-    Length,
-    Look,
+    RobotOptions,
     Robots,
-    RobotTimesName,
     SeasonFile,
-    Speed,
-    TurningRadius,
-    Width,
     WorkerOptions,
     sampler_settings,
 )
@@ -48,13 +42,7 @@ class ChangeOptions:
         int | None,
         typer.Option(help="Every N-th plant or stop, as in plan.", callback=within(EVERY)),
     ] = None
-    hours: Hours = None
-    look: Look = None
-    speed: Speed = None
-    width: Width = None
-    length: Length = None
-    turning_radius: TurningRadius = None
-    robot_times: RobotTimesName = None
+    worker: RobotOptions = field(default_factory=RobotOptions)
     robots: Robots = None
     start: Annotated[str | None, typer.Option(help="Local time at which work starts, HH:MM.")] = (
         None
@@ -117,20 +105,13 @@ class ChangeOptions:
     @property
     def of_worker(self) -> bool:
         """Whether anything is said of who inspects."""
-        return bool(self._worker().given()) or self.robot_times is not None
-
-    def _worker(self) -> WorkerOptions:
-        return WorkerOptions(
-            self.hours, self.look, self.speed,
-            width=self.width, length=self.length, turning_radius=self.turning_radius,
-            robot_times=self.robot_times,
-        )  # fmt: skip
+        return self.worker != RobotOptions()
 
     def _of_who_inspects(self, settings: MonitoringSettings) -> MonitoringSettings:
         """Return settings with the robot or the team told."""
         from dataclasses import replace
 
-        worker = self._worker()
+        worker = self.worker
         new = replace(settings, robot=worker.said_of(settings.robot))
         if self.robots is not None:
             return self._of_several(new)
@@ -143,7 +124,7 @@ class ChangeOptions:
         """Refuse what is said of everybody where members of a team differ, or find by a table."""
         from fieldmon.monitoring.settings_words import worker_in_words
 
-        told = self.look is not None and any(one.robot.detection is not None for one in team)
+        told = self.worker.look is not None and any(one.robot.detection is not None for one in team)
         if len({one.robot for one in team}) == 1 and not told:
             return
         each = "; ".join(worker_in_words(one) for one in team)
@@ -202,7 +183,7 @@ class ChangeOptions:
         if robots.isdecimal():
             n = int(robots)
             return replace(settings, team=() if n == 1 else team_of(n, settings.robot))
-        team, first = members_of(robots, settings.starts, self._worker())
+        team, first = members_of(robots, settings.starts, WorkerOptions(**vars(self.worker)))
         return replace(settings, team=team, starts=first)
 
 

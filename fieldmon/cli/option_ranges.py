@@ -8,22 +8,12 @@ import typer  # noqa: TC002 - typer reads what a callback takes
 
 from fieldmon.compute.ranges import AllowedRange
 from fieldmon.errors import SettingError
-from fieldmon.plot.robot import KM_H, broken_rule
+from fieldmon.plot.robot import broken_rule
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 V = TypeVar("V")
-
-#: settings of `Robot` that a person says in a unit: how many of it make one of the setting's, and
-#: how it is said
-_UNITS = {
-    "hours": (1.0, " h"),
-    "look_s": (1.0, " s"),
-    "speed_m_s": (KM_H, " km/h"),
-    "row_change_s": (1.0, " s"),
-    "turn_180_s": (1.0, " s"),
-}
 
 
 def within(*told: float | AllowedRange, **how: bool | str) -> Callable[[typer.CallbackParam, V], V]:
@@ -37,8 +27,7 @@ def within(*told: float | AllowedRange, **how: bool | str) -> Callable[[typer.Ca
 
 def of_robot(name: str) -> Callable[..., object]:
     """Return what refuses an option for a setting of `Robot`, said in the unit of the option."""
-    units, unit = _UNITS.get(name, (1.0, ""))
-    return refusing(lambda value: broken_rule(name, value, units, unit))
+    return refusing(lambda value: broken_rule(name, value, with_unit=True))
 
 
 def refusing(broken: Callable[[float], str]) -> Callable[[typer.CallbackParam, V], V]:

@@ -13,9 +13,10 @@ from fieldmon.cli.option_ranges import of_robot, within
 from fieldmon.cli.raster_options import RasterFiles
 from fieldmon.compute.ranges import CHANCE, DAYS, SEED, SHARE
 from fieldmon.errors import SettingError
+from fieldmon.io.formats.signatures import USUAL_FILES
 from fieldmon.planning.members import TEAMWORK
 from fieldmon.plot.planting import PLANTED
-from fieldmon.plot.robot import KM_H
+from fieldmon.plot.robot import SAID_IN
 from fieldmon.samplers import EVERY, SAMPLERS, kind_of, sampler_with
 from fieldmon.samplers.own import is_own
 
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
 
-PLOT_HELP = "Plot file: shapefile (.shp or .zip), GeoPackage, GeoJSON, KML, ..."
+PLOT_HELP = f"Plot file: shapefile (.shp or .zip), {', '.join(USUAL_FILES)}, ..."
 
 PlotFile = Annotated[Path, typer.Argument(help=PLOT_HELP, show_default=False)]
 MaybePlotFile = Annotated[
@@ -240,10 +241,19 @@ Rover = Annotated[
         help="A robot 0.58 m wide and 0.8 m long, as in simulated drives (docs: drive).",
     ),
 ]
+
+
+def _usual_n(*, of_share: bool) -> str:
+    """Return the samplers that take an N, of every N-th or of a share, each with its own."""
+    having = [(name, kind) for name, kind in SAMPLERS.items() if kind.every is not None]
+    return ", ".join(f"{name} {of.every}" for name, of in having if of.draws_share == of_share)
+
+
 Every = Annotated[
     int | None,
     typer.Option(
-        help="Every N-th plant or stop (bouncy 2, snake 1, neighbor 1) or 1/N (random 3).",
+        help=f"Every N-th plant or stop ({_usual_n(of_share=False)}) or 1/N "
+        f"({_usual_n(of_share=True)}).",
         callback=within(EVERY),
     ),
 ]
@@ -306,17 +316,23 @@ MoveMinutes = Annotated[
 StartTime = Annotated[str, typer.Option(help="Local time at which work starts, HH:MM.")]
 
 
+#: which setting of `Robot` each of the options of numbers is
+OF_ROBOT = {
+    "hours": "hours", "look": "look_s", "speed": "speed_m_s", "row_change": "row_change_s",
+    "turn": "turn_180_s", "width": "width_m", "length": "length_m",
+    "turning_radius": "turning_radius_m",
+}  # fmt: skip
+
+
 @dataclass(frozen=True)
-class WorkerOptions:
-    """Who inspects, and how long."""
+class RobotOptions:
+    """Who inspects, and how long, as it may be said anew."""
 
     hours: Hours = None
     look: Look = None
     speed: Speed = None
     row_change: RowChange = None
     turn: Turn = None
-    scout: Scout = False
-    rover: Rover = False
     width: Width = None
     length: Length = None
     turning_radius: TurningRadius = None
@@ -324,17 +340,26 @@ class WorkerOptions:
 
     def given(self) -> dict[str, float]:
         """Return what was said, as settings of `Robot`."""
-        said = {
-            "hours": self.hours,
-            "look_s": self.look,
-            "speed_m_s": None if self.speed is None else self.speed / KM_H,
-            "row_change_s": self.row_change,
-            "turn_180_s": self.turn,
-            "width_m": self.width,
-            "length_m": self.length,
-            "turning_radius_m": self.turning_radius,
+        return {
+            setting: value / SAID_IN[setting].units
+            for option, setting in OF_ROBOT.items()
+            if (value := getattr(self, option)) is not None
         }
-        return {name: value for name, value in said.items() if value is not None}
+
+    def said_of(self, robot: Robot) -> Robot:
+        """Return a robot with what was said of its times and settings."""
+        from dataclasses import replace
+
+        charged = robot if self.robot_times is None else robot.with_times(self.robot_times)
+        return replace(charged, **self.given())  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class WorkerOptions(RobotOptions):
+    """Who inspects from the beginning, and how long."""
+
+    scout: Scout = False
+    rover: Rover = False
 
     def robot(self) -> Robot:
         """Return the robot, or the scout, with what was said."""
@@ -344,13 +369,6 @@ class WorkerOptions:
             raise SettingError("A scout is no rover: give one of --scout and --rover.")
         base = robot.scout() if self.scout else robot.rover() if self.rover else robot.Robot()
         return self.said_of(base)
-
-    def said_of(self, robot: Robot) -> Robot:
-        """Return a robot with what was said of its times and settings."""
-        from dataclasses import replace
-
-        charged = robot if self.robot_times is None else robot.with_times(self.robot_times)
-        return replace(charged, **self.given())  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from copy import copy
 from dataclasses import asdict, dataclass, field, fields, replace
 from datetime import date, time
 from functools import lru_cache
+from inspect import signature
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,21 +17,31 @@ from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import SEED, AllowedRange
 from fieldmon.compute.wording import chance_figure, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
-from fieldmon.infestation.earlier_season import earlier_from
+from fieldmon.infestation.earlier_season import Believed, EarlierSeason, earlier_from
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.pest_prior import prior_of_now
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.pest_json import kept_weather, pest_json, pest_of_json, weather_json
-from fieldmon.pests.pest import seen_by_pest, tells_detection
+from fieldmon.pests.pest import (
+    Citation,
+    Entry,
+    Increase,
+    Movement,
+    Pest,
+    Stage,
+    seen_by_pest,
+    tells_detection,
+)
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ, person_key
 from fieldmon.plot.robot import ROBOT_TIMES, Robot, Viewpoints
-from fieldmon.samplers import USUAL_SAMPLER, sampler
+from fieldmon.samplers import SAMPLERS, USUAL_SAMPLER, sampler
 from fieldmon.samplers.checked_sampler import must_detect
 
 if TYPE_CHECKING:
-    from fieldmon.pests.pest import Pest
+    from collections.abc import Iterator
+
     from fieldmon.pests.weather import Weather
     from fieldmon.samplers.base import Sampler
 
@@ -351,6 +362,7 @@ def _kept_settings(written: tuple[tuple[str, str], ...]) -> MonitoringSettings:
     parts = dict(written)
     try:
         plain = {name: json.loads(text) for name, text in parts.items() if name != "weather"}
+        _must_be_known_here(plain)
         season, chooses = plain["season"], plain["sampler"]
         team = plain.get("team", {"members": []})
         # before finds were traced, seasons knew of neighbours only, and go on so
@@ -375,6 +387,8 @@ def _kept_settings(written: tuple[tuple[str, str], ...]) -> MonitoringSettings:
             harvest=date.fromisoformat(season["harvest"]) if "harvest" in season else None,
             language=str(season.get("language", "")),
         )
+    except FileProblem:
+        raise
     except (KeyError, TypeError, ValueError, FieldmonError) as error:
         raise FileProblem(
             worded(
@@ -384,6 +398,57 @@ def _kept_settings(written: tuple[tuple[str, str], ...]) -> MonitoringSettings:
                 error=error,
             )
         ) from error
+
+
+# by its name in a season's file, of what a setting is made
+_MADE_OF: dict[str, tuple[str, ...]] = {
+    "season": ("begins", "starts", "seed", "harvest", "language"),
+    "sampler": ("name", "settings"),
+    "team": ("members", "teamwork"),
+} | {
+    name: tuple(each.name for each in fields(kind))
+    for name, kind in (
+        ("robot", Robot), ("viewpoints", Viewpoints), ("prior", PriorSettings),
+        ("beliefs", BeliefSettings), ("spread", Spread), ("earlier", EarlierSeason),
+        ("believed", Believed), ("members", TeamMember), ("teamwork", Teamwork), ("pest", Pest),
+        ("stages", Stage), ("generation", Stage), ("increase", Increase), ("movement", Movement),
+        ("entry", Entry), ("citations", Citation),
+    )
+}  # fmt: skip
+# a season's file has these by themselves, and the weather
+_PARTS = ("season", "sampler", "team", "robot", "prior", "beliefs", "pest")
+
+
+def _must_be_known_here(plain: dict[str, Any]) -> None:
+    """Raise `FileProblem` where a season's file has a setting, or a sampler, that is not known."""
+    unknown = [*_unknown(plain, _PARTS), *_unknown_of_sampler(**plain["sampler"])]
+    if unknown:
+        raise FileProblem(
+            worded(
+                "The season's settings must be ones that this fieldmon knows, but it does not know "
+                "{names}. The file was probably written by a newer fieldmon: update this one.",
+                names=", ".join(unknown),
+            )
+        )
+
+
+def _unknown(plain: dict[str, Any], known: tuple[str, ...], path: str = "") -> Iterator[str]:
+    """Yield the paths of what is not among the known names; what is null is not said."""
+    for name, value in plain.items():
+        if value is not None and name not in known:
+            yield f"{path}{name}"
+        for one in value if isinstance(value, list) else [value]:
+            if name in known and name in _MADE_OF and isinstance(one, dict):
+                yield from _unknown(one, _MADE_OF[name], f"{path}{name} ")
+
+
+def _unknown_of_sampler(name: str, settings: dict[str, float], **_: object) -> Iterator[str]:
+    """Yield the sampler that is not known, or what it is set to that it does not take."""
+    if name not in SAMPLERS:
+        yield f"sampler {name}"
+    elif settings:
+        takes = signature(SAMPLERS[name].load()).parameters
+        yield from (f"sampler settings {each}" for each in settings if each not in takes)
 
 
 # what a robot was charged while seasons did not yet keep all of its times

@@ -145,24 +145,40 @@ def differences(before: Parts, after: Parts) -> list[str]:
     >>> differences({"robot": one, "pest": "null"}, {"robot": other, "pest": '{"name": "mite"}'})
     ['robot hours 4 to 6', 'pest none to mite']
     """
-    said: list[str] = []
+    return [
+        _NAMES.get(path, plain_path(path)) + (f" {was} to {now}" if was and now else "")
+        for path, was, now in each_difference(before, after)
+    ]
+
+
+def each_difference(before: Parts, after: Parts) -> Iterator[tuple[str, str, str]]:
+    """Yield each setting that differs by its path, as ``robot look_s``, with both in short.
+
+    Both are empty where one is too long for a line.
+    """
     for name in {**before, **after}:
         was, now = before.get(name, "null"), after.get(name, "null")
-        if was != now:
-            # a year of hours is no line
-            said += [name] if name == "weather" else _differing(name, *map(json.loads, (was, now)))
-    return said
+        if was == now:
+            continue
+        if name == "weather":  # a year of hours is no line
+            yield name, "", ""
+        else:
+            yield from _differing(name, *map(json.loads, (was, now)))
 
 
-def _differing(name: str, was: object, now: object) -> Iterator[str]:
+def plain_path(path: str) -> str:
+    """Return the path of a setting as it is said where it has no words of its own."""
+    return path.replace("_", " ")
+
+
+def _differing(path: str, was: object, now: object) -> Iterator[tuple[str, str, str]]:
     if isinstance(was, dict) and isinstance(now, dict):
         for key in {**was, **now}:
             if was.get(key) != now.get(key):
-                yield from _differing(f"{name} {key}", was.get(key), now.get(key))
+                yield from _differing(f"{path} {key}", was.get(key), now.get(key))
         return
     said = [_in_short(one) for one in (was, now)]
-    words = _NAMES.get(name, name.replace("_", " "))
-    yield words if "" in said else f"{words} {said[0]} to {said[1]}"
+    yield (path, "", "") if "" in said else (path, said[0], said[1])
 
 
 def _in_short(value: object) -> str:

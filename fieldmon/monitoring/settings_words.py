@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import chance_figure, estimate, joined, worded, written
 from fieldmon.monitoring.settings import as_json
-from fieldmon.plot.robot import KM_H
+from fieldmon.monitoring.settings_log import each_difference, plain_path
+from fieldmon.plot.robot import KM_H, Robot, scout
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from datetime import date
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring import MonitoringSettings, Season
     from fieldmon.planning.members import TeamMember
-    from fieldmon.plot.robot import Robot
 
 _NONE = worded("none")
 _NAMES = {
@@ -24,11 +26,31 @@ _NAMES = {
     "row changes, turns and stops": worded("row changes, turns and stops"),
     "width": worded("width"), "length": worded("length"),
     "turning radius": worded("turning radius"),
-    "detection": worded("detection"), "start": worded("start"), "traces": worded("traces"),
+    "detection": worded("detection"), "detection by seconds": worded("detection by seconds"),
+    "way back": worded("way back to the gate within the hours"),
+    "start": worded("start"), "traces": worded("traces"),
     "finds": worded("finds"), "spread": worded("spread"),
     "background": worded("infested where nothing is known"), "pest": worded("pest"),
     "weather": worded("weather"), "harvest": worded("harvest"), "language": worded("language"),
 }  # fmt: skip
+# by which of these a setting is said, by its path in a season's file or the beginning of that;
+# one that is not here, or which words do not tell apart, is said by its path
+_SAID_BY = {
+    "sampler name": "sampler", "sampler settings every": "sampler", "team members": "team",
+    "robot hours": "hours", "robot look_s": "look", "robot speed_m_s": "speed",
+    "robot row_change_s": "row changes, turns and stops",
+    "robot turn_180_s": "row changes, turns and stops",
+    "robot stop_s": "row changes, turns and stops",
+    "robot width_m": "width", "robot length_m": "length",
+    "robot turning_radius_m": "turning radius", "robot detection": "detection",
+    "robot viewpoints": "detection by seconds", "robot returns": "way back",
+    "season starts": "start", "season harvest": "harvest", "season language": "language",
+    "beliefs traces": "traces", "beliefs treated": "finds",
+    "beliefs spread rate_per_day": "spread", "prior background_chance": "background",
+    "pest": "pest", "weather": "weather",
+}  # fmt: skip
+# it comes and goes with a team
+_WITH_TEAM = "team teamwork"
 # parts of the settings that are believed of the whole season
 _OF_ALL_DAYS = ("prior", "beliefs", "pest", "weather")
 
@@ -36,7 +58,7 @@ _OF_ALL_DAYS = ("prior", "beliefs", "pest", "weather")
 def taken_back(change: MonitoringSettings, again: MonitoringSettings) -> str:
     """Return what is taken back of a change, where something else counts `again`."""
     each = [
-        worded("{name} {was} (now {now} again)", name=name, was=was, now=now)
+        worded("{name} {was} (now {now} again)", name=name, was=was, now=now) if was else name
         for name, was, now in _differing(change, again)
     ]
     what = joined(", ", each) if each else worded("it made no difference")
@@ -46,7 +68,8 @@ def taken_back(change: MonitoringSettings, again: MonitoringSettings) -> str:
 def changed(change: MonitoringSettings, before: MonitoringSettings) -> str:
     """Return what a change chose that was otherwise before; "": it made no difference."""
     each = [
-        worded("{name} {now}", name=name, now=now) for name, now, _ in _differing(change, before)
+        worded("{name} {now}", name=name, now=now) if now else name
+        for name, now, _ in _differing(change, before)
     ]
     return joined(", ", each) if each else ""
 
@@ -54,14 +77,29 @@ def changed(change: MonitoringSettings, before: MonitoringSettings) -> str:
 def _differing(
     one: MonitoringSettings, other: MonitoringSettings
 ) -> Iterator[tuple[str, str, str]]:
-    """Yield names of choices that differ, with both in words."""
+    """Yield names of choices that differ, with both in words; "" where they are too long."""
     this, that = _in_words(one), _in_words(other)
-    if "team" in {**this, **that}:  # beside a team the one robot is of no interest
-        alone = _each_of_worker(one.robot)
-        this, that = ({k: v for k, v in each.items() if k not in alone} for each in (this, that))
-    for name in {**this, **that}:
-        if this.get(name) != that.get(name):
+    differ = [name for name in {**this, **that} if this.get(name) != that.get(name)]
+    beside_team = "team" in differ  # where a team comes or goes the one robot is of no interest
+    for name in differ:
+        if not (beside_team and name in _each_of_worker(one.robot) | _each_of_worker(other.robot)):
             yield _NAMES[name], this.get(name, _NONE), that.get(name, _NONE)
+    for path, was, now in each_difference(*_parts_of(one, other)):
+        said_by = next((name for start, name in _SAID_BY.items() if _within(path, start)), None)
+        if said_by in differ or path == _WITH_TEAM or (beside_team and _within(path, "robot")):
+            continue
+        yield plain_path(path), was, now
+
+
+def _within(path: str, start: str) -> bool:
+    return f"{path} ".startswith(f"{start} ")
+
+
+def _parts_of(*both: MonitoringSettings) -> tuple[dict[str, str], ...]:
+    """Return both as a season's file has them, but for the weather where it is one."""
+    if len({id(one.weather) for one in both}) == 1:  # a year of hours takes time to write
+        both = tuple(replace(one, weather=None) for one in both)
+    return tuple(as_json(one) for one in both)
 
 
 @contextmanager
@@ -102,9 +140,8 @@ def _in_words(settings: MonitoringSettings) -> dict[str, str]:
     belief, every = settings.belief, settings.sampler_settings.get("every")
     words = {"sampler": settings.sampler if every is None else f"{settings.sampler} {every:g}"}
     if settings.team:
-        words["team"] = "; ".join(map(worker_in_words, settings.team))
-    else:
-        words |= _each_of_worker(settings.robot)
+        words["team"] = joined("; ", map(worker_in_words, settings.team))
+    words |= _each_of_worker(settings.robot)
     words |= {
         "start": f"{settings.starts:%H:%M}",
         "traces": worded("yes") if belief.traces else worded("no"),
@@ -128,20 +165,36 @@ def _each_of_worker(robot: Robot) -> dict[str, str]:
         "length": robot.length_m,
         "turning radius": robot.turning_radius_m,
     }
+    seen = [f"{s:g} s {chance_figure(chance)}" for s, chance in robot.viewpoints.steps]
     return {
         "hours": f"{robot.hours:g}",
         "look": f"{robot.look_s:g} s",
         "speed": f"{KM_H * robot.speed_m_s:.3g} km/h",
         "row changes, turns and stops": robot.times or times,
         "detection": str(chance_figure(robot.detects)),
+        "detection by seconds": "; ".join((*seen, f"> {chance_figure(robot.viewpoints.longer)}")),
+        "way back": worded("yes") if robot.returns else worded("no"),
         **{name: f"{value_m:g} m" for name, value_m in size.items() if value_m is not None},
     }
 
 
-def worker_in_words(member: TeamMember) -> str:
-    """Return one of a team in words."""
+def worker_in_words(member: TeamMember) -> Worded:
+    """Return one of a team in words: the usual of everybody, and what else is not usual."""
     robot = member.robot
-    return (
-        f"{member.name} {robot.hours:g} h, {robot.look_s:g} s a plant, "
-        f"{KM_H * robot.speed_m_s:.3g} km/h, finds {chance_figure(robot.detects)}"
-    )
+    usual = _each_of_worker(scout() if robot.on_foot else Robot())
+    first = worded(
+        "{name} {hours:g} h, {look:g} s a plant, {speed:.3g} km/h, finds {detects}",
+        name=member.name, hours=robot.hours, look=robot.look_s, speed=KM_H * robot.speed_m_s,
+        detects=chance_figure(robot.detects),
+    )  # fmt: skip
+    said = [
+        worded("{name} {now}", name=_NAMES[name], now=now)
+        for name, now in _each_of_worker(robot).items()
+        if name not in {"hours", "look", "speed", "detection"} and now != usual.get(name)
+    ]
+    if member.starts_s:
+        said.append(worded("begins {n:g} min later", n=member.starts_s / 60))
+    if member.gate is not None:
+        lon, lat = member.gate
+        said.append(worded("gate {lon:.6f}, {lat:.6f}", lon=lon, lat=lat))
+    return joined(", ", [first, *said])

@@ -59,7 +59,14 @@ def team_bound(
     one_gate = all(task.aisles is tasks[0].aisles for task in tasks)
     if not one_gate or not all(robot.returns for robot in robots):
         return least
-    quickest = replace(
+    quickest = quickest_of(robots)
+    seconds = sum(robot.day_s for robot in robots) + (len(robots) - 1) * quickest.row_change_s
+    return min(least, bound(tasks[0].aisles, most, quickest, seconds))
+
+
+def quickest_of(robots: Sequence[Robot]) -> Robot:
+    """Return a robot that is as quick as the best of some in everything."""
+    return replace(
         robots[0],
         speed_m_s=max(robot.speed_m_s for robot in robots),
         row_change_s=min(robot.row_change_s for robot in robots),
@@ -67,8 +74,6 @@ def team_bound(
         stop_s=0.0,
         look_s=min(robot.visit_s for robot in robots),
     )
-    seconds = sum(robot.day_s for robot in robots) + (len(robots) - 1) * quickest.row_change_s
-    return min(least, bound(tasks[0].aisles, most, quickest, seconds))
 
 
 def _by_prices(

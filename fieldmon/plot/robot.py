@@ -25,19 +25,52 @@ _SECONDS, _SIZE = (
 )
 # a study of what driving costs has a robot that is everywhere at once
 _ALLOWED = {
+    "hours": AllowedRange(0.0, 24.0, above=True),
     "speed_m_s": AllowedRange(0.0, 1e6, above=True),
     "look_s": replace(_SECONDS, above=True),
-    "row_change_s": _SECONDS,
-    "turn_180_s": _SECONDS,
-    "stop_s": _SECONDS,
-    "hours": AllowedRange(0.0, 24.0, above=True),
     "detection": CHANCE,
     "width_m": _SIZE,
     "length_m": _SIZE,
     "turning_radius_m": AllowedRange(0.1, 20.0, said=worded("0.1 to 20 metres")),
+    "row_change_s": _SECONDS,
+    "turn_180_s": _SECONDS,
+    "stop_s": _SECONDS,
 }
 #: at 30 m/s (108 km/h) nobody drives along plants
 _DRIVEN_MOST = {"speed_m_s": 30.0}
+
+
+class SaidIn(NamedTuple):
+    """How a person says a setting of `Robot` that is a number.
+
+    Parameters
+    ----------
+    column
+        What it is called in a table.
+    unit
+        What it is in; empty: nothing.
+    units
+        How many of these make one of the setting's.
+    most
+        The most that it may be, in these.
+    """
+
+    column: str
+    unit: str
+    units: float
+    most: float
+
+
+def _said_in(name: str) -> SaidIn:
+    most = _DRIVEN_MOST.get(name, _ALLOWED[name].most)
+    if name == "speed_m_s":
+        return SaidIn("speed_km_h", "km/h", KM_H, most * KM_H)
+    unit = {"hours": "h", "detection": ""}.get(name, name.rpartition("_")[2])
+    return SaidIn(name, unit, 1.0, most)
+
+
+#: the settings of `Robot` that are numbers, as tables and options have them
+SAID_IN = {name: _said_in(name) for name in _ALLOWED}
 
 
 @checked
@@ -328,7 +361,7 @@ def must_be_robot(given: object) -> None:
     )  # fmt: skip
 
 
-def broken_rule(name: str, value: float, units: float = 1.0, unit: str = "") -> str:
+def broken_rule(name: str, value: float, *, with_unit: bool = False) -> str:
     """Return what a setting that a person gives must be and is not; empty where it may be so.
 
     Parameters
@@ -336,19 +369,17 @@ def broken_rule(name: str, value: float, units: float = 1.0, unit: str = "") -> 
     name
         Of a setting that is a number.
     value
-        What it is to be.
-    units
-        How many of the units of `value` make one of the setting's: 3.6 for km/h.
-    unit
-        What stands behind a limit that says no unit itself.
+        What it is to be, in the units of `SAID_IN`.
+    with_unit
+        Whether the unit stands behind a limit that says none itself.
 
     Examples
     --------
-    >>> broken_rule("speed_m_s", -1.0, 3.6), broken_rule("speed_m_s", 200.0, 3.6, " km/h")
+    >>> broken_rule("speed_m_s", -1.0), broken_rule("speed_m_s", 200.0, with_unit=True)
     ('above 0', '108 km/h at most')
     >>> broken_rule("look_s", 40.0)
     ''
     """
-    allowed = _ALLOWED[name]
-    most = _DRIVEN_MOST.get(name, allowed.most) * units
-    return replace(allowed, most=most, unit=unit).broken(value)
+    said = SAID_IN[name]
+    unit = f" {said.unit}" if with_unit and said.unit else ""
+    return replace(_ALLOWED[name], most=said.most, unit=unit).broken(value)

@@ -348,7 +348,7 @@ def _goes_by(facts: _Facts) -> Iterator[Block]:
 def _changes(facts: _Facts) -> Iterator[str]:
     """Yield on which days who worked, or how, was another than before."""
     for (_, before), (day, now) in pairwise(facts.in_force):
-        if rows := changed_rows(before, now):
+        if rows := changed_rows(before, now, facts.units):
             yield worded(words.CHANGED_ON, day=facts.units.day(day), what=joined("; ", rows))
 
 

@@ -106,12 +106,12 @@ class WorkSettings:
         return {one.setting for one in self.assumed}
 
 
-def changed_rows(before: WorkSettings, now: WorkSettings) -> list[str]:
+def changed_rows(before: WorkSettings, now: WorkSettings, units: Units) -> list[str]:
     """Return who worked and how otherwise than before, each with both values."""
-    then = {name: value for name, value, _ in _of_work(before)}
+    then = {name: value for name, value, _ in _of_work(before, units, whole=True)}
     return [
         worded(words.CHANGED, name=name, before=then[name], now=value)
-        for name, value, _ in _of_work(now)
+        for name, value, _ in _of_work(now, units, whole=True)
         if then.get(name, value) != value
     ]
 
@@ -120,7 +120,7 @@ def settings_blocks(settings: WorkSettings, units: Units) -> Iterator[Block]:
     """Yield the settings with where each comes from, and what was guessed."""
     rows = (
         *_of_plot(settings, units),
-        *_of_work(settings),
+        *_of_work(settings, units),
         *_of_belief(settings, units),
     )
     short = tuple(row for row in rows if len(row[1]) <= _SHORT)
@@ -142,7 +142,7 @@ def settings_blocks(settings: WorkSettings, units: Units) -> Iterator[Block]:
 
 def assumed_sentence(settings: WorkSettings, units: Units) -> str:
     """Return what the figures rest on though nobody said it, in a sentence; empty: nothing."""
-    rows = (*_of_plot(settings, units), *_of_work(settings), *_of_belief(settings, units))
+    rows = (*_of_plot(settings, units), *_of_work(settings, units), *_of_belief(settings, units))
     said = [
         worded("{name}: {value}", name=name, value=value)
         for name, value, origin in rows
@@ -167,14 +167,35 @@ def _told(settings: WorkSettings, setting: str) -> str:
     return words.FROM_NOBODY if setting in settings.names else words.FROM_FILE
 
 
-def _of_work(settings: WorkSettings) -> Iterator[Row]:
-    robot = settings.robot
+def _of_work(settings: WorkSettings, units: Units, *, whole: bool = False) -> Iterator[Row]:
+    """Yield the rows of who works; what is as usual of a robot's ways only if `whole`."""
     yield (
         words.SAMPLER,
         Worded(kind_of(settings.sampler).title),
         _from(settings.sampler == USUAL_SAMPLER),
     )
-    yield from _of_team(settings.team) if settings.team else _of_robot(settings, robot)
+    if settings.team:
+        yield from _of_team(settings.team)
+        return
+    yield from _of_robot(settings, settings.robot)
+    usual = dict(_of_ways(scout() if settings.robot.on_foot else Robot(), units))
+    for name, value in _of_ways(settings.robot, units):
+        if whole or value != usual[name]:
+            yield name, value, _from(value == usual[name])
+
+
+def _of_ways(robot: Robot, units: Units) -> Iterator[tuple[str, str]]:
+    """Yield what a robot's ways cost beside driving, and its size: short, for most are usual."""
+    times = robot.row_change_s, robot.turn_180_s, robot.stop_s
+    yield words.TIMES, joined("; ", [figure(each_s, "g", " s") for each_s in times])
+    yield words.WAY_BACK, words.YES if robot.returns else words.NO
+    size = {
+        words.WIDTH: robot.width_m,
+        words.LENGTH: robot.length_m,
+        words.TURNING_RADIUS: robot.turning_radius_m,
+    }
+    for name, value_m in size.items():
+        yield name, words.ARRIVALS_NONE if value_m is None else units.metres(value_m, 2)
 
 
 def _of_team(team: tuple[TeamMember, ...]) -> Iterator[Row]:

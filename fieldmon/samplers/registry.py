@@ -43,6 +43,8 @@ class SamplerKind:
         Whether it reads the believed chances, see `Sampler`.
     chooses_time
         Whether it decides at each plant how long to inspect it.
+    draws_share
+        Whether it takes one N-th of the plot a day, drawn, however long the day is.
     s_per_plant_day
         About how many seconds a simulated day costs for each plant of the plot.
     """
@@ -54,6 +56,7 @@ class SamplerKind:
     settings: Mapping[str, Any] = field(default_factory=dict)
     reads_chance: bool = False
     chooses_time: bool = False
+    draws_share: bool = False
     s_per_plant_day: float = 2e-8
 
     def __repr__(self) -> str:
@@ -108,7 +111,8 @@ SAMPLERS = {
         "without_prior:NeighborRandom", "Neighbor-random", "every 1st to 4th stop by chance"
     ),
     "random": SamplerKind(
-        "without_prior:RandomShare", "Random", "a third of the plot, drawn every day", every=3
+        "without_prior:RandomShare", "Random", "a third of the plot, drawn every day", every=3,
+        draws_share=True,
     ),
 }  # fmt: skip
 #: who plans where nobody says otherwise, and who is compared

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from fieldmon.cli.options import (
+    Every,
     FileOptions,
     PlotFiles,
     RowOptions,
@@ -17,6 +18,7 @@ from fieldmon.errors import SettingError
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.plot_request import PlantingChoices, PlotSources, RecordSource
 from fieldmon.plot.robot import Robot, scout
+from fieldmon.samplers import SAMPLERS
 
 
 def test_a_worker_is_the_robot_or_the_scout_but_for_what_is_said():
@@ -104,3 +106,12 @@ def test_how_records_are_read_is_not_said_without_records():
 def test_how_a_plot_file_is_read_is_not_said_without_one(said):
     with pytest.raises(SettingError, match=r"none is given.*--plants-option"):
         FileOptions(plants=Path("p.csv"), **said).sources(None, None)
+
+
+def test_the_help_of_every_names_each_sampler_that_takes_an_n_with_its_own():
+    (told,) = Every.__metadata__
+    having = [(name, kind) for name, kind in SAMPLERS.items() if kind.every is not None]
+    assert having
+    for name, kind in having:
+        assert f"{name} {kind.every}" in told.help
+    assert told.help.endswith(" or 1/N (random 3).")

@@ -68,8 +68,9 @@ def test_a_season_file_keeps_settings_under_the_names_that_it_always_had():
     [
         ("season", "{}"),
         ("season", "no json"),
-        ("sampler", '{"name": "best", "settings": {}}'),
-        ("robot", '{"viewpoints": {"steps": [[1, 2]], "longer": null}, "colour": 3}'),
+        ("sampler", '{"name": "naive"}'),
+        ("sampler", "[]"),
+        ("robot", '{"viewpoints": {"steps": [[1, 2]], "longer": null}}'),
         ("beliefs", '{"spread": {"rate_per_day": 7}, "treated": true}'),
     ],
 )

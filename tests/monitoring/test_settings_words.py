@@ -9,7 +9,7 @@ from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import MonitoringSettings
 from fieldmon.monitoring.settings_words import taken_back, worker_in_words
 from fieldmon.planning.members import TeamMember, team_of
-from fieldmon.plot.robot import Robot, scout
+from fieldmon.plot.robot import Robot, Viewpoints, scout
 
 FIRST = MonitoringSettings(date(2026, 11, 1))
 ANN = TeamMember("Ann", scout())
@@ -28,6 +28,15 @@ ANN = TeamMember("Ann", scout())
          "team Ann 4 h, 30 s a plant, 4 km/h, finds 69 % (now none again)"),
         ({"starts": time(7), "harvest": date(2026, 12, 1)},
          "start 07:00 (now 06:00 again), harvest 2026-12-01 (now none again)"),
+        ({"robot": Robot(returns=False)},
+         "way back to the gate within the hours no (now yes again)"),
+        ({"robot": Robot(viewpoints=Viewpoints(((40.0, 0.84),), 1.0))},
+         ("detection by seconds 40 s 84 %; > 100 % "
+         "(now 20 s 50 %; 25 s 60 %; 30 s 69 %; 35 s 77 %; 40 s 84 %; > 90 % again)")),
+        ({"robot": Robot(detection=0.84)}, "robot detection 0.84 (now none again)"),
+        ({"prior": replace(FIRST.prior, edge_chance=0.1)},
+         "prior edge chance 0.1 (now 0.05 again)"),
+        ({"seed": 7}, "season seed 7 (now 1 again)"),
         ({"language": "he"}, "language he (now en again)"),
         ({"belief": replace(FIRST.belief, traces=False)}, "traces no (now yes again)"),
         ({"belief": replace(FIRST.belief, treated=False)},
@@ -40,6 +49,23 @@ def test_what_is_taken_back_is_named_with_what_counts_again(chosen, said):
     changed = replace(FIRST, **chosen)
     assert taken_back(changed, FIRST) == f"The last change was taken back: {said}."
     assert taken_back(FIRST, changed) != taken_back(changed, FIRST)
+
+
+def test_of_a_member_all_is_told_that_is_not_usual():
+    slow = replace(ANN.robot, row_change_s=8.0, width_m=0.5)
+    late = TeamMember("Ann", slow, (35.1, 30.25), 900.0)
+    assert worker_in_words(late) == (
+        "Ann 4 h, 30 s a plant, 4 km/h, finds 69 %, row changes, turns and stops 8, 2 and 5 s, "
+        "width 0.5 m, begins 15 min later, gate 35.100000, 30.250000"
+    )
+    said = taken_back(replace(FIRST, team=(late,)), replace(FIRST, team=(ANN,)))
+    assert "gate 35.100000, 30.250000 (now Ann 4 h" in said
+
+
+def test_a_robot_beside_a_team_that_stays_is_told():
+    team = replace(FIRST, team=(ANN,))
+    said = taken_back(replace(team, robot=Robot(hours=4)), team)
+    assert said == "The last change was taken back: hours 4 (now 12 again)."
 
 
 def test_members_of_a_team_are_told_one_by_one():

@@ -12,7 +12,7 @@ from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.layout import lay
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import GATE
-from fieldmon.samplers import SAMPLERS, sampler
+from fieldmon.samplers import SAMPLERS, kind_of, sampler
 from fieldmon.samplers.base import NEVER
 from tests.bent import bent_grids
 from tests.crooked import crooked_fields
@@ -93,8 +93,8 @@ def test_the_same_scene_gives_the_same_day(name):
 def test_with_time_for_all_every_plant_is_inspected(name):
     scene = scene_on(GRIDS["rectangle"], hours=24.0)
     visited = sorted(plan_work(scene, sampler(name)).plant)
-    if name == "random":  # a third of the plot is all it ever takes
-        assert len(visited) == len(scene.chance) // 3
+    if (kind := kind_of(name)).draws_share:  # it is all that it ever takes
+        assert len(visited) == len(scene.chance) // kind.every
     else:
         assert visited == list(range(len(scene.chance)))
 

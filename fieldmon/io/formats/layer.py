@@ -30,7 +30,7 @@ class Layer:
     Parameters
     ----------
     name
-        Of the layer, sheet or file.
+        Of the layer or sheet, or of the file as it is called, with its ending.
     columns
         Name -> ``(n,)`` values: text, numbers, or None.
     geometry
@@ -41,6 +41,8 @@ class Layer:
         What reading it had to say.
     above
         What stands above the column names of a table.
+    stem
+        Of a file its name without ending; empty: `name` has none.
     """
 
     name: str
@@ -49,6 +51,12 @@ class Layer:
     crs: str | None = None
     messages: tuple[ImportMessage, ...] = ()
     above: str = ""
+    stem: str = ""
+
+    @property
+    def plot_name(self) -> str:
+        """Return what a plot in it is called that has no name of its own."""
+        return self.stem or self.name
 
     def __len__(self) -> int:
         """Return the number of features or records."""
@@ -65,6 +73,7 @@ class Layer:
             self.crs,
             self.messages,
             self.above,
+            self.stem,
         )
 
     def saying(self, *more: ImportMessage) -> Layer:

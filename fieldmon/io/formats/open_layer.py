@@ -92,9 +92,10 @@ def _listed(staged: StagedMember) -> list[LayerInfo]:
 
 
 def _read(staged: StagedMember, options: ReadOptions) -> Layer:
-    kind, stem = staged.member.kind, staged.member.stem
+    kind = staged.member.kind
     if kind in _READERS:
-        return _READERS[kind](staged.path, stem, options)
+        read = _READERS[kind](staged.path, staged.name, options)
+        return replace(read, stem=staged.member.stem)
     if kind in WORKBOOKS:
         return _only_layer(staged, options, sheet_names(staged.path, staged.name))
     listed = _gdal_layers(staged)
@@ -208,8 +209,10 @@ def _layer(staged: StagedMember, layer: str, options: ReadOptions) -> Layer:
     from fieldmon.io.formats.gdal import read_layer  # noqa: PLC0415
 
     read = read_layer(staged.path, staged.name, layer)
+    if read.name != staged.path.stem:
+        return read
     # a file whose only layer has no name is given that of the copy
-    return replace(read, name=staged.member.stem) if read.name == staged.path.stem else read
+    return replace(read, name=staged.name, stem=staged.member.stem)
 
 
 def _which_layer(staged: StagedMember, names: tuple[str, ...], more: str) -> ChoiceNeeded:

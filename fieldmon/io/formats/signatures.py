@@ -6,7 +6,7 @@ import re
 from enum import StrEnum
 from pathlib import PurePosixPath
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem
 
 #: pictures that browsers show, by their first bytes; a RIFF says further on of what it is
@@ -43,29 +43,31 @@ class FileKind(StrEnum):
     ARCHIVE = ".zip"
 
 
-VECTOR = frozenset(
-    {
-        FileKind.SHAPEFILE,
-        FileKind.GEOPACKAGE,
-        FileKind.GEODATABASE,
-        FileKind.GEOJSON,
-        FileKind.FLATGEOBUF,
-        FileKind.PARQUET,
-        FileKind.KML,
-        FileKind.GML,
-        FileKind.GPX,
-        FileKind.MAPINFO_TAB,
-        FileKind.MAPINFO_MIF,
-        FileKind.DXF,
-        FileKind.ISOXML,
-    }
-)
 WORKBOOKS = frozenset({FileKind.WORKBOOK, FileKind.OLD_WORKBOOK, FileKind.OPEN_WORKBOOK})
 TABULAR = WORKBOOKS | {FileKind.TABLE}
+VECTOR = frozenset(FileKind) - TABULAR - {FileKind.RASTER, FileKind.ARCHIVE}
+#: what files are called that plots and records can be read from, in every language
+CALLED = {
+    FileKind.GEOPACKAGE: ("GeoPackage", "SpatiaLite"),
+    FileKind.GEOJSON: ("GeoJSON",),
+    FileKind.KML: ("KML", "KMZ"),
+    FileKind.GML: ("GML",),
+    FileKind.GPX: ("GPX",),
+    FileKind.FLATGEOBUF: ("FlatGeobuf",),
+    FileKind.PARQUET: ("GeoParquet",),
+    FileKind.MAPINFO_TAB: ("MapInfo (.tab, .mif)",),
+    FileKind.MAPINFO_MIF: ("MapInfo (.tab, .mif)",),
+    FileKind.DXF: ("DXF",),
+    FileKind.ISOXML: ("ISOXML (TASKDATA.XML)",),
+}
 READABLE = worded(
-    "a shapefile (zipped or with its .dbf, .shx and .prj), GeoPackage, SpatiaLite, GeoJSON, KML or "
-    "KMZ, GML, GPX, FlatGeobuf, GeoParquet, a zipped file geodatabase, MapInfo (.tab, .mif), DXF, "
-    "ISOXML (TASKDATA.XML), CSV or a workbook (.xlsx, .xls, .ods)"
+    "a shapefile (zipped or with its .dbf, .shx and .prj), {formats}, a zipped file geodatabase, "
+    "CSV or a workbook (.xlsx, .xls, .ods)",
+    formats=joined(", ", dict.fromkeys(name for names in CALLED.values() for name in names)),
+)
+#: what most people have, beside shapefiles, where there is no room for all
+USUAL_FILES = tuple(
+    CALLED[kind][0] for kind in (FileKind.GEOPACKAGE, FileKind.GEOJSON, FileKind.KML)
 )
 
 _SHAPEFILE = b"\x00\x00\x27\x0a"

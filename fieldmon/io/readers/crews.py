@@ -66,11 +66,11 @@ def crews_of(layer: Layer, names: list[str]) -> Imported[dict[str, Crew]]:
         stated = np.full(len(names), np.nan) if column is None else numbers(layer.column(column))
         if column is not None:
             wrong += left_aside(column, layer.column(column), ~np.isnan(stated), names)
-            of_robot, units, unit = SETTINGS[setting]
+            of_robot = SETTINGS[setting]
             for k, value in enumerate(stated.tolist()):
                 if np.isnan(value):
                     aside[k] += [] if is_missing(layer.column(column)[k]) else [of_robot]
-                elif rule := broken_rule(of_robot, value, units, f" {unit}"):
+                elif rule := broken_rule(of_robot, value, with_unit=True):
                     broken[k][of_robot] = worded(
                         "Column {column!r} must be {rule}, but it is {value:g}.",
                         column=column,

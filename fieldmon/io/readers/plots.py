@@ -280,7 +280,7 @@ def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Import
     named = column or _name_column(layer)
     messages: list[ImportMessage] = []
     if named is None:
-        base = [layer.name] * len(layer)
+        base = [layer.plot_name] * len(layer)
         if len(layer) > 1:
             messages.append(
                 guessed(worded("No column was recognised as the plots' names; they are numbered."))
@@ -290,7 +290,7 @@ def plot_names(layer: Layer, column: str | None) -> tuple[list[str], list[Import
             cells = layer.column(named)
         except ChoiceNeeded as asked:
             raise ChoiceNeeded(asked.args[0], "name_column", asked.choices) from None
-        base = [text(v) or layer.name for v in cells]
+        base = [text(v) or layer.plot_name for v in cells]
         if len(layer) > 1 or column is None:
             messages.append(seen(worded("Plots are named by column {name!r}.", name=named)))
     return _told_apart(base), messages
@@ -620,7 +620,7 @@ def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field
     if outline is None and options.where is None and not shapely.Polygon(points).is_valid:
         raise _which_are_corners(layer, len(points))
     ring = shapely.Polygon(points) if outline is None else outline.area
-    kept, more = boundary(MultiPolygon([ring]), layer.name)
+    kept, more = boundary(MultiPolygon([ring]), layer.plot_name)
     more += [] if outline is None else outline.messages
     if kept.is_empty:
         raise FileProblem(
@@ -633,7 +633,7 @@ def _plot_of_corners(layer: Layer, options: PlotOptions) -> Imported[tuple[Field
 def _name_of_corners(layer: Layer, options: PlotOptions) -> str:
     """Return what the plot is called whose corners were chosen: by what, or else by its file."""
     column, _, value = (options.where or "").partition("=")
-    return value if column == _name_column(layer) or find("plot", [column]) else layer.name
+    return value if column == _name_column(layer) or find("plot", [column]) else layer.plot_name
 
 
 def _no_outline(layer: Layer, n_points: int) -> ChoiceNeeded | FileProblem:

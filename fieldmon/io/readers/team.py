@@ -2,38 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.parse.own_table import own_table
 from fieldmon.io.parse.values import told_number
-from fieldmon.plot.robot import broken_rule
+from fieldmon.plot.robot import SAID_IN, broken_rule
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-#: columns that are settings of `Robot`, how many of their units make one of the setting's, and
-#: the unit
-SETTINGS = {
-    "hours": ("hours", 1.0, "h"),
-    "speed_km_h": ("speed_m_s", 3.6, "km/h"),
-    "look_s": ("look_s", 1.0, "s"),
-    "detection": ("detection", 1.0, ""),
-    "width_m": ("width_m", 1.0, "m"),
-    "length_m": ("length_m", 1.0, "m"),
-    "turning_radius_m": ("turning_radius_m", 1.0, "m"),
-    "row_change_s": ("row_change_s", 1.0, "s"),
-    "turn_180_s": ("turn_180_s", 1.0, "s"),
-    "stop_s": ("stop_s", 1.0, "s"),
-}
+#: columns that are settings of `Robot`
+SETTINGS = {said.column: name for name, said in SAID_IN.items()}
 COLUMNS = ("name", "who", *SETTINGS, "start", "lon", "lat")
-#: columns that hold no thousands
-_MOST = {
-    "hours": 24.0, "lon": 180.0, "lat": 90.0,
-    "width_m": 10.0, "length_m": 10.0, "turning_radius_m": 20.0,
-}  # fmt: skip
+#: what is more as thousands is none
+_MOST = {"lon": 180.0, "lat": 90.0} | {said.column: said.most for said in SAID_IN.values()}
 
 
 class StatedMember(NamedTuple):
@@ -148,11 +132,11 @@ def _gate(numbers: dict[str, float], where: str) -> tuple[float, float] | None:
 def _settings(numbers: dict[str, float], where: str) -> dict[str, float]:
     """Return what a line states of who works, by the names of `Robot`'s fields."""
     settings = {}
-    for column, (setting, units, _) in SETTINGS.items():
+    for column, setting in SETTINGS.items():
         if column not in numbers:
             continue
         value = numbers[column]
-        if rule := broken_rule(setting, value, units):
+        if rule := broken_rule(setting, value):
             raise FileProblem(
                 worded(
                     "{where}: {name} must be {rule}, but it is {value:g}.",
@@ -162,13 +146,13 @@ def _settings(numbers: dict[str, float], where: str) -> dict[str, float]:
                     value=value,
                 )
             )
-        settings[setting] = value / units
+        settings[setting] = value / SAID_IN[setting].units
     return settings
 
 
 def _number(text: str, name: str, where: str) -> float:
     try:
-        return told_number(text, name, _MOST.get(name, math.inf))
+        return told_number(text, name, _MOST[name])
     except SettingError as error:
         raise FileProblem(
             worded("{where}: {problem}", where=where, problem=error.args[0])

@@ -184,3 +184,16 @@ def test_only_days_of_visits_have_a_dot():
     lines = made.to_dict()["layer"][1]
     assert [one["mark"]["type"] for one in lines["layer"]] == ["line", "point"]
     assert lines["layer"][1]["transform"] == [{"filter": "datum.visit"}]
+
+
+@pytest.mark.parametrize(
+    ("found", "most"), [([0, 0], 1), ([0, 3], 3), ([0, 1200], 1200)], ids=["none", "few", "many"]
+)
+def test_plants_are_counted_in_whole_numbers_from_none_also_where_none_was_found(found, most):
+    days = [DayFigures(date(2026, 11, 16 + k), 40, n, 21.3, 12, 30, 0.0)
+            for k, n in enumerate(found)]  # fmt: skip
+    for one in spec(charts.season_days(days, ("day", "inspected", "found")))["layer"]:
+        y = one["encoding"]["y"]
+        end = most if y["field"] == "found" else 40
+        assert y["scale"] == {"domain": [0, end], "nice": True}
+        assert (y["axis"]["tickMinStep"], y["axis"]["format"]) == (1, ",d")

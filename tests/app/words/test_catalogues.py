@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import fieldmon
-from app.words import catalogues
+from app.words import catalogues, language
 from app.words.language import LIBRARY
 from fieldmon import errors
 from tests.app.words.known_texts import catalogue, entries
@@ -42,6 +42,87 @@ def test_a_new_text_waits_for_its_translation(tmp_path, monkeypatch):
     monkeypatch.setattr(catalogues, "entries", lambda: [*known, new])
     assert catalogues.update("he") == [new]
     assert catalogues.read("he").get(new.id, new.context).string == ""
+
+
+def lines_of(path, words):
+    """Return the lines of a file's entry of these English words."""
+    blocks = path.read_text().split("\n\n")
+    return next(block.split("\n") for block in blocks if f'msgid "{words}"' in block.split("\n"))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("Take back: {what}", "Take it back: {what}"),  # the app's own, by its place
+        ("turning radius", "turning radius of it"),  # a sentence of the library, by its words
+    ],
+)
+def test_a_text_whose_english_changed_keeps_its_translation_until_somebody_looked_at_it(
+    tmp_path, monkeypatch, old, new
+):
+    path = tmp_path / "he.po"
+    path.write_bytes(catalogues.path_of("he").read_bytes())
+    monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
+    monkeypatch.setattr(language, "FOLDER", tmp_path)
+    own = next(entry for entry in entries() if entry.words == old)
+    changed = catalogues.TextEntry(own.context, new)
+    wanted = [changed if entry == own else entry for entry in entries()]
+    monkeypatch.setattr(catalogues, "entries", lambda: wanted)
+    kept, before = catalogues.read("he").get(old, own.context).string, lines_of(path, old)
+    assert catalogues.update("he") == catalogues.update("he") == [changed]  # as often as it is run
+    written = lines_of(path, new)
+    assert written[0].startswith("#, fuzzy")
+    assert written[1] == f'#| msgid "{old}"'
+    assert before[-1] == written[-1] == f'msgstr "{kept}"'
+    assert language._catalogue.__wrapped__("he").pgettext(own.context, new) == ""
+    # whoever looked at it takes the marks out
+    mark = "#, python-brace-format\n" if "{" in new else ""
+    text = path.read_text().replace("\n".join(written[:2]) + "\n", mark)
+    path.write_text(text)
+    assert catalogues.update("he") == []
+    assert path.read_text() == text
+    assert language._catalogue.__wrapped__("he").pgettext(own.context, new) == kept
+
+
+def test_what_was_long_and_counted_is_kept_whole(tmp_path, monkeypatch):
+    path = tmp_path / "he.po"
+    path.write_bytes(catalogues.path_of("he").read_bytes())
+    monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
+    one, many = "{n} " + "very long word " * 9, "{n} " + "very long words " * 9
+    monkeypatch.setattr(catalogues, "entries", lambda: [catalogues.TextEntry("P", many, one)])
+    catalogues.update("he")
+    path.write_text(path.read_text().replace('msgstr[0] ""', 'msgstr[0] "x"'))
+    changed = catalogues.TextEntry("P", f"{many}!", one)
+    monkeypatch.setattr(catalogues, "entries", lambda: [changed])
+    assert catalogues.update("he") == [changed]
+    first = path.read_text()
+    said = "".join(re.findall(r'^#\| (?:msgid\w* )?"(.*)"$', first, re.MULTILINE))
+    assert said == one + many
+    assert catalogues.update("he") == [changed]
+    assert path.read_text() == first
+    assert catalogues.read("he").get(changed.id, "P").string[0] == "x"
+
+
+def test_texts_stay_where_they_are_and_new_ones_come_behind_what_they_stand_behind(
+    tmp_path, monkeypatch
+):
+    path = tmp_path / "he.po"
+    path.write_bytes(catalogues.path_of("he").read_bytes())
+    monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
+
+    def written(*words):
+        made = [catalogues.TextEntry(LIBRARY, one) for one in words]
+        monkeypatch.setattr(catalogues, "entries", lambda: made)
+        catalogues.update("he")
+        return [message.id for message in catalogues.read("he") if message.id]
+
+    assert written() == []
+    assert written("apples", "plums", "cherries") == ["apples", "plums", "cherries"]
+    # a new module says two of them, too, and something of its own
+    assert written("new", "cherries", "quinces", "apples", "plums") == [
+        "new", "apples", "plums", "cherries", "quinces",
+    ]  # fmt: skip
+    assert written("new", "cherries", "apples") == ["new", "apples", "cherries"]
 
 
 #: whose sentences only commands, studies and programs meet, not somebody at a page

@@ -1,6 +1,8 @@
 """From a source and what was chosen to one layer, or to the question which."""
 
 import io
+import json
+import re
 import zipfile
 
 import geopandas as gpd
@@ -9,9 +11,10 @@ import pyogrio
 import pytest
 from shapely import Point
 
-from fieldmon.errors import ChoiceNeeded, FileProblem
+from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem
 from fieldmon.io.formats.open_layer import layers_of, open_layer
-from fieldmon.io.options import ReadOptions, Upload
+from fieldmon.io.options import PlotOptions, ReadOptions, Upload
+from fieldmon.io.readers.plots import plots_of
 from fieldmon.io.sandbox.workroom import Workroom
 from tests.io.tables_of_cells import sentences
 
@@ -120,3 +123,30 @@ def test_features_are_chosen_before_anything_else_is_done(tmp_path, room):
 def test_a_raster_alone_holds_no_plots(room):
     with pytest.raises(FileProblem, match="is a raster"):
         open_layer(Upload("x.tif", b"II*\x00" + b"\x00" * 40), NOTHING, room)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("foo.geojson", '{"type": "Feature"'),
+        ("foo.geojson", '{"type": "FeatureCollection", "features": []}'),
+        ("foo.csv", "lon;lat\n"),
+        ("foo.csv", "lon;lat;plot\n35.1;30.1;a\n35.2;30.2;a\n"),
+        ("TASKDATA.XML", "<ISO11783_TaskData>"),
+        ("foo.gpx", '<gpx version="1.1"><wpt lat="1" lon="2"/><wpt'),
+    ],
+    ids=["broken json", "empty", "no records", "no area", "isoxml", "gpx"],
+)
+def test_a_sentence_names_the_file_as_it_is_called(name, text, room):
+    """foo.csv and foo.geojson would read alike otherwise."""
+    with pytest.raises(FieldmonError) as problem:
+        plots_of(open_layer(Upload(name, text.encode()), NOTHING, room), PlotOptions())
+    assert re.search(rf"(^|[^\w.]){re.escape(name)}\b", str(problem.value)), problem.value
+
+
+def test_a_plot_is_called_as_its_file_without_the_ending(room):
+    square = [[35.0, 30.0], [35.001, 30.0], [35.001, 30.001], [35.0, 30.001], [35.0, 30.0]]
+    data = {"type": "Polygon", "coordinates": [square]}
+    layer = open_layer(Upload("foo.geojson", json.dumps(data).encode()), NOTHING, room)
+    (plot,) = plots_of(layer, PlotOptions()).value
+    assert plot.name == "foo"

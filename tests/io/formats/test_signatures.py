@@ -3,7 +3,16 @@
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.io.formats.signatures import TABULAR, VECTOR, FileKind, kind_of, picture_type
+from fieldmon.io.formats.signatures import (
+    CALLED,
+    READABLE,
+    TABULAR,
+    USUAL,
+    VECTOR,
+    FileKind,
+    kind_of,
+    picture_type,
+)
 
 
 @pytest.mark.parametrize(
@@ -97,3 +106,22 @@ def test_what_is_said_in_a_comment_does_not_count():
 def test_every_kind_is_a_vector_a_table_a_raster_or_an_archive():
     assert VECTOR | TABULAR | {FileKind.RASTER, FileKind.ARCHIVE} == set(FileKind)
     assert not VECTOR & TABULAR
+
+
+#: kinds that are called otherwise in each language, by what they are in English
+IN_WORDS = {
+    FileKind.SHAPEFILE: "a shapefile",
+    FileKind.GEODATABASE: "a zipped file geodatabase",
+    FileKind.TABLE: "CSV",
+    FileKind.WORKBOOK: ".xlsx",
+    FileKind.OLD_WORKBOOK: ".xls",
+    FileKind.OPEN_WORKBOOK: ".ods",
+}
+
+
+def test_every_kind_that_is_read_is_named_where_none_of_them_was_found():
+    assert {*CALLED} | {*IN_WORDS} == VECTOR | TABULAR
+    for names in (*CALLED.values(), *((word,) for word in IN_WORDS.values())):
+        assert all(name in READABLE for name in names)
+    assert READABLE.count("MapInfo") == 1
+    assert USUAL == ("GeoPackage", "GeoJSON", "KML")

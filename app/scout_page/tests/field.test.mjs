@@ -536,6 +536,49 @@ test("a code for a day ahead is of that day until it is over, and with times on 
   assert.equal(field.isOld(), false);
 });
 
+test("a code for a day ahead that is heard of after that day does not become the day meant", async () => {
+  const ahead = aDay([0, 1, 2], { day: "2026-11-23", live: false, past: false });
+  for (const loaded of ["2026-11-22T08:00:00Z", "2026-11-23T08:00:00Z"]) {
+    const season = new ASeason(loaded < "2026-11-23" ? ahead : { ...ahead, live: true }), { field, again } = await aField(season, { ...ACCESS, on: "2026-11-23" });
+    field.clock = () => new Date("2026-11-24T06:00:00Z");
+    season.day = { ...ahead, past: true, found: [7] };
+    await field.refresh();
+    assert.ok(season.asked.at(-1).includes("on=2026-11-23"), "as the code was made for it");
+    assert.deepEqual([field.day.found, field.isOld(), field.meant()], [[7], true, null]);
+    await field.tell("clean");
+    assert.deepEqual(field.records.map((one) => [one.on, one.at]), [[null, "2026-11-24T06:00:00.000Z"]]);
+    const later = await again();
+    later.clock = field.clock;
+    assert.equal(later.isOld(), true);
+    season.day = aDay([3], { day: "2026-11-24" });
+    await later.load();
+    assert.deepEqual([season.asked.at(-1).includes("on="), later.day.day, later.isOld()], [false, "2026-11-24", false]);
+  }
+});
+
+test("without a network the next day goes on with the rest of the route, with hours of its own", async () => {
+  const begun = { begins: "2026-11-22T04:00:00Z", begun: true, seconds_left: 200 };
+  const { field, again } = await aField(new ASeason(aDay([0, 1, 2, 12, 13], begun)));
+  field.clock = () => new Date("2026-11-22T08:10:00Z");
+  await field.tell("found");
+  assert.equal(field.inHours().length, 0, "the hours are over");
+  const rest = field.ahead;
+  assert.deepEqual(rest, [1, 2, 12, 13], "what did not fit is not forgotten");
+  for (const one of [field, await again()]) {
+    one.clock = () => new Date("2026-11-23T06:00:00Z");
+    assert.deepEqual([one.isOld(), one.secondsLeft(), one.inHours(), one.way().length > 0, one.plant], [true, 14400, rest, true, 1]);
+  }
+  await field.tell("found");
+  assert.deepEqual(field.ahead.filter((plant) => rest.includes(plant)).sort((a, b) => a - b), [2, 12, 13]);
+  field.clock = () => new Date("2026-11-23T06:30:00Z");
+  assert.equal(field.secondsLeft(), 14400 - 35 - 1800);
+  assert.equal((await again()).begun, field.begun);
+  await field.tell("clean");
+  assert.deepEqual(field.records.map((one) => [one.on, one.at.slice(0, 10)]), [[null, "2026-11-22"], [null, "2026-11-23"], [null, "2026-11-23"]]);
+  field.clock = () => new Date("2026-11-24T06:00:00Z");
+  assert.equal(field.secondsLeft(), 14400, "and so on each further day");
+});
+
 test("the hours of a day loaded in mid-work run on by the clock, without a tap and over a kill", async () => {
   const season = new ASeason(aDay(undefined, { begins: "2026-11-22T04:00:00Z", begun: true, seconds_left: 2520 }));
   const { field, again } = await aField(season);

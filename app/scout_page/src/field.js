@@ -422,7 +422,7 @@ export class Field {
 
   #common(id) {
     return { id, season: this.season, key: this.access.key, day: this.day.day, order: this.#order(),
-      at: this.clock().toISOString(), on: this.meant(), ...this.#after() };
+      at: this.clock().toISOString(), on: this.meant(), ...this.#times() };
   }
 
   /** Whether a find can have the pests counted: a whole number from 1, or none is said. */
@@ -431,10 +431,10 @@ export class Field {
     return count == null || (Number.isInteger(count) && count >= 1);
   }
 
-  /** The least that the time can be, for where the clock is wrong. */
-  #after() {
-    const least = this.time.least();
-    return least === null ? {} : { after: new Date(least).toISOString() };
+  /** The season's time as far as it is known now, and the least that it can be, for where the clock is wrong or will be. */
+  #times() {
+    const times = { known_at: this.time.sure(), after: this.time.least() }, heard = Object.entries(times).filter(([, ms]) => ms !== null);
+    return Object.fromEntries(heard.map(([name, ms]) => [name, new Date(ms).toISOString()]));
   }
 
   /** Say what was found at the plant: the next one is there at once; resolves when it is on the disk. */

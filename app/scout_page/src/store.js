@@ -160,7 +160,7 @@ export class Store {
   }
 }
 
-const SENT = ["id", "at", "plant", "result", "count", "stage", "leaves", "notes", "lon", "lat",
+const SENT = ["id", "at", "known_at", "plant", "result", "count", "stage", "leaves", "notes", "lon", "lat",
   "accuracy_m", "on", "after", "off_route", "undoes", "detects"];
 
 /** A record as the interface describes a finding. */

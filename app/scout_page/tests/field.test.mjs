@@ -654,6 +654,23 @@ test("each record says the least that the time can be, over a kill too", async (
   assert.equal((await store.left()).records, 0);
 });
 
+test("each record says the season's time where the phone knows it: heard since it was opened, by a clock not set back since", async () => {
+  const { season, field, sync, again } = await aField();
+  season.date = "Sun, 22 Nov 2026 08:00:00 GMT";
+  field.clock = () => new Date("2026-11-22T17:00:00Z");
+  await field.tell("clean");
+  await field.refresh();
+  await field.tell("clean");
+  field.clock = () => new Date("2026-11-22T16:00:00Z");
+  await field.tell("clean");
+  const other = await again();
+  other.clock = () => new Date("2026-11-22T18:00:00Z");
+  await other.tell("clean");
+  await sync.send();
+  const said = [...season.taken.values()].map((one) => one.known_at?.slice(0, 16));
+  assert.deepEqual(said, [undefined, "2026-11-22T08:00", undefined, undefined]);
+});
+
 test("another season on the same phone does not mix with the first, whose records still go in", async () => {
   const { season, store, field, sync } = await aField();
   await field.tell("clean");

@@ -1237,7 +1237,8 @@ SCOUT_PAGE = {
     "away": "{m} m away", "chance": "Chance {n} %",
     "chance_least": "Chance under 0.1 %", "chance_most": "Chance over 99 %",
     "off_route": "Off the route",
-    "who_says": "{who}: {result}",
+    "who_says": "{who}: {result}", "contradiction": "Contradiction: {what}",
+    "and_more": "... and {n} more.",
     "closed": "Sprayed: do not enter before {until}.",
     "closed_rows": "Rows {low} to {high} are sprayed: do not enter before {until}.",
     "closed_plants": "Plants not on the route before then: {n}.",
@@ -1333,7 +1334,6 @@ ASK_PHOTO_NOTE = (
 )
 ASKED_PHOTO, ASK_NO_MORE = "Row {row}, plant {plant}. {note}", "No more"
 SAID_OTHERWISE = "Said otherwise of the same plant on this day. Look again, and undo what is wrong:"
-SAID_BY = "Row {row}, plant {plant}: {said}"
 
 # -- other devices: who may open the app, and how a phone comes to trust it
 LAN_PAGE = {

@@ -26,6 +26,7 @@ WORKED = (
     "Worked on {day}: {inspected:,} {inspected:plant|plants} inspected, {found:,} found infested."
 )
 MISSED = "{day} is past, and no inspection of it was recorded."
+OTHERWISE = "Clean and found, of the same plant"
 MISSED_PLAN = "Stops planned: {planned:,}."
 PLANNED_DONE = "Stops planned: {planned:,}; done: {done:,}; left out: {left:,}; added: {added:,}."
 PLANNED_DAYS = "On {days} planned and worked:"

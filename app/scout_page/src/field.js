@@ -290,9 +290,19 @@ export class Field {
   }
 
   /** What is said of a plant today, as far as this phone did not take it back since. */
-  said(plant) {
+  said(plant) { return this.#stand(this.day.today ?? [], plant); }
+
+  /** Those of what is said of a plant that this phone did not take back since. */
+  #stand(some, plant) {
     const name = this.day.scout?.toLowerCase(), isBack = this.back.has(plant);
-    return (this.day.today ?? []).filter((one) => one.plant === plant && !(isBack && one.who.toLowerCase() === name));
+    return some.filter((one) => one.plant === plant && !(isBack && one.who.toLowerCase() === name));
+  }
+
+  /** Plants that are said to be both clean and found today, as far as this phone did not take it back since: `{plant, said}` each. */
+  contradictions() {
+    const all = this.day?.contradicting ?? [], plants = [...new Set(all.map((one) => one.plant))];
+    const told = plants.map((plant) => ({ plant, said: this.#stand(all, plant) }));
+    return told.filter(({ said }) => new Set(said.map((one) => one.result)).size > 1);
   }
 
   // -- what somebody took back in the season

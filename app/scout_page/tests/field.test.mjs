@@ -78,6 +78,20 @@ test("what was taken back here is shown no more, though what the season said las
   assert.equal(field.back.size, 0, "the season says it itself");
 });
 
+test("a plant that two say otherwise of is named, until this phone takes its own back", async () => {
+  const { season, field, sync } = await aField();
+  await field.tell("found");
+  await sync.send();
+  const both = [{ plant: 0, result: "found", who: "Ann" }, { plant: 0, result: "clean", who: "Ben" }];
+  season.day = aDay(undefined, { today: both, contradicting: both });
+  await field.reread();
+  assert.deepEqual(field.contradictions(), []);
+  await field.refresh();
+  assert.deepEqual(field.contradictions(), [{ plant: 0, said: both }]);
+  await field.undo();
+  assert.deepEqual(field.contradictions(), []);
+});
+
 test("a find changes what the season says, until it said so; what is clean does not", async () => {
   const { field, sync } = await aField();
   const heard = async () => { await sync.send(); await field.reread(); return field.changedHere(); };
@@ -297,6 +311,14 @@ test("another person's code brings another day, and what the first one told goes
   season.keys = ["k1", "k2"];
   await sync.send();
   assert.deepEqual([season.by.get("k1"), season.by.get("k2"), sync.stranded.size], [2, 1, 0]);
+});
+
+test("the language of a code stays when the page is opened again without it, until another code says one", async () => {
+  const name = `test ${stores++}`, opened = async (said) => (await openStore(name)).languageOfCode(said);
+  assert.deepEqual([await opened(null), await opened("he"), await opened(null), await opened("es"), await opened("")], [undefined, "he", "he", "es", "es"]);
+  const full = await openStore(name);
+  full.put = async () => { throw new Error("disk full"); };
+  assert.equal(await full.languageOfCode("ar"), "ar");
 });
 
 test("the same code again, as an iPhone's home screen says it, changes nothing", async () => {

@@ -30,6 +30,12 @@ export class Store {
     return Object.fromEntries(names.map((name, k) => [name, values[k]]));
   }
 
+  /** The language of the last code that said one: that of the page until somebody chooses another. */
+  async languageOfCode(language) {
+    if (language) await this.put({ language }).catch(() => {}); // a full phone speaks it now
+    return language || this.get("language");
+  }
+
   async put(values) {
     const change = this.db.transaction("kept", "readwrite", STRICT);
     for (const [name, value] of Object.entries(values)) change.store.put(value, name);

@@ -866,8 +866,8 @@ DETECTED_HELP = (
 INSPECTED_EVER = "Inspected so far"
 FOUND_EVER = "Found"
 FOUND_AGAIN = (
-    "{finds} finds on {plants} plants: {again} of them on plants that had been found on an earlier "
-    "day. Days count finds, the figure above counts plants."
+    "{finds} finds on {plants} {plants:plant|plants}: {again} of them on plants that had been found "
+    "on an earlier day. Days count finds, the figure above counts plants."
 )
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
 CORRECTED_BY = "Who corrected"
@@ -1259,7 +1259,8 @@ SCOUT_PAGE = {
     "no_disk": "This phone keeps nothing for this page now, so no work can begin. Leave private "
     "browsing and close other windows of this page. It tries again by itself.",
     "not_kept": "This was NOT kept ({why}). Try again.",
-    "plan_rest": "Plan the rest anew", "ahead_takes": "What is ahead takes {minutes} minutes.",
+    "plan_rest": "Plan the rest anew",
+    "ahead_takes": "What is ahead takes {minutes} {minutes:minute|minutes}.",
     "your_rows": "Your part: rows {low} to {high}.",
     "no_network": "There is no network now. All that you do is kept on this phone.",
     "state_idle": "Nothing was sent yet.", "state_sending": "Sending ...",

@@ -231,6 +231,7 @@ CERT_FIELDS = {
 # the day is of the treatment of which nobody said how long to wait
 CERT_HARVEST_UNSAID = "not known, see {day}"
 CERT_CORRECTED = "corrected by {who}"
+CERT_BEGAN, CERT_ENDED = "began {time}", "ended {time}"
 CERT_OF_PLOT, CERT_NONE = "Inspections on {plot}", "none"
 CERT_DAY_COLUMNS = ("day", "inspected", "found", "by")
 

@@ -56,6 +56,13 @@ def test_a_count_takes_the_form_that_the_language_asks_for(speaking):
     assert said == ["قطعة واحدة", "قطعتان", "5 قطع", "12 قطعة", "100 قطعة"]
 
 
+def test_a_second_count_of_a_text_takes_its_own_form(speaking):
+    speaking("es")
+    said = [texts.CHANGED_FINDS.format(found=n, inspected=5, day="hoy") for n in (1, 2)]
+    assert [one.partition(" en ")[0] for one in said] == ["1 hallazgo", "2 hallazgos"]
+    assert texts.OUT_DONE.format(done=1, all=9) == "1 de 9 registrada"
+
+
 def test_numbers_in_a_text_are_written_as_in_the_language(speaking):
     verdict = {"best": "A", "second": "B", "loss": 12_345, "percent": 3, "low": 1, "high": 9}
     assert texts.VERDICT.format(**verdict).startswith("**A** is best: 12,345 infested")

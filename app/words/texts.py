@@ -866,8 +866,8 @@ DETECTED_HELP = (
 INSPECTED_EVER = "Inspected so far"
 FOUND_EVER = "Found"
 FOUND_AGAIN = (
-    "{finds} finds on {plants} {plants:plant|plants}: {again} of them on plants that had been found "
-    "on an earlier day. Days count finds, the figure above counts plants."
+    "{finds} finds on {plants} {plants:plant|plants}: {again} of them on plants that had been "
+    "found on an earlier day. Days count finds, the figure above counts plants."
 )
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
 CORRECTED_BY = "Who corrected"

@@ -443,25 +443,6 @@ def _record_these(choices: Choices) -> str:
     return _said_at_last(choices, waiting, done)
 
 
-def show_said_otherwise(choices: Choices) -> None:
-    """Show where two people said otherwise of one plant on the chosen day: both count as said."""
-    said = choices.open_season.contradicting(choices.on)
-    if not len(said):
-        return
-    numbered, signs = choices.open_season.plant_numbers, choices.plot.grid.line_signs
-    lines = []
-    for plant in dict.fromkeys(said.plant.tolist()):
-        of = said.take(said.plant == plant)
-        each = [
-            f"{texts.HISTORY_RESULTS[result]} ({texts.isolated(who)})" if who else
-            texts.HISTORY_RESULTS[result]
-            for result, who in zip(of.result.tolist(), of.who, strict=True)
-        ]  # fmt: skip
-        place = {"row": signs[int(numbered.line[plant])], "plant": numbered.number[plant]}
-        lines.append(f"- {texts.SAID_BY.format(said=', '.join(each), **place)}")
-    st.info("\n".join([texts.SAID_OTHERWISE, "", *lines[:_MOST]]))
-
-
 @notices.reporting
 def _confirm(choices: Choices) -> str:
     """Record what contradicts too: both counts as said."""

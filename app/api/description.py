@@ -69,6 +69,11 @@ FINDING: dict[str, Any] = {
             "description": "The `Date` of the last answer before it was made, and what passed "
             "since: a time before it is not believed."
         },
+        "known_at": {"anyOf": [_MOMENT, {"type": "null"}]}
+        | {
+            "description": "When, by the `Date` of an answer of the season: how far the clock was "
+            "off then is taken off. Null: it is not known, or the clock was set since."
+        },
         "off_route": {"type": "boolean"},
         "undoes": {"anyOf": [ID, {"const": ""}]},
         "detects": {"type": ["number", "null"], "exclusiveMinimum": 0, "maximum": 1}

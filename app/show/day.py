@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from ..state.chosen_day import DayRoute
 
 _WEEK = 7
+_MOST_OTHERWISE = 20
 
 
 def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
@@ -144,6 +145,19 @@ def say_of_day(choices: Choices, plan: DayPlan) -> None:
     if not len(plan.route) and not cautions.are_all_closed(choices, plan):
         known = nothing_left_in_words(plan.scene)
         st.warning(texts.NO_STOPS if known is None else in_words(known))
+
+
+def say_otherwise(choices: Choices) -> None:
+    """Show where two people said otherwise of one plant on the chosen day: both count as said."""
+    said = () if choices.season is None else choices.open_season.said_otherwise(
+        choices.on, texts.isolated
+    )  # fmt: skip
+    if not said:
+        return
+    lines = [f"- {in_words(one)}" for one in said[:_MOST_OTHERWISE]]
+    if (more := len(said) - _MOST_OTHERWISE) > 0:
+        lines.append(f"- {texts.AND_MORE.format(n=more)}")
+    st.warning("\n".join([texts.SAID_OTHERWISE, "", *lines]))
 
 
 def _is_of_nobody(choices: Choices) -> bool:

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fieldmon.io.import_report import Severity
+from fieldmon.reports import words
 from fieldmon.reports.certification import certification_report
 from fieldmon.reports.day import (
     DayFacts,
@@ -67,6 +68,7 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         treatments=() if season is None else treated_on(season, choices.on),
         labels=() if season is None else season.labels(),
         recorded=recorded,
+        otherwise=() if season is None else season.said_otherwise(choices.on, words.isolated),
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
     on = choices.on

@@ -103,8 +103,8 @@ def _clock_off(fast: timedelta) -> str:
 
 
 def _clock(choices: Choices, moment: datetime) -> str:
-    """Return the time on the plot, with its day where that is not the day shown."""
+    """Return the time on the plot, with its day where that is not today."""
     local = choices.clock.at(moment)
-    if local.date() == choices.on:
+    if choices.is_today and local.date() == choices.on:
         return f"{local:%H:%M}"
     return f"{choices.units.said_day(local.date(), choices.on)} {local:%H:%M}"

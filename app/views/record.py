@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from ..actions import beginning, bringing_files, picking, recording
-from ..show import map_layers, plant_history
+from ..show import day, map_layers, plant_history
 from ..state import wishes
 from ..words import texts
 
@@ -27,6 +27,6 @@ def show(choices: Choices) -> None:
         bringing_files.show_doubts(choices)
         beginning.show(choices)
         return
-    recording.show_said_otherwise(choices)
+    day.say_otherwise(choices)
     recording.show(choices)
     recording.show_batches(choices)

@@ -32,6 +32,7 @@ def show(choices: Choices) -> None:
     show_day.figures(choices, days[-1], progress)
     show_day.beside_figures(choices)
     show_day.planned_only(choices)
+    show_day.say_otherwise(choices)
     cautions.show(choices)
     cautions.show_treatments(choices)
     treating.ask_wait(choices)

@@ -58,6 +58,7 @@ def _work(choices: Choices, plan: DayPlan) -> None:
     """Show the morning's steps, and what is asked and recorded on the map."""
     bringing_files.show_doubts_of_plot(choices)
     day.say_of_day(choices, plan)
+    day.say_otherwise(choices)
     cautions.show_today(choices, plan)
     beginning.ask(choices, "step")
     morning_steps.show(choices, plan)

@@ -868,8 +868,8 @@ DETECTED_HELP = (
 INSPECTED_EVER = "Inspected so far"
 FOUND_EVER = "Found"
 FOUND_AGAIN = (
-    "{finds} finds on {plants} plants: {again} of them on plants that had been found on an earlier "
-    "day. Days count finds, the figure above counts plants."
+    "{finds} finds on {plants} {plants:plant|plants}: {again} of them on plants that had been "
+    "found on an earlier day. Days count finds, the figure above counts plants."
 )
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
 CORRECTED_BY = "Who corrected"
@@ -1240,7 +1240,8 @@ SCOUT_PAGE = {
     "away": "{m} m away", "chance": "Chance {n} %",
     "chance_least": "Chance under 0.1 %", "chance_most": "Chance over 99 %",
     "off_route": "Off the route",
-    "who_says": "{who}: {result}",
+    "who_says": "{who}: {result}", "contradiction": "Contradiction: {what}",
+    "and_more": "... and {n} more.",
     "closed": "Sprayed: do not enter before {until}.",
     "closed_rows": "Rows {low} to {high} are sprayed: do not enter before {until}.",
     "closed_plants": "Plants not on the route before then: {n}.",
@@ -1261,7 +1262,8 @@ SCOUT_PAGE = {
     "no_disk": "This phone keeps nothing for this page now, so no work can begin. Leave private "
     "browsing and close other windows of this page. It tries again by itself.",
     "not_kept": "This was NOT kept ({why}). Try again.",
-    "plan_rest": "Plan the rest anew", "ahead_takes": "What is ahead takes {minutes} minutes.",
+    "plan_rest": "Plan the rest anew",
+    "ahead_takes": "What is ahead takes {minutes} {minutes:minute|minutes}.",
     "your_rows": "Your part: rows {low} to {high}.",
     "no_network": "There is no network now. All that you do is kept on this phone.",
     "state_idle": "Nothing was sent yet.", "state_sending": "Sending ...",
@@ -1336,7 +1338,6 @@ ASK_PHOTO_NOTE = (
 )
 ASKED_PHOTO, ASK_NO_MORE = "Row {row}, plant {plant}. {note}", "No more"
 SAID_OTHERWISE = "Said otherwise of the same plant on this day. Look again, and undo what is wrong:"
-SAID_BY = "Row {row}, plant {plant}: {said}"
 
 # -- other devices: who may open the app, and how a phone comes to trust it
 LAN_PAGE = {

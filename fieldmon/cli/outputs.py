@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 ROUTE = Path("route.geojson")
 _RASTERS = (".tif", ".tiff")
+_PRINTED = (".html", ".htm")
 # what commands call the files that they write; all other files are read
 _WRITTEN = ("output", "chance_map", "bag")
 
@@ -66,11 +68,22 @@ def check_outputs(outputs: list[Path] | None, chance_map: Path | None) -> None:
         require_place(chance_map)
 
 
-def write_routes(route: Route, outputs: list[Path] | None) -> None:
-    """Write a route in every format asked for, and say where."""
+def write_routes(route: Route, outputs: list[Path] | None, language: str = "") -> None:
+    """Write a route in every format asked for, and say where; `language` as a season keeps it."""
     for output in outputs or [ROUTE]:
-        for path in route.to_file(output):
+        for path in write_route(route, output, language):
             typer.echo(f"Route written to {path}")
+
+
+def write_route(route: Route, output: Path, language: str = "") -> tuple[Path, ...]:
+    """Write a route as its file's name says: a sheet to print in a language that a season keeps."""
+    if language and output.name.lower().endswith(_PRINTED):
+        from fieldmon.cli.report_languages import spoken
+        from fieldmon.io.writers.day_file import RouteNotes
+
+        notes = replace(route.notes or RouteNotes("", ""), language=spoken(None, language)[0])
+        route = replace(route, notes=notes)
+    return route.to_file(output)
 
 
 def write_chance_map(to: Path | None, plot: Plot, chance: NDArray[np.float64]) -> None:

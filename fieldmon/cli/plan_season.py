@@ -98,7 +98,8 @@ def _plan_alone(
     _tell_left_off(options, off, on_foot=settings.robot.on_foot)
     tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
-    write_routes(with_forecast(today.route, lambda: season.forecast(on)), options.output)
+    ahead = with_forecast(today.route, lambda: season.forecast(on))
+    write_routes(ahead, options.output, season.settings.language)
     write_chance_map(options.chance_map, season.plot, season.evening(on))
 
 
@@ -276,7 +277,8 @@ def _plan_team(
     _tell_detection(season, on)
     ahead = cache(lambda: season.forecast(on))
     for member, today, paths in zip(team, days, files, strict=True):
-        write_member(member.name, with_forecast(today.route, ahead), paths)
+        route = with_forecast(today.route, ahead)
+        write_member(member.name, route, paths, season.settings.language)
     write_chance_map(options.chance_map, season.plot, season.evening(on))
 
 

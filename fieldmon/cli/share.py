@@ -15,6 +15,7 @@ from fieldmon.cli.messages import (
 )
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import MoveMinutes, Robots, StartTime, WorkDate, WorkerOptions
+from fieldmon.cli.outputs import write_route
 from fieldmon.cli.progress import progress
 from fieldmon.cli.season_files import opened
 from fieldmon.cli.team_files import members_of, tell_member
@@ -247,9 +248,13 @@ def _write(
 
     folder.mkdir(parents=True, exist_ok=True)
     files, routes = {}, [one for _, one in made.turns]
+    seasons = {plot.name: plot.known.season for plot in plots}
+    kept = {name: season.settings.language for name, season in seasons.items() if season}
     for stem, one in stems(routes).items():
         route = replace(one.route, notes=one.notes)
-        written = [path for end in endings for path in route.to_file(folder / f"{stem}{end}")]
+        of = kept.get(one.plot, "")
+        paths = [write_route(route, folder / f"{stem}{end}", of) for end in endings]
+        written = [path for some in paths for path in some]
         files[" ".join(dict.fromkeys(path.name for path in written))] = one
     nobody = {plots[k].name: made.closed[k] for k in made.nobody}
     write_whole(folder / PLAN_TABLE, plan_table(files, nobody, made.free))

@@ -79,22 +79,12 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
 
 def _contradicting(season: Season, on: date) -> Iterator[str]:
     """Yield of which plants two people said otherwise on a day, line by line."""
-    from fieldmon.infestation.inspections import RESULT_NAMES
-
-    said = season.contradicting(on)
-    plants = list(dict.fromkeys(said.plant.tolist()))
-    for plant in plants[:_CONTRADICTING]:
-        of = said.take(said.plant == plant)
-        each = ", ".join(
-            f"{RESULT_NAMES[result]} ({who})" if who else RESULT_NAMES[result]
-            for result, who in zip(of.result.tolist(), of.who, strict=True)
-        )
-        row = season.plot.grid.line_signs[int(season.plant_numbers.line[plant])]
-        place = f"row {row}, plant {season.plant_numbers.number[plant]}"
-        yield f"  contradiction          {place}: {each}"
-    if (more := len(plants) - _CONTRADICTING) > 0:
+    said = season.said_otherwise(on)
+    for line in said[:_CONTRADICTING]:
+        yield f"  contradiction          {line}"
+    if (more := len(said) - _CONTRADICTING) > 0:
         yield f"  {'':22} and {more} more"
-    if plants:
+    if said:
         yield f"  {'':22} Look again, and take back what is wrong with: fieldmon undo"
 
 

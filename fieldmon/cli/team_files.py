@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import typer
 
-from fieldmon.cli.outputs import ROUTE
+from fieldmon.cli.outputs import ROUTE, write_route
 from fieldmon.cli.times import clock
 from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError
@@ -131,11 +131,11 @@ def tell_member(name: str, start: datetime, route: Route) -> None:
         typer.echo(f"{name}: {said}")
 
 
-def write_member(name: str, route: Route, paths: list[Path]) -> None:
-    """Write the route of one of a team, if it has one, and say where."""
+def write_member(name: str, route: Route, paths: list[Path], language: str = "") -> None:
+    """Write the route of one of a team, if it has one, and say where, as `write_routes`."""
     if not len(route):
         typer.echo(f"{name} has no route: its hours are over, or the others leave it none in them.")
         return
     for path in paths:
-        for written in route.to_file(path):
+        for written in write_route(route, path, language):
             typer.echo(f"Route of {name} written to {written}")

@@ -2,15 +2,38 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 
 #: into which sentences are translated, each by its own name
 LANGUAGES = {"en": "English", "he": "עברית", "ar": "العربية", "es": "Español"}
+
+
+@dataclass(frozen=True)
+class PaperLanguage:
+    """A language for paper; whoever knows languages hands one in.
+
+    Parameters
+    ----------
+    code
+        Its code, as ``"he"``.
+    say
+        Returns a sentence in it, see `Worded`.
+    right_to_left
+        Whether it is read from the right.
+    """
+
+    code: str = "en"
+    say: Callable[[str], str] = str
+    right_to_left: bool = False
+
+
+PAPER_IN_ENGLISH = PaperLanguage()
 
 
 class Worded(str):  # noqa: SLOT000 - it holds what it was made of

@@ -14,10 +14,11 @@ from fieldmon.monitoring.inspection_table import time_text
 from fieldmon.plot.grid import plant_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.plot.grid import PlantGrid
 
@@ -211,6 +212,30 @@ def contradicting(held: Inspections) -> Inspections:
     both = [k for k, key in enumerate(_keys(done)) if len(results[key]) > 1]
     said = done.take(np.array(both, np.intp))
     return said.take(np.argsort(said.plant, kind="stable"))
+
+
+def said_otherwise(
+    held: Inspections, grid: PlantGrid, named: Callable[[str], str] = str
+) -> tuple[Worded, ...]:
+    """Return of each plant that was both clean and found on a day who says what, a line each.
+
+    `named` writes a name for where it is read.
+    """
+    said = contradicting(held)
+    of: dict[tuple[int, int], list[Worded]] = {}
+    told = zip(*plant_numbers(grid, said.plant), said.result, said.who, strict=True)
+    for line, number, result, who in told:
+        each = worded(RESULT_NAMES[int(result)])
+        if who:
+            each = worded("{result} ({who})", result=each, who=named(str(who)))
+        of.setdefault((int(line), int(number)), []).append(each)
+    return tuple(
+        worded(
+            "Row {row}, plant {plant}: {said}",
+            row=grid.line_signs[line], plant=number, said=joined(", ", each),
+        )
+        for (line, number), each in of.items()
+    )  # fmt: skip
 
 
 def said_before(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:

@@ -77,6 +77,8 @@ class Finding:
         The day it is meant for, where that is not today; another one than `at` has no time.
     after
         The least that the time can be, by the season's clock; None: nothing is known.
+    known_at
+        When, by the season's clock as far as the phone knew it then; None: it did not.
     off_route
         Whether the plant was not on the route.
     undoes
@@ -100,6 +102,7 @@ class Finding:
     undoes: str = ""
     after: datetime | None = None
     detects: float | None = None
+    known_at: datetime | None = None
 
     def content(self) -> str:
         """Return what it says as JSON, the same for the same finding whichever version told it."""
@@ -437,12 +440,11 @@ def _when(clock: LocalClock, one: Finding, letter: _SentFindings) -> tuple[date,
 
     No time is believed after its arrival, or before the least that it can be.
     """
-    received, at = letter.arrived, one.at - letter.shift
-    local, named = clock.at(at), one.on
+    received, named = letter.arrived, one.on
     least = one.after if one.after is None or one.after <= received + CLOCK_IS_WRONG else None
-    is_believed = at <= received + CLOCK_IS_WRONG and (
-        least is None or at >= least - CLOCK_IS_WRONG
-    )
+    earliest = None if least is None else least - CLOCK_IS_WRONG
+    at = _moment(one, letter, earliest)
+    local, is_believed = clock.at(at), _can_be(at, letter, earliest)
     if named is not None:
         return named, seconds(local.time()) if is_believed and named == local.date() else np.nan
     if is_believed:
@@ -457,6 +459,24 @@ def _when(clock: LocalClock, one: Finding, letter: _SentFindings) -> tuple[date,
             )
         )
     return day, np.nan
+
+
+def _moment(one: Finding, letter: _SentFindings, earliest: datetime | None) -> datetime:
+    """Return when a finding was made: by what its clock was off then, else as it sends.
+
+    A phone that sleeps does not notice that its clock is set ahead. Where that may have been since
+    it last heard the season's clock, what it is off as it sends tells more.
+    """
+    put_right = one.at - letter.shift
+    if one.known_at is None or not _can_be(one.known_at, letter, earliest):
+        return put_right
+    set_ahead = one.known_at - put_right
+    asleep = timedelta() if one.after is None else one.known_at - one.after
+    return put_right if CLOCK_IS_WRONG < set_ahead <= asleep else one.known_at
+
+
+def _can_be(at: datetime, letter: _SentFindings, earliest: datetime | None) -> bool:
+    return at <= letter.arrived + CLOCK_IS_WRONG and (earliest is None or at >= earliest)
 
 
 def _insert(db: sqlite3.Connection, row: tuple[object, ...], told: str) -> int:

@@ -39,6 +39,7 @@ from fieldmon.monitoring.contradictions import (
     contradictions,
     known_before,
     said_before,
+    said_otherwise,
 )
 from fieldmon.monitoring.merging import Merged
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
@@ -51,10 +52,11 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from datetime import date
     from pathlib import Path
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.batches import Batch, BatchContents
     from fieldmon.monitoring.merging import MergedCopy
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -96,6 +98,10 @@ class SeasonInspections(OpenSeason):
     def contradicting(self, on: date) -> Inspections:
         """Return a day's inspections of plants that were both clean and found on it."""
         return contradicting(self.history.inspections.on(on))
+
+    def said_otherwise(self, on: date, named: Callable[[str], str] = str) -> tuple[Worded, ...]:
+        """Return of each such plant who says what, a line each; `named` writes a name."""
+        return said_otherwise(self.history.inspections.on(on), self.plot.grid, named)
 
     def record(
         self,

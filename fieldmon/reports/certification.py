@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from fieldmon.compute.units import Units
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Caution, KeptTreatment, LogEntry, Season
+    from fieldmon.monitoring.applications import Application
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
 
 # as many letters as a value beside its name may have, and a line of sentences; millimetres that
@@ -345,13 +346,22 @@ def _card(number: int, one: _PlotRecord, treatment: KeptTreatment) -> tuple[Bloc
     return (table, Listing("", below)) if below else (table,)
 
 
+def times_said(said: Application) -> str:
+    """Return when it began and ended; one alone in words, for a sign has no side of its own."""
+    began, ended = (f"{at:%H:%M}" if at else "" for at in (said.began, said.ended))
+    if began and ended:
+        return f"{began}–{ended}"
+    if began:
+        return worded(words.CERT_BEGAN, time=began)
+    return worded(words.CERT_ENDED, time=ended) if ended else ""
+
+
 def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]:
     """Return what a certifier asks of a treatment, with its name; empty: not said."""
     said, place = treatment.application, treatment.place
     label = label_of(treatment, one.season.labels())
     period = waits(treatment, label)
     first, entry = period.harvest_from, period.entry_from
-    times = [f"{at:%H:%M}" if at else "?" for at in (said.began, said.ended)]
     days = "" if period.days is None else counted(period.days, "day")
     return [
         (_F["product"], _plain(said.product)),
@@ -362,7 +372,7 @@ def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]
         (_F["area"], "" if place.area_ha is None else one.units.square(place.area_ha * 1e4)),
         (_F["plants"], figure(int(np.count_nonzero(place.plants)))),
         (_F["where"], place_in_words(one.season.plot.grid, place.plants)),
-        (_F["time"], "" if times == ["?", "?"] else f"{times[0]}–{times[1]}"),
+        (_F["time"], times_said(said)),
         (_F["zone"], treatment.clock.zone),
         (_F["crop"], _plain(said.crop)),
         (_F["pest"], _plain(said.pest)),

@@ -26,6 +26,7 @@ from fieldmon.reports.content import (
     Illustration,
     KeyFigure,
     KeyFigures,
+    Listing,
     NoteLines,
     Paragraph,
     Report,
@@ -60,6 +61,8 @@ _MOST_WIDE = 24
 _WHICH = {2: 40, 3: 22}
 # so many rows with finds all have room; of a day that was worked the map is worth more
 _MOST_FOUND = 36
+# more do not fit a page beside the rest of a day
+_MOST_OTHERWISE = 10
 _MAP_MM = {False: 80.0, True: 120.0}
 
 
@@ -109,6 +112,8 @@ class DayFacts:
         How many are left out because nobody could inspect them.
     recorded
         ``(n,)`` other finds, which only the records of before a season tell of; None: none.
+    otherwise
+        Who says what of each plant that was both clean and found that day.
     """
 
     name: str
@@ -132,6 +137,7 @@ class DayFacts:
     closed: tuple[Closure, ...] = ()
     skipped: tuple[Worded, ...] = ()
     recorded: NDArray[np.bool_] | None = None
+    otherwise: tuple[Worded, ...] = ()
 
     @classmethod
     def of_season(cls, season: Season, on: date, today: date | None = None) -> DayFacts:
@@ -169,7 +175,7 @@ class DayFacts:
                     on, "".join(names[:1]), plan.scene.seconds_left
                 ),
                 skipped=() if worked else left_out_in_words(plan.scene, route),
-                recorded=recorded,
+                recorded=recorded, otherwise=season.said_otherwise(on, words.isolated),
             )  # fmt: skip
 
 
@@ -212,6 +218,7 @@ def day_report(facts: DayFacts, units: Units) -> Report:
     blocks: list[Block] = [
         *(Paragraph(said, lead=True) for said in _leads(facts, units)),
         *([] if facts.missed else [_figures(facts, units)]),
+        *_otherwise(facts),
         *(Paragraph(said) for said in [assumed_sentence(facts.settings, units)] if said),
         *treatment_table(facts.treatments, facts.labels, units),
         *_map(facts, units),
@@ -254,6 +261,13 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
         said += closed_in_words(facts.closed, grid, units)
         said += facts.skipped
     return said
+
+
+def _otherwise(facts: DayFacts) -> list[Listing]:
+    said = facts.otherwise[:_MOST_OTHERWISE]
+    if (more := len(facts.otherwise) - len(said)) > 0:
+        said = (*said, worded(words.REST, n=more))
+    return [Listing(words.OTHERWISE, said)] if said else []
 
 
 def held_in_words(held: Sequence[PlannedAndDone]) -> dict[str, int]:

@@ -5,31 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import PaperLanguage
 from fieldmon.reports import words
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
 
 @dataclass(frozen=True)
-class ReportLanguage:
-    """A language for paper.
+class ReportLanguage(PaperLanguage):
+    """A language for reports.
 
     Parameters
     ----------
-    code
-        Its code, as ``"he"``.
-    say
-        Returns a sentence of the library (`fieldmon.compute.wording`) in it.
-    right_to_left
-        Whether it is read from the right.
     letters
         All that it may write.
     """
 
-    code: str = "en"
-    say: Callable[[str], str] = str
-    right_to_left: bool = False
     letters: str = ""
 
 

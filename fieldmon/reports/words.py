@@ -26,6 +26,7 @@ WORKED = (
     "Worked on {day}: {inspected:,} {inspected:plant|plants} inspected, {found:,} found infested."
 )
 MISSED = "{day} is past, and no inspection of it was recorded."
+OTHERWISE = "Clean and found, of the same plant"
 MISSED_PLAN = "Stops planned: {planned:,}."
 PLANNED_DONE = "Stops planned: {planned:,}; done: {done:,}; left out: {left:,}; added: {added:,}."
 PLANNED_DAYS = "On {days} planned and worked:"
@@ -235,6 +236,7 @@ CERT_FIELDS = {
 # the day is of the treatment of which nobody said how long to wait
 CERT_HARVEST_UNSAID = "not known, see {day}"
 CERT_CORRECTED = "corrected by {who}"
+CERT_BEGAN, CERT_ENDED = "began {time}", "ended {time}"
 CERT_OF_PLOT, CERT_NONE = "Inspections on {plot}", "none"
 CERT_DAY_COLUMNS = ("day", "inspected", "found", "by")
 

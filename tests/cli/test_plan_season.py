@@ -38,6 +38,15 @@ def test_a_day_from_plan_to_status(run, season, tmp_path):
     assert "chance it is clean" in out
 
 
+def test_a_sheet_to_print_is_in_the_language_of_the_season(run, season, tmp_path):
+    assert run("change", season, "--language", "es")[0] == 0
+    code, _, err, _ = run("plan", season, "--date", BEGINS, "-o", "sheet.html")
+    assert code == 0, err
+    sheet = (tmp_path / "sheet.html").read_text()
+    assert '<html lang="es" dir="ltr"' in sheet
+    assert "<th>hilera</th>" in sheet
+
+
 def test_command_report_and_phone_say_the_same_route_and_hours_after_any_record(
     run, season, tmp_path
 ):

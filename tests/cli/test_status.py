@@ -104,7 +104,7 @@ def test_contradictions_and_days_and_people_of_batches_are_told(run, season):
     kept.record(Inspections.of(np.array([1]), np.array([1]), day), "x", "Noa", confirmed=True)
     _, out, _, _ = run("status", season, "--date", BEGINS, "--batches")
     row, plant = kept.plant_numbers.line[1], kept.plant_numbers.number[1]
-    assert f"  contradiction          row {row}, plant {plant}: clean (Ann), found (Noa)" in out
+    assert f"  contradiction          Row {row}, plant {plant}: clean (Ann), found (Noa)" in out
     assert "take back what is wrong with: fieldmon undo" in out
     assert f"    2 findings by Ann, Dan  robots  1 found, inspected {BEGINS}" in out
     assert f"    1 finding by Noa  x  row {row}, plant {plant}: found, inspected {BEGINS}" in out

@@ -7,7 +7,12 @@ import pytest
 
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.monitoring.contradictions import contradicting, contradictions, said_before
+from fieldmon.monitoring.contradictions import (
+    contradicting,
+    contradictions,
+    said_before,
+    said_otherwise,
+)
 from fieldmon.plot.layout import rectangle
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -180,6 +185,16 @@ def test_each_result_is_held_to_all_that_is_recorded_of_its_plant_and_day(seed):
         if one[2] != SKIPPED and {CLEAN, FOUND} <= set(of_key[one[:2]])
     ]  # fmt: skip
     assert told(contradicting(held)) == sorted(both, key=lambda one: one[0])
+
+
+def test_who_says_what_of_a_plant_is_said_plant_by_plant():
+    who = np.array(["Ann", "", "Ben"], object)
+    held = Inspections.of(
+        np.array([6, 2, 6]), np.array([1, 0, 0]), np.datetime64("2026-04-06"), who=who
+    )
+    also = Inspections.of(np.array([2]), np.array([1]), np.datetime64("2026-04-06"))
+    said = said_otherwise(held.and_those(also), rectangle(2, 5), str.upper)
+    assert said == ("Row 1, plant 3: clean, found", "Row 2, plant 2: found (ANN), clean (BEN)")
 
 
 @pytest.mark.parametrize("n", [1, 5, 6])

@@ -348,6 +348,30 @@ def test_a_time_after_its_arrival_or_before_the_least_it_can_be_is_not_believed(
         np.testing.assert_equal(seen.second, [second])
 
 
+@pytest.mark.parametrize(
+    ("times", "fast", "hour"),
+    [
+        ((-6, -6, -6), -9, 3),  # the clock went wrong after the tap
+        ((-6, -6, -8), -9, 3),
+        ((3, -6, -6), 0, 3),  # it was set right after the tap
+        ((-1, -2, -3), 1, 7),
+        ((-1, -2, -3), -9, 7),
+        ((7, 1, -3), 9, 7),  # what was taken for the time is still to come, or too early
+        ((7, -5, -3), 9, 7),
+        ((-3, -3, -6), 2, 4),  # it may have been set ahead while the phone slept, before the tap
+    ],
+)
+def test_a_time_is_put_right_by_what_the_clock_was_off_at_the_tap_where_that_is_known(
+    season, key, times, fast, hour
+):  # hours from now, 9 o'clock: by the phone's clock, as it took it, and at least
+    at, known_at, after = (NOW + one * HOUR for one in times)
+    one = a_finding(37, at=at, known_at=known_at, after=after)
+    take(season, key, [one], NOW + fast * HOUR)
+    seen = season.history.inspections
+    seen = seen.take(seen.plant == 37)
+    assert (seen.date.tolist(), seen.second.tolist()) == ([BEGINS], [hour * 3600.0])
+
+
 def test_what_was_taken_by_a_version_that_knew_less_or_kept_more_is_still_the_same(season, key):
     one = a_finding(0)
     assert set(json.loads(one.content())) == {"id", "at", "plant", "result"}

@@ -16,7 +16,7 @@ from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Application, Season
 from fieldmon.reports import words
-from fieldmon.reports.certification import certification_report
+from fieldmon.reports.certification import certification_report, times_said
 from fieldmon.reports.content import Listing, Table
 from fieldmon.reports.html import html_text
 from fieldmon.reports.pdf import pdf_bytes
@@ -166,6 +166,19 @@ def test_what_was_advised_stands_with_the_first_treatment_after_it_and_with_no_l
     report = certification_report([season], Units())
     said = [texts_of.get("Advised") for texts_of in cards(report)]
     assert said == ["Treat the zones. (2026-04-06)", "not said", "Treat the rest. (2026-04-09)"]
+
+
+@pytest.mark.parametrize(
+    ("began", "ended", "said"),
+    [
+        (time(7), time(18, 30), "07:00–18:30"),
+        (time(7), None, "began 07:00"),
+        (None, time(18, 30), "ended 18:30"),  # a sign for what nobody said has no side of its own
+        (None, None, ""),
+    ],
+)
+def test_one_time_alone_says_which_it_is(began, ended, said):
+    assert times_said(Application("Oil", began=began, ended=ended)) == said
 
 
 def test_who_was_where_before_entry_was_allowed_stands_in_the_record(tmp_path):

@@ -373,3 +373,14 @@ def test_the_day_ahead_of_a_team_says_whose_route_it_is(of_a_team):
     leads = [block.text for block in report.sheets[0].blocks if isinstance(block, Paragraph)]
     assert "The route is that of \u2068R1\u2069; the others of the team have their own." in leads
     assert "Hours" in figures(report)
+
+
+def test_a_plant_that_two_say_otherwise_of_is_named_with_who_says_what(done, ahead):
+    assert done.otherwise == ()
+    said = tuple(f"Row 3, plant {n}: found (Ann), clean (Ben)" for n in range(12))
+    listed = one(day_report(replace(ahead, otherwise=said), Units()), Listing)
+    assert (listed.title, listed.sentences[:10]) == (
+        "Clean and found, of the same plant",
+        said[:10],
+    )
+    assert listed.sentences[10:] == ("... and 2 more.",)

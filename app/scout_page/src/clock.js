@@ -5,7 +5,7 @@ const WRONG_MS = 120000;
 
 export class Clock {
   /** `now` is the phone's clock, `tick` counts milliseconds since the page was opened. */
-  constructor(now = () => new Date(), tick = () => performance.now()) { Object.assign(this, { now, tick, heard: null, heardAt: null, fast: 0 }); }
+  constructor(now = () => new Date(), tick = () => performance.now()) { Object.assign(this, { now, tick, heard: null, heardAt: null, fast: 0, isOfNow: false }); }
 
   /** What is known, for when the page is opened again. */
   known() { return { heard: this.least(), fast: this.fast }; }
@@ -23,7 +23,7 @@ export class Clock {
   listening(ask) {
     return async (...all) => {
       const answer = await ask(...all), said = answer.ok ? Date.parse(answer.headers.get("date")) : NaN;
-      if (said) Object.assign(this, { heard: said, heardAt: this.tick(), fast: this.now().getTime() - said });
+      if (said) Object.assign(this, { heard: said, heardAt: this.tick(), fast: this.now().getTime() - said, isOfNow: true });
       return answer;
     };
   }
@@ -37,6 +37,15 @@ export class Clock {
     if (least === null) return now;
     const can = [now, now - this.fast].filter((one) => one > least - WRONG_MS);
     return Math.max(least, can.length ? Math.min(...can) : least);
+  }
+
+  /**
+   * The season's time, in milliseconds, or null where it is not known: heard since the page was opened, by a clock that
+   * was not set back since. While the page was closed the battery may have run out, and the clock with it.
+   */
+  sure() {
+    const time = this.now().getTime() - this.fast;
+    return this.isOfNow && time > this.least() - WRONG_MS ? time : null;
   }
 
   /** Whether the clock is known to be wrong. */

@@ -209,6 +209,13 @@ export class Field {
     return isGoing ? { seconds_left: this.day.seconds_left, begun: this.begun } : { seconds_left: day.seconds_left, begun: null };
   }
 
+  /** What is left of the hours here, and since when that runs: the route of a day before has them anew, from the first record of today on. */
+  #hoursHere() {
+    const { begun, day } = this;
+    if (!this.isOld()) return { seconds_left: day.seconds_left, begun };
+    return { seconds_left: 3600 * day.robot.hours, begun: begun && this.#dayAt(begun) === this.#today() ? begun : null };
+  }
+
   /** When work begins with the record of a plant now: at the start, or with the way to it where that is much earlier or later. */
   #begins(plant) {
     const { begins, route, robot } = this.day, now = this.time.best(), start = Date.parse(begins ?? "");
@@ -222,9 +229,10 @@ export class Field {
     if (!this.day) return;
     const { day } = (await this.#hear((access) => fetchDay(this.ask, access, this.day.plot, this.day.plan))) ?? {};
     if (!day || day.day !== this.day.day || day.plot !== this.day.plot) return;
-    const { route, plan } = this.day, { begun, ...left } = this.#hours(day);
+    // a day that came ahead, or as today, is over once it is: it does not become the day meant
+    const { route, plan, live, past } = this.day, { begun, ...left } = this.isOld() ? { seconds_left: this.day.seconds_left, begun: this.begun } : this.#hours(day);
     const asked = new Set(this.asked().map((one) => one.id));
-    this.#take({ ...day, ...left, route, plan, newest: day.plan });
+    this.#take({ ...day, ...left, route, plan, live, past, newest: day.plan });
     this.begun = begun;
     const isNew = this.asked().some((one) => !asked.has(one.id)), { ahead, draft } = this;
     if (isNew) this.ahead = this.#withAsked(ahead);
@@ -282,9 +290,19 @@ export class Field {
   }
 
   /** What is said of a plant today, as far as this phone did not take it back since. */
-  said(plant) {
+  said(plant) { return this.#stand(this.day.today ?? [], plant); }
+
+  /** Those of what is said of a plant that this phone did not take back since. */
+  #stand(some, plant) {
     const name = this.day.scout?.toLowerCase(), isBack = this.back.has(plant);
-    return (this.day.today ?? []).filter((one) => one.plant === plant && !(isBack && one.who.toLowerCase() === name));
+    return some.filter((one) => one.plant === plant && !(isBack && one.who.toLowerCase() === name));
+  }
+
+  /** Plants that are said to be both clean and found today, as far as this phone did not take it back since: `{plant, said}` each. */
+  contradictions() {
+    const all = this.day?.contradicting ?? [], plants = [...new Set(all.map((one) => one.plant))];
+    const told = plants.map((plant) => ({ plant, said: this.#stand(all, plant) }));
+    return told.filter(({ said }) => new Set(said.map((one) => one.result)).size > 1);
   }
 
   // -- what somebody took back in the season
@@ -414,7 +432,7 @@ export class Field {
 
   #common(id) {
     return { id, season: this.season, key: this.access.key, day: this.day.day, order: this.#order(),
-      at: this.clock().toISOString(), on: this.meant(), ...this.#after() };
+      at: this.clock().toISOString(), on: this.meant(), ...this.#times() };
   }
 
   /** Whether a find can have the pests counted: a whole number from 1, or none is said. */
@@ -423,10 +441,10 @@ export class Field {
     return count == null || (Number.isInteger(count) && count >= 1);
   }
 
-  /** The least that the time can be, for where the clock is wrong. */
-  #after() {
-    const least = this.time.least();
-    return least === null ? {} : { after: new Date(least).toISOString() };
+  /** The season's time as far as it is known now, and the least that it can be, for where the clock is wrong or will be. */
+  #times() {
+    const times = { known_at: this.time.sure(), after: this.time.least() }, heard = Object.entries(times).filter(([, ms]) => ms !== null);
+    return Object.fromEntries(heard.map(([name, ms]) => [name, new Date(ms).toISOString()]));
   }
 
   /** Say what was found at the plant: the next one is there at once; resolves when it is on the disk. */
@@ -438,13 +456,15 @@ export class Field {
       // of the route that one goes by; a server of before said none
       ...(this.day.route.detects == null ? {} : { detects: this.day.route.detects }) };
     // the hours of another day run by no clock
-    const begun = this.meant() === null ? this.begun ?? this.#begins(plant) : null;
+    const runs = this.meant() === null, begun = runs ? this.#hoursHere().begun ?? this.#begins(plant) : null;
     let ahead = this.ahead.filter((one) => one !== plant);
     if (result === "found") {
       const done = new Set([...this.done, plant]);
       // a neighbour that nobody may come to yet, that plans leave out or that is gone, is none to go to
       const out = neighbours(this.plot, plant).filter((one) => this.closedUntil(one) || this.isLeftOut(one) || this.isGone(one));
-      ahead = afterFind(this.plot, this.day, ahead, plant, new Set([...done, ...out]), this.#secondsLeft(begun, [plant]));
+      const fit = afterFind(this.plot, this.day, ahead, plant, new Set([...done, ...out]), this.#secondsLeft(begun, [plant]));
+      // where the hours run by the clock `inHours` leaves out what does not fit them: another day has its own
+      ahead = runs ? [...fit, ...ahead.filter((one) => !fit.includes(one))] : fit;
     }
     const follows = { ahead, begun, draft: this.#comesNext(ahead), last: { id, plant, ahead: this.ahead } };
     return this.#step(follows, () => this.store.record(record, { ...follows, ...this.time.known() }), record);
@@ -497,10 +517,10 @@ export class Field {
   kept() { return [...this.own.values()].filter((one) => one.state !== WRITING).length; }
 
   /** What is left of the hours: by the clock where they run, else by what the plants told since cost, as the season counts them. */
-  secondsLeft() { return this.#secondsLeft(this.begun); }
+  secondsLeft() { return this.#secondsLeft(this.#hoursHere().begun); }
 
   #secondsLeft(begun, more = []) {
-    if (this.meant() === null) return secondsLeft(this.day, begun, this.time.best());
+    if (this.meant() === null) return secondsLeft(this.#hoursHere(), begun, this.time.best());
     const { heard = 0 } = this.day, told = [...this.own.values()].sort((a, b) => a.order - b.order);
     const known = told.findLast((one) => one.order <= heard)?.plant ?? -1;
     const since = told.filter((one) => one.order > heard).map((one) => one.plant);
@@ -509,7 +529,7 @@ export class Field {
 
   /** The plants ahead that still fit the hours where these run by the clock, as the app cuts its route; none is forgotten: a clock may be put right. */
   inHours() {
-    if (!this.begun || this.meant() !== null) return this.ahead;
+    if (this.meant() !== null || !this.#hoursHere().begun) return this.ahead;
     const { ahead } = this, fit = fitting(this.plot, this.day, this.lastRecord()?.plant ?? -1, ahead, this.secondsLeft());
     if (fit.length === ahead.length) return ahead;
     if (this.#fit?.of !== ahead || this.#fit.plants.length !== fit.length) this.#fit = { of: ahead, plants: fit };
@@ -540,7 +560,9 @@ export class Field {
     return shown;
   }
 
-  #today() { return dateIn(this.plot.zone, this.time.best()); }
+  #dayAt(ms) { return dateIn(this.plot.zone, ms); }
+
+  #today() { return this.#dayAt(this.time.best()); }
 
   /** Rows that nobody may enter yet, with the local time until which that is so. */
   closed() {

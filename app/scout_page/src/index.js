@@ -68,8 +68,8 @@ async function begin() {
   // a full phone cannot keep a code, but what is on it
   let notKept = null;
   const opened = field.open(access).catch((error) => { notKept = error; return field.open(); });
-  const [choices] = await Promise.all([store.get("choices"), opened]);
-  await page.build({ language: phones(), theme: "auto", hand: "right", ...choices, ...(language && !choices ? { language } : {}) });
+  const [choices, ofCode] = await Promise.all([store.get("choices"), store.languageOfCode(language), opened]);
+  await page.build({ language: ofCode ?? phones(), theme: "auto", hand: "right", ...choices });
   page.map.look(field.plant);
   document.documentElement.dataset.ready = Math.round(performance.now());
   if (notKept) page.sayNotKept(notKept);

@@ -11,6 +11,9 @@ const REST_MS = 250;
 const STAGES = ["egg", "young", "adult", "web"];
 // the word of a result; that of a plant that is gone goes before "could not inspect"
 const resultOf = (one) => say(one.gone ? "gone" : one.result);
+const whoSays = (some) => some.map((one) => say("who_says", { who: one.who, result: resultOf(one) })).join(", ");
+// so many plants that contradict are named; in the app all are
+const MOST_NAMED = 3;
 const LEFT_OUT = { skipped: "left_out_skipped", flagged: "left_out_flagged" };
 
 function h(name, values = {}, ...inner) {
@@ -228,7 +231,15 @@ export class Page {
   #old() {
     const { field } = this, wrong = field.time.isWrong() ? [h("p", { class: "tag", id: "clock" }, say("clock_wrong"))] : [];
     const newer = field.hasNewer() && !field.isOld() ? [h("button", { type: "button", class: "wide", id: "newer", onclick: () => this.load() }, say("newer_plan"))] : [];
-    return [...wrong, ...this.#otherDay(), ...newer, ...this.#takenBack(), ...this.#takenBackBefore()];
+    return [...wrong, ...this.#otherDay(), ...newer, ...this.#takenBack(), ...this.#takenBackBefore(), ...this.#contradictions()];
+  }
+
+  /** Where others say otherwise of a plant, as the season told it. */
+  #contradictions() {
+    const { field } = this, { plot } = field, all = field.contradictions();
+    const line = ({ plant, said }) => say("contradiction", { what: `${say("place", { row: signOf(plot, plant), plant: plot.number[plant] })}: ${whoSays(said)}` });
+    const lines = all.slice(0, MOST_NAMED).map((one) => h("p", { class: "bad contradiction", "data-plant": one.plant }, line(one)));
+    return all.length > MOST_NAMED ? [...lines, h("p", { class: "bad" }, say("and_more", { n: all.length - MOST_NAMED }))] : lines;
   }
 
   /** The same of days before, once: the phone has these records no more. */
@@ -292,10 +303,8 @@ export class Page {
       place.append(h("p", { class: "asked", "data-taken": String(taken) }, `${taken ? "✓" : "▣"} ${one.note ? say("photo_asked_of", { note: one.note }) : say("photo_asked")}`));
     }
     if (field.isGone(plant) && !field.own.has(plant)) place.append(h("p", { id: "is_gone" }, say("gone")));
-    const contradicting = (field.day.contradicting ?? []).filter((one) => one.plant === plant);
-    if (contradicting.length) place.append(h("p", { class: "bad" }, contradicting.map((one) => say("who_says", { who: one.who, result: resultOf(one) })).join(", ")));
-    const known = contradicting.length ? [] : field.said(plant);
-    if (known.length) place.append(h("p", {}, known.map((one) => say("who_says", { who: one.who, result: resultOf(one) })).join(", ")));
+    const contradicting = field.contradictions().some((one) => one.plant === plant), known = field.said(plant);
+    if (known.length && !contradicting) place.append(h("p", {}, whoSays(known)));
   }
 
   /** A local time as it is said: with its day where that is not the day of the route. */

@@ -30,6 +30,12 @@ export class Store {
     return Object.fromEntries(names.map((name, k) => [name, values[k]]));
   }
 
+  /** The language of the last code that said one: that of the page until somebody chooses another. */
+  async languageOfCode(language) {
+    if (language) await this.put({ language }).catch(() => {}); // a full phone speaks it now
+    return language || this.get("language");
+  }
+
   async put(values) {
     const change = this.db.transaction("kept", "readwrite", STRICT);
     for (const [name, value] of Object.entries(values)) change.store.put(value, name);
@@ -160,7 +166,7 @@ export class Store {
   }
 }
 
-const SENT = ["id", "at", "plant", "result", "count", "stage", "leaves", "notes", "lon", "lat",
+const SENT = ["id", "at", "known_at", "plant", "result", "count", "stage", "leaves", "notes", "lon", "lat",
   "accuracy_m", "on", "after", "off_route", "undoes", "detects"];
 
 /** A record as the interface describes a finding. */

@@ -15,9 +15,10 @@ export async function speak(language) {
   return chosen;
 }
 
-/** A text, its blanks filled; words of people keep to their own direction. */
+/** A text, its blanks filled; words of people keep to their own direction. `{n:plant|plants}` chooses words by a number. */
 export function say(name, values = {}) {
-  return (words[name] ?? name).replace(/\{(\w+)\}/g, (_, blank) => own(values[blank] ?? ""));
+  const filled = (_, blank, one, many) => (one === undefined ? own(values[blank] ?? "") : Number(values[blank]) === 1 ? one : many);
+  return (words[name] ?? name).replace(/\{(\w+)(?::([^|{}]*)\|([^|{}]*))?\}/g, filled);
 }
 
 /** A chance in thousandths, in words: none is said to be nothing or all. */

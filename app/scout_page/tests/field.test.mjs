@@ -78,6 +78,20 @@ test("what was taken back here is shown no more, though what the season said las
   assert.equal(field.back.size, 0, "the season says it itself");
 });
 
+test("a plant that two say otherwise of is named, until this phone takes its own back", async () => {
+  const { season, field, sync } = await aField();
+  await field.tell("found");
+  await sync.send();
+  const both = [{ plant: 0, result: "found", who: "Ann" }, { plant: 0, result: "clean", who: "Ben" }];
+  season.day = aDay(undefined, { today: both, contradicting: both });
+  await field.reread();
+  assert.deepEqual(field.contradictions(), []);
+  await field.refresh();
+  assert.deepEqual(field.contradictions(), [{ plant: 0, said: both }]);
+  await field.undo();
+  assert.deepEqual(field.contradictions(), []);
+});
+
 test("a find changes what the season says, until it said so; what is clean does not", async () => {
   const { field, sync } = await aField();
   const heard = async () => { await sync.send(); await field.reread(); return field.changedHere(); };
@@ -297,6 +311,14 @@ test("another person's code brings another day, and what the first one told goes
   season.keys = ["k1", "k2"];
   await sync.send();
   assert.deepEqual([season.by.get("k1"), season.by.get("k2"), sync.stranded.size], [2, 1, 0]);
+});
+
+test("the language of a code stays when the page is opened again without it, until another code says one", async () => {
+  const name = `test ${stores++}`, opened = async (said) => (await openStore(name)).languageOfCode(said);
+  assert.deepEqual([await opened(null), await opened("he"), await opened(null), await opened("es"), await opened("")], [undefined, "he", "he", "es", "es"]);
+  const full = await openStore(name);
+  full.put = async () => { throw new Error("disk full"); };
+  assert.equal(await full.languageOfCode("ar"), "ar");
 });
 
 test("the same code again, as an iPhone's home screen says it, changes nothing", async () => {
@@ -536,6 +558,49 @@ test("a code for a day ahead is of that day until it is over, and with times on 
   assert.equal(field.isOld(), false);
 });
 
+test("a code for a day ahead that is heard of after that day does not become the day meant", async () => {
+  const ahead = aDay([0, 1, 2], { day: "2026-11-23", live: false, past: false });
+  for (const loaded of ["2026-11-22T08:00:00Z", "2026-11-23T08:00:00Z"]) {
+    const season = new ASeason(loaded < "2026-11-23" ? ahead : { ...ahead, live: true }), { field, again } = await aField(season, { ...ACCESS, on: "2026-11-23" });
+    field.clock = () => new Date("2026-11-24T06:00:00Z");
+    season.day = { ...ahead, past: true, found: [7] };
+    await field.refresh();
+    assert.ok(season.asked.at(-1).includes("on=2026-11-23"), "as the code was made for it");
+    assert.deepEqual([field.day.found, field.isOld(), field.meant()], [[7], true, null]);
+    await field.tell("clean");
+    assert.deepEqual(field.records.map((one) => [one.on, one.at]), [[null, "2026-11-24T06:00:00.000Z"]]);
+    const later = await again();
+    later.clock = field.clock;
+    assert.equal(later.isOld(), true);
+    season.day = aDay([3], { day: "2026-11-24" });
+    await later.load();
+    assert.deepEqual([season.asked.at(-1).includes("on="), later.day.day, later.isOld()], [false, "2026-11-24", false]);
+  }
+});
+
+test("without a network the next day goes on with the rest of the route, with hours of its own", async () => {
+  const begun = { begins: "2026-11-22T04:00:00Z", begun: true, seconds_left: 200 };
+  const { field, again } = await aField(new ASeason(aDay([0, 1, 2, 12, 13], begun)));
+  field.clock = () => new Date("2026-11-22T08:10:00Z");
+  await field.tell("found");
+  assert.equal(field.inHours().length, 0, "the hours are over");
+  const rest = field.ahead;
+  assert.deepEqual(rest, [1, 2, 12, 13], "what did not fit is not forgotten");
+  for (const one of [field, await again()]) {
+    one.clock = () => new Date("2026-11-23T06:00:00Z");
+    assert.deepEqual([one.isOld(), one.secondsLeft(), one.inHours(), one.way().length > 0, one.plant], [true, 14400, rest, true, 1]);
+  }
+  await field.tell("found");
+  assert.deepEqual(field.ahead.filter((plant) => rest.includes(plant)).sort((a, b) => a - b), [2, 12, 13]);
+  field.clock = () => new Date("2026-11-23T06:30:00Z");
+  assert.equal(field.secondsLeft(), 14400 - 35 - 1800);
+  assert.equal((await again()).begun, field.begun);
+  await field.tell("clean");
+  assert.deepEqual(field.records.map((one) => [one.on, one.at.slice(0, 10)]), [[null, "2026-11-22"], [null, "2026-11-23"], [null, "2026-11-23"]]);
+  field.clock = () => new Date("2026-11-24T06:00:00Z");
+  assert.equal(field.secondsLeft(), 14400, "and so on each further day");
+});
+
 test("the hours of a day loaded in mid-work run on by the clock, without a tap and over a kill", async () => {
   const season = new ASeason(aDay(undefined, { begins: "2026-11-22T04:00:00Z", begun: true, seconds_left: 2520 }));
   const { field, again } = await aField(season);
@@ -609,6 +674,23 @@ test("each record says the least that the time can be, over a kill too", async (
   assert.ok(second.after >= "2026-11-22T08:00:00" && third.after >= second.after, `${second.after} ${third.after}`);
   assert.equal(third.at, "1970-01-01T00:00:09.000Z");
   assert.equal((await store.left()).records, 0);
+});
+
+test("each record says the season's time where the phone knows it: heard since it was opened, by a clock not set back since", async () => {
+  const { season, field, sync, again } = await aField();
+  season.date = "Sun, 22 Nov 2026 08:00:00 GMT";
+  field.clock = () => new Date("2026-11-22T17:00:00Z");
+  await field.tell("clean");
+  await field.refresh();
+  await field.tell("clean");
+  field.clock = () => new Date("2026-11-22T16:00:00Z");
+  await field.tell("clean");
+  const other = await again();
+  other.clock = () => new Date("2026-11-22T18:00:00Z");
+  await other.tell("clean");
+  await sync.send();
+  const said = [...season.taken.values()].map((one) => one.known_at?.slice(0, 16));
+  assert.deepEqual(said, [undefined, "2026-11-22T08:00", undefined, undefined]);
 });
 
 test("another season on the same phone does not mix with the first, whose records still go in", async () => {

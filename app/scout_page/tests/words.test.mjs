@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { chanceSaid, dayOf, speak } from "../src/words.js";
+import { chanceSaid, dayOf, say, speak } from "../src/words.js";
 
 const SAID = {
   en: ["Mon 16 Nov", "Sat 21 Nov", "Mon 21 Sep"],
@@ -17,6 +17,14 @@ for (const [language, said] of Object.entries(SAID)) {
     assert.deepEqual(["2026-11-16", "2026-11-21", "2026-09-21"].map((day) => dayOf(day, language)), said);
   });
 }
+
+test("words after a number are those of one or of more", async (t) => {
+  t.mock.method(globalThis, "fetch", async () => ({ json: async () => ({ progress: "{done} {done:hecha|hechas}, {left:queda|quedan} {left}" }) }));
+  globalThis.document = { documentElement: {} };
+  t.after(() => { delete globalThis.document; });
+  await speak("es");
+  assert.deepEqual([[1, 0], [0, 1], [2, 12]].map(([done, left]) => say("progress", { done, left })), ["1 hecha, quedan 0", "0 hechas, queda 1", "2 hechas, quedan 12"]);
+});
 
 test("no chance is said to be nothing or all", async (t) => {
   const words = { chance: "Chance {n} %", chance_least: "least", chance_most: "most" };

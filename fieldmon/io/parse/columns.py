@@ -46,7 +46,8 @@ _NAMES = {
     "aantal mitesperleaf tetranychus mitesleaf anzahlmilben milbenanzahl milbenzahl milben "
     "anzahlschädlinge anzahltiere numerodeacaros numeroacaros nacaros acaros conteodeacaros "
     "nombredacariens nombreacariens nbacariens acariens numerodiacari acari aantalmijten mijten "
-    "אקריות מספרהאקריות ספירתאקריות عدد العدد عددالاكاروسات عددالعناكب عددالافات",
+    "אקריות מספרהאקריות ספירתאקריות "
+    "عدد العدد كم howmany cuántos cuántas כמה عددالاكاروسات عددالعناكب عددالافات",
     "present": "occurrencestatus presence present presenceabsence pa detected detection infested "
     "infected positive severity befall result found status infestation presencia presente "
     "presenza présence vorhanden befallen nachweis presença "
@@ -65,10 +66,12 @@ _NAMES = {
     "block": "block blockname blockno blocknr blockid bloc blok bloque blocco bloco cuartel "
     "בלוק بلوك",
     "row": "row rowno rownumber rownr rowid reihe zeile fila hilera rang rangée rangee fileira "
-    "filare linha שורה מספרשורה vinerow line rij",
+    "filare linha שורה מספרשורה vinerow line rij صف الصف خط الخط",
     "plant": "plant plantno plantnumber plantid tree treeno treeid treenumber vine vineno vineid "
     "pflanze rebe baum planta arbol árbol cepa plante arbre cep pianta albero עץ שתיל צמח "
-    "מספרעץ מספרצמח col column quadrat position_in_row positioninrow",
+    "מספרעץ מספרצמח "
+    "نبتة النبتة نبات النبات شجرة الشجرة نخلة النخلة "
+    "col column quadrat position_in_row positioninrow",
     "name": "name plotname fieldname parcelname plot field parcel block title label nombre nom "
     "nome bezeichnung schlagname flurname lage naam parcela lote parcelle schlag שם שםחלקה שםשטח "
     "שםהחלקה חלקה uniqueid idparcel parcelid fieldid plotid",

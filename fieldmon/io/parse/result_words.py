@@ -29,15 +29,16 @@ aanwezig|gevonden|positief|besmet|aangetast|ziek
 oui|présent|présente|trouvé|trouvée|infesté|infestée|infecté|infectée|positif|positive|attaqué
 attaquée|atteint|atteinte|malade
 si|sí|presente|encontrado|encontrada|infestado|infestada|infectado|infectada|positivo|positiva
-plaga|enfermo|enferma|atacado|atacada|afectado|afectada
+plaga|con plaga|con plagas|hallado|hallada|se encontró
+enfermo|enferma|atacado|atacada|afectado|afectada
 sì|trovato|trovata|infestato|infestata|infetto|infetta|malato|malata|attaccato|attaccata|colpito
 sim|achado|doente|atacado|contaminado
 tak|obecny|obecne|zakażony|zaatakowany|dodatni
 evet|var|bulundu|pozitif|bulaşık|hasta
 да|есть|позитив|найдено|обнаружено|заражено|заражён|заражен|положительно|положительный
 ναι|βρέθηκε|θετικό|θετικός|προσβεβλημένο
-כן|נמצא|נמצאה|נגוע|נגועה|חיובי|חיובית|יש
-نعم|موجود|مصاب|مصابة|إيجابي|ايجابي|وجد
+כן|נמצא|נמצאה|נמצא נגוע|נמצאה נגועה|נגוע|נגועה|חיובי|חיובית|יש
+نعم|موجود|مصاب|مصابة|إيجابي|ايجابي|وجد|وجدت|وُجد|وُجدت|وجدت مصابة|وُجدت مصابة|وجد مصابا
 हाँ|हां|पाया गया|संक्रमित|सकारात्मक
 有|是|阳性|陽性|发现|發現|感染|あり|はい
 +|++|+++|✓|✔|☑|●
@@ -77,9 +78,15 @@ hayır|hayir|yok|temiz|sağlıklı|negatif|bulunamadı
 _NOT_INSPECTED = """
 not inspected|uninspected|could not inspect|cannot inspect|not visited|ni|n/i|skip|skipped|missed
 not done|no access|nicht geprüft|ausgelassen|nicht kontrolliert|niet gecontroleerd
+could not be inspected|unable to inspect
+no se pudo|no se pudo inspeccionar|no se puede inspeccionar|no se ha podido inspeccionar
+no fue posible inspeccionar|omitido|omitida|saltada
 no inspeccionado|no inspeccionada|sin inspeccionar|saltado|non inspecté|non inspectée
 non ispezionato|não inspecionado|nie sprawdzono|kontrol edilmedi|не проверено
-לא נבדק|לא נבדקה|דולג|لم يفحص|未检查
+לא נבדק|לא נבדקה|דולג|לא ניתן|לא ניתן לבדיקה|לא ניתן לבדוק
+לא ניתן היה לבדוק|אי אפשר לבדוק|לא נבדקו
+لم يفحص|لم تفحص|لم يُفحص|لم تُفحص|تعذر|تعذّر|تعذر الفحص|تعذّر الفحص|تعذر فحصها|تعذّر فحصها|لم يمكن الفحص
+تخطيت|تُخطّيت|未检查
 """
 #: what the note of a skipped plant begins with if it does not stand there any more
 GONE = "gone"

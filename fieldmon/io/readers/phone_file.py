@@ -148,6 +148,7 @@ def fields_of(said: Mapping[str, Any]) -> dict[str, Any]:
         "accuracy_m": said.get("accuracy_m"),
         "on": day(said.get("on")),
         "after": moment(said["after"]) if said.get("after") else None,
+        "known_at": moment(said["known_at"]) if said.get("known_at") else None,
         "off_route": said.get("off_route", False),
         "undoes": said.get("undoes", ""),
         "detects": _chance(said.get("detects")),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from fieldmon.compute.wording import PAPER_IN_ENGLISH, PaperLanguage
 from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.local_clock import grid_clock
 
@@ -188,6 +189,8 @@ class RouteNotes:
     ahead
         Returns how many plants are infested on the next mornings, asked by GeoJSON alone (a second
         of work on a large plot); None: it is not known.
+    language
+        In which a sheet to print is written.
     """
 
     plot: str
@@ -195,6 +198,7 @@ class RouteNotes:
     start: datetime | None = None
     who: str | None = None
     ahead: Callable[[], Forecast] | None = None
+    language: PaperLanguage = PAPER_IN_ENGLISH
 
 
 @dataclass(frozen=True, eq=False)

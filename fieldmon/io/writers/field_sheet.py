@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 from markupsafe import Markup
 
-from fieldmon.compute.wording import counted
+from fieldmon.compute.wording import Worded, counted, worded
 from fieldmon.io.html import page
 from fieldmon.io.writers.day_file import plain_text
 from fieldmon.io.writers.geojson import summary
@@ -24,6 +24,24 @@ if TYPE_CHECKING:
     from fieldmon.io.writers.day_file import HandoffPlan
 
     Float = NDArray[np.float64]
+
+#: what is printed beside the plants; those of results are read where the sheet is typed in
+WORDS = {
+    "map": worded("map"),
+    "by": worded("Inspected by:"),
+    "on": worded("on:"),
+    "tick": worded("Tick one:"),
+    "clean": worded("clean"),
+    "found": worded("found"),
+    "skipped": worded("could not inspect"),
+    "count": worded("Of finds write how many."),
+    "gone": worded("Write gone if dead or missing."),
+    "none": worded("No tick: not inspected."),
+    "row": worded("row"),
+    "plant": worded("plant"),
+    "time": worded("time"),
+    "how_many": worded("how many"),
+}
 
 _WIDE_MM, _HIGH_MM = 186.0, 88.0
 _MARGIN_MM = 5.0
@@ -56,20 +74,30 @@ def route_sheet(plan: HandoffPlan) -> bytes:
     A route has a page of its own, which holds about a hundred plants; a longer one goes on on the
     next, no plant's line cut in two. A thick line parts the rows.
     """
-    figures = summary(plan.route, plan.notes)
-    when = "" if plan.notes.start is None else f"{plan.notes.start:%Y-%m-%d}"
-    hours = f"{figures['seconds'] / 3600:.1f} h"
-    if when:
-        hours += f" ({plan.clock(0.0)[11:16]} to {plan.clock(plan.route.end_s)[11:16]})"
-    told = f"{counted(figures['stops'], 'plant')}, {figures['drive_m'] / 1000:.2f} km, {hours}."
+    start, language = plan.notes.start, plan.notes.language
+    told = [_figures(plan), plan.bound]
     return page(
         "fieldmon/io/writers/field_sheet.html.j2",
         plan=plan,
         plot=plain_text(plan.notes.plot),
-        date=when,
-        told=f"{told} {plan.bound}".strip(),
+        date="" if start is None else f"{start:%Y-%m-%d}",
+        told=" ".join(language.say(one) for one in told if one),
+        words={name: language.say(said) for name, said in WORDS.items()},
         map=_svg(plan),
     ).encode()
+
+
+def _figures(plan: HandoffPlan) -> Worded:
+    figures = summary(plan.route, plan.notes)
+    said = {
+        "plants": counted(figures["stops"], "plant"),
+        "drive": figures["drive_m"] / 1000,
+        "hours": figures["seconds"] / 3600,
+    }
+    if plan.notes.start is None:
+        return worded("{plants}, {drive:.2f} km, {hours:.1f} h.", **said)
+    times = {"start": plan.clock(0.0)[11:16], "end": plan.clock(plan.route.end_s)[11:16]}
+    return worded("{plants}, {drive:.2f} km, {hours:.1f} h ({start} to {end}).", **said, **times)
 
 
 def _svg(plan: HandoffPlan) -> Markup:
@@ -78,13 +106,14 @@ def _svg(plan: HandoffPlan) -> Markup:
     rows = "".join(_path(placed(line)) for line in row_corners(grid))
     line = _path(placed(plan.route.line_m)) if len(plan.route.line_m) > 1 else ""
     return Markup(
-        '<svg viewBox="0 0 {:.1f} {:.1f}" role="img" aria-label="map">'
+        '<svg viewBox="0 0 {:.1f} {:.1f}" role="img" aria-label="{}">'
         '<path d="{}" fill="#f4f4ee" stroke="#888" stroke-width="0.3" fill-rule="evenodd"/>'
         '<path d="{}" fill="none" stroke="#9c9" stroke-width="0.4" stroke-linecap="round"/>'
         '<path d="{}" fill="none" stroke="#c50" stroke-width="0.35" stroke-linejoin="round"/>'
         "{}{}{}{}</svg>"
     ).format(
         *size,
+        plan.notes.language.say(WORDS["map"]),
         *(_area(plan, placed), rows, line),
         *(_row_numbers(plan, placed), _marks(plan, placed)),
         *(_north(plan, placed, size), _scale_bar(placed.scale, size)),

@@ -55,3 +55,15 @@ def test_a_new_format_is_offered_without_a_line_in_the_app(plan, monkeypatch):
     assert next(iter(offered)) == "gpx"  # the commonest first
     assert offered["new"] == "whoever reads new files: new"
     assert told == ["Download for whoever reads new files"]
+
+
+def test_a_sheet_to_print_is_in_the_language_of_the_app(monkeypatch, speaking):
+    handed = []
+    monkeypatch.setattr(handing_out, "_show_address", lambda: None)
+    monkeypatch.setattr(handing_out, "_files", lambda _, plan: handed.append(plan))
+    choices = chosen(a_plot())
+    speaking("he")
+    handing_out.show(choices, choices.plan())
+    page = made(FORMATS["sheet"], handed[0]).decode()
+    assert '<html lang="he" dir="rtl"' in page
+    assert "<th>שורה</th>" in page

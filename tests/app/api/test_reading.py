@@ -32,7 +32,7 @@ def test_what_a_phone_tells_comes_out_as_it_was_told():
         {"at": "2026-13-06T06:00:00Z"}, {"at": "0001-01-01T00:00:00Z"}, {"plant": -1},
         {"plant": 1.5}, {"plant": 10**12}, {"plant": "3"}, {"result": "maybe"}, {"count": -1},
         {"lon": 181}, {"lat": -91}, {"notes": "x" * 2001}, {"on": "2026-02-30"}, {"more": 1},
-        {"undoes": "x"}, {"leaves": "many"}, {"after": "now"},
+        {"undoes": "x"}, {"leaves": "many"}, {"after": "now"}, {"known_at": "now"},
     ],
     ids=str,
 )  # fmt: skip
@@ -96,5 +96,7 @@ def test_who_asks_for_the_rest_may_say_the_day_and_the_hours():
 
 
 def test_a_clock_that_an_empty_battery_set_to_1970_is_read():
-    (read,), _ = reading.findings(sent(at="1970-01-01T00:00:07.123Z", after=GOOD["at"]))
-    assert (read.at.year, read.after.year) == (1970, 2026)
+    (read,), _ = reading.findings(
+        sent(at="1970-01-01T00:00:07.123Z", after=GOOD["at"], known_at=GOOD["at"])
+    )
+    assert (read.at.year, read.after.year, read.known_at.year) == (1970, 2026, 2026)

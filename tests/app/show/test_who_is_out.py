@@ -61,6 +61,8 @@ def test_a_time_of_another_day_names_it(choices):
     at = choices.clock.moment(BEGINS, datetime(2026, 4, 6, 7, 30).time())
     assert who_is_out._clock(choices, at) == "07:30"
     assert who_is_out._clock(choices, at + timedelta(days=1)) == "Tue 7 Apr 07:30"
+    choices.is_today = False  # the day shown is over, or to come
+    assert who_is_out._clock(choices, at) == "Mon 6 Apr 07:30"
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,37 @@ from app.words import language, texts
 from app.words.units import UnitsInLanguage
 from fieldmon.compute.wording import counted, figure, joined, worded
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 from fieldmon.io.formats.signatures import kind_of
+from fieldmon.io.options import Upload
+from fieldmon.io.parse.result_words import is_gone
+from fieldmon.io.readers.inspection_file.columns import is_own
+from fieldmon.io.readers.inspections import read_inspections
+from fieldmon.io.writers.field_sheet import WORDS
+from fieldmon.plot.layout import rectangle
 from fieldmon.reports import words
+
+
+@pytest.mark.parametrize("code", language.LANGUAGES)
+def test_a_sheet_that_was_typed_in_as_it_was_printed_is_read(code, speaking):
+    speaking(code)
+    say, grid = language.for_reports(code).say, rectangle(2, 5)
+    heads = [say(WORDS[name]) for name in ("row", "plant", "time", "how_many")]
+    printed = [[say(WORDS[name]) for name in ("clean", "found", "skipped")]]
+    # what the app, its reports and the phone call results
+    printed += [[str(texts.HISTORY_RESULTS[k]) for k in range(3)]]
+    printed += [[str(texts.SCOUT_PAGE[name]) for name in ("clean", "found", "skipped")]]
+    printed += [[say(one) for one in [*words.RESULTS.values()][:3]]]
+    for said in printed:
+        lines = [f"1,{n},10:0{n},{one},{'3' * (n == 2)}" for n, one in enumerate(said, 1)]
+        text = "\n".join([",".join([*heads[:3], "result", heads[3]]), *lines])
+        read = read_inspections(Upload("sheet.csv", text.encode()), grid).value
+        assert read.plant.tolist() == [0, 1, 2], said
+        assert read.result.tolist() == [CLEAN, FOUND, SKIPPED], said
+        assert read.count[1] == 3
+    assert is_own("time", heads[2])
+    gone = say(WORDS["gone"]).replace(".", "").replace(",", "")
+    assert any(is_gone(word) for word in gone.split())
 
 
 def test_a_text_is_read_in_the_language_that_is_spoken(speaking):
@@ -25,6 +54,13 @@ def test_a_count_takes_the_form_that_the_language_asks_for(speaking):
     speaking("ar")
     said = [texts.PLOTS_TITLE.format(n=n) for n in (1, 2, 5, 12, 100)]
     assert said == ["قطعة واحدة", "قطعتان", "5 قطع", "12 قطعة", "100 قطعة"]
+
+
+def test_a_second_count_of_a_text_takes_its_own_form(speaking):
+    speaking("es")
+    said = [texts.CHANGED_FINDS.format(found=n, inspected=5, day="hoy") for n in (1, 2)]
+    assert [one.partition(" en ")[0] for one in said] == ["1 hallazgo", "2 hallazgos"]
+    assert texts.OUT_DONE.format(done=1, all=9) == "1 de 9 registrada"
 
 
 def test_numbers_in_a_text_are_written_as_in_the_language(speaking):

@@ -1,13 +1,15 @@
 """The field sheet for paper: every plant in order with its boxes, a map true to scale."""
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from fieldmon.io.writers import write_handoff
-from fieldmon.io.writers.field_sheet import _map_of, _marks, _row_numbers, _scale_bar
+from fieldmon.compute.wording import PaperLanguage
+from fieldmon.io.writers import HandoffPlan, write_handoff
+from fieldmon.io.writers.field_sheet import WORDS, _map_of, _marks, _row_numbers, _scale_bar
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from tests.io.writers.handed import DAYS, START, crooked, day, long, usual
@@ -39,7 +41,7 @@ def test_every_plant_stands_in_order_with_three_boxes(tmp_path, plan):
     assert plants == plan.route.plant.tolist()
     # those of the legend, and those of each plant
     assert len(sheet.all("i")) == BOXES * (1 + len(plants))
-    assert "write gone if dead or missing" in sheet.text
+    assert "Write gone if dead or missing." in sheet.text
 
 
 def test_a_thick_line_stands_over_each_new_row_of_plants(tmp_path, plan):
@@ -56,6 +58,20 @@ def test_the_head_says_plot_day_plants_and_hours(tmp_path):
     ends = plan.clock(plan.route.end_s)[11:16]
     assert f"{len(plan.route)} plants, {plan.route.drive_m / 1000:.2f} km" in sheet.text
     assert f"(07:30 to {ends})" in sheet.text
+
+
+def test_a_sheet_is_written_in_its_language_and_from_its_side(tmp_path):
+    plan = usual()
+    spoken = PaperLanguage("he", lambda said: f"<{said}>", right_to_left=True)
+    notes = replace(plan.notes, language=spoken)
+    sheet, _ = sheet_of(HandoffPlan(plan.route, notes), tmp_path)
+    (head,) = sheet.all("html")
+    assert (head["lang"], head["dir"]) == ("he", "rtl")
+    for said in WORDS.values():
+        assert f"<{said}>" in sheet.text or said == WORDS["map"]
+    assert [one["aria-label"] for one in sheet.all("svg")] == ["<map>"]
+    (english,) = sheet_of(plan, tmp_path)[0].all("html")
+    assert (english["lang"], english["dir"]) == ("en", "ltr")
 
 
 def test_the_sheet_asks_for_nothing_from_outside(tmp_path, plan):

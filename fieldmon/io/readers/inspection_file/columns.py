@@ -28,7 +28,7 @@ _NAMES = {
     # a running number where there is a better one
     "ordinal": "no nr num nummer numero numéro número מספר",
     "time": "time hour when timestamp datetime inspected inspectedat visited visitedat zeit "
-    "uhrzeit zeitpunkt hora heure ora שעה זמן",
+    "uhrzeit zeitpunkt hora heure ora שעה זמן وقت الوقت الساعة",
     "who": "who scout inspector observer recordedby surveyor user username operator by wer "
     "prüfer kontrolleur quién quien inspecteur בודק פקח שםהבודק מי",
     "notes": "notes note remark remarks comment comments bemerkung bemerkungen notiz kommentar "

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import astuple
+from math import isfinite
 from time import monotonic
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar
 
@@ -28,11 +29,11 @@ class StudyOutcome(Protocol):
     Attributes
     ----------
     columns, kinds
-        What its columns are called in files, and what their values are.
+        What its columns are called in files, and what reads their values: `ValueError` for none.
     """
 
     columns: ClassVar[tuple[str, ...]]
-    kinds: ClassVar[tuple[type[Any], ...]]
+    kinds: ClassVar[tuple[Callable[[str], Any], ...]]
 
     @property
     def key(self) -> Hashable:
@@ -41,6 +42,20 @@ class StudyOutcome(Protocol):
 
 
 Row = TypeVar("Row", bound=StudyOutcome)
+
+
+def finite(cell: str) -> float:
+    """Return a number that is one; raise `ValueError` for nan and infinity.
+
+    Examples
+    --------
+    >>> finite("2.5")
+    2.5
+    """
+    value = float(cell)
+    if not isfinite(value):
+        raise ValueError(cell)
+    return value
 
 
 class OutcomeTable(Generic[Row]):

@@ -35,7 +35,9 @@ def test_another_table_is_refused(text):
         outcomes_from(text, "samplers.csv", SeasonOutcome)
 
 
-@pytest.mark.parametrize("line", ["A,0,naive,x,2,3,4,5,6.5", "A,0,naive,1", "A,0,na\ufffd"])
+@pytest.mark.parametrize(
+    "line", ["A,0,naive,x,2,3,4,5,6.5", "A,0,naive,nan,2,3,4,5,6", "A,0,naive,1", "A,0,na\ufffd"]
+)
 def test_a_line_that_was_changed_or_cut_is_named(line):
     text = csv_text(outcomes("A", 0), SeasonOutcome) + line
     with pytest.raises(FileProblem, match=r"^Line 4 of samplers\.csv must hold cell, seed, .*cut"):

@@ -64,8 +64,8 @@ _NAMES = {
     "row": "row rowno rownumber rownr rowid reihe zeile fila hilera rang rangée rangee fileira "
     "filare linha שורה מספרשורה vinerow line rij",
     "plant": "plant plantno plantnumber plantid tree treeno treeid treenumber vine vineno vineid "
-    "pflanze rebe baum planta arbol árbol cepa plante arbre cep pianta albero עץ שתיל צמח "
-    "מספרעץ מספרצמח col column quadrat position_in_row positioninrow",
+    "pflanze rebe baum planta arbol árbol cepa plante arbre cep pied souche pianta albero עץ "
+    "שתיל צמח מספרעץ מספרצמח col column quadrat position_in_row positioninrow",
     "name": "name plotname fieldname parcelname plot field parcel block title label nombre nom "
     "nome bezeichnung schlagname flurname lage naam parcela lote parcelle schlag שם שםחלקה שםשטח "
     "שםהחלקה חלקה uniqueid idparcel parcelid fieldid plotid",

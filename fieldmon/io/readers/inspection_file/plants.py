@@ -91,6 +91,7 @@ def positions_in(
     is_named = columns.plant is not None or columns.number is not None
     if not given and (is_named or not roles >= {"x", "y"}):
         if not is_named:
+            taken = {columns.line, columns.result, columns.number_found}
             raise ChoiceNeeded(
                 worded(
                     "{name} must say which plants were inspected (a plant's "
@@ -100,7 +101,7 @@ def positions_in(
                     names=", ".join(layer.columns),
                 ),
                 "columns",
-                tuple(f"plant={name}" for name in layer.columns)
+                tuple(f"plant={name}" for name in layer.columns if name not in taken)
                 + could_be_positions(layer, options),
             )
         return lonlat, accuracy_m, unread, ()

@@ -11,7 +11,7 @@ import typer
 from fieldmon.errors import FileProblem
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
     from pathlib import Path
 
 
@@ -31,6 +31,14 @@ def can_be_folder(output: Path) -> None:
         raise FileProblem(f"{output} must be a folder, but {there} is a file. Choose another one.")
     if not os.access(there, os.W_OK | os.X_OK):
         raise FileProblem(f"{there} must be a folder that you may write to, but you may not.")
+
+
+def tell_not_read(folder: Path, public: Collection[str]) -> None:
+    """Say which tables of a folder of maps are not read; `public` are the public maps that are."""
+    from fieldmon.studies.plant_maps import not_read
+
+    if said := not_read(folder, public):
+        typer.echo(said, err=True)
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import StudySeed
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.progress import counting
-from fieldmon.cli.study_output import can_be_folder, write_all
+from fieldmon.cli.study_output import can_be_folder, tell_not_read, write_all
 from fieldmon.compute.ranges import SEASONS
 from fieldmon.errors import SettingError
 
@@ -113,7 +113,7 @@ def _as_published(options: PriorOptions, choices: OpenChoices) -> None:
 def _on_maps(folder: Path, options: PriorOptions) -> None:
     """Run the samplers on mapped plants."""
     from fieldmon.plot.robot import Robot
-    from fieldmon.studies.plant_maps import read_plant_maps
+    from fieldmon.studies.plant_maps import PUBLIC_MAPS, read_plant_maps
     from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
     from fieldmon.studies.thesis.chapter5.mapped_plots import MapRules, run_maps
     from fieldmon.studies.thesis.chapter5.report import maps_html
@@ -121,6 +121,7 @@ def _on_maps(folder: Path, options: PriorOptions) -> None:
 
     rules = MapRules(Robot().with_times("thesis"), CALIBRATED.spread)
     maps = read_plant_maps(folder)
+    tell_not_read(folder, tuple(PUBLIC_MAPS))
     with counting("Inspecting") as count:
         table = run_maps(maps, rules, options.seeds, options.seed, count)
     for row in table:

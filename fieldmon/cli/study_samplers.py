@@ -15,7 +15,7 @@ from fieldmon.cli.options import VisitEvery
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import OWN
-from fieldmon.cli.study_output import can_be_folder, going_on, write_all
+from fieldmon.cli.study_output import can_be_folder, going_on, tell_not_read, write_all
 from fieldmon.compute.ranges import PAIRED
 from fieldmon.errors import SettingError
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 # names of scenarios that a sentence has room for
 _NAMED = 5
+_SEEDS = 10
 
 
 @dataclass(frozen=True)
@@ -37,8 +38,13 @@ class SamplersOptions:
     """What `fieldmon study samplers` is told."""
 
     seeds: Annotated[
-        int, typer.Option(help="Simulated seasons per scenario.", callback=within(PAIRED))
-    ] = 10
+        int | None,
+        typer.Option(
+            help="Simulated seasons per scenario.",
+            callback=within(PAIRED),
+            show_default=str(_SEEDS),
+        ),
+    ] = None
     full: Annotated[
         bool,
         typer.Option(
@@ -112,6 +118,13 @@ def samplers(options: SamplersOptions) -> None:
         raise SettingError("--visit-every goes without --maps and --tune: both know daily visits.")
     if options.sampler and options.tune:
         raise SettingError("--sampler goes without --tune, which tries Dynamic alone.")
+    if options.maps is not None and (
+        options.seeds is not None or options.scenario or options.full or options.tune
+    ):
+        raise SettingError(
+            "--maps goes without --seeds, --scenario, --full and --tune: a map is inspected once "
+            "from each corner, and nothing is drawn."
+        )
     if options.maps is not None:
         _on_maps(options.maps, options.output, options.sampler or ())
         return
@@ -122,7 +135,7 @@ def samplers(options: SamplersOptions) -> None:
     meant = _scenarios(options.scenario, pest_in_weather_of(options.pest), full=options.full)
     meant = [replace(each, visit_every=options.visit_every) for each in meant]
     more = added(options.sampler or ())
-    shown = _outcomes(meant, options.seeds, more, table)
+    shown = _outcomes(meant, options.seeds or _SEEDS, more, table)
     for sentence in (*ratio_lines(shown), *sentences(shown)):
         typer.echo(sentence)
     typer.echo(f"Written: {table}")
@@ -218,6 +231,7 @@ def _on_maps(folder: Path, output: Path, samplers: Sequence[str]) -> None:
     """Print and write how many infested plants an inspection finds on mapped plots."""
     from fieldmon.studies.samplers.contenders import added
     from fieldmon.studies.samplers.mapped_plots import (
+        FILES,
         SHARES,
         WHO,
         plots_in,
@@ -227,16 +241,19 @@ def _on_maps(folder: Path, output: Path, samplers: Sequence[str]) -> None:
     )
 
     plots, rows, more = plots_in(folder), [], added(samplers, to=WHO)
+    tell_not_read(folder, FILES)
     after = _columns(SHARES, "{:6.0%}")
     typer.echo(f"{'Infested plants found after':44} {'':9} {after}  {after}")
     typer.echo(f"{'':44} {'':9} {'per inspection':27}  per hour")
     for plot in plots:
         of_plot = table([plot], more)
         for row in of_plot:
-            named = f"{row.name} (neighbours {row.correlation:.2f})"
+            named = f"{row.name} (neighbours {row.correlation:.2f})".replace("nan", "-")
             found = _columns(row.per_inspection, "{:6.2f}")
             typer.echo(f"{named:44} {row.who:9} {found}  {_columns(row.per_hour, '{:6.1f}')}")
         rows += of_plot
+        if plot.unknown:
+            typer.echo(f"{plot.name}: {plot.unknown} plants of unknown state left out")
     for sentence in sentences(rows):
         typer.echo(sentence)
     write_all(output, {"maps.csv": table_csv(rows)})

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from fieldmon.cli.study_output import tell_not_read
+
 
 def spread(
     folder: Annotated[
@@ -24,7 +26,9 @@ def spread(
 
     Example: fieldmon study spread maps
     """
-    from fieldmon.studies.map_spread import intervals_in, scores
+    from fieldmon.studies.map_spread import DATED, intervals_in, scores
 
-    for each in intervals_in(folder):
+    intervals = intervals_in(folder)
+    tell_not_read(folder, DATED)
+    for each in intervals:
         typer.echo(scores(each).sentence())

@@ -11,7 +11,7 @@ import typer
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.progress import counting
-from fieldmon.cli.study_output import can_be_folder, going_on
+from fieldmon.cli.study_output import can_be_folder, going_on, tell_not_read
 from fieldmon.compute.ranges import PAIRED
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ def verdicts(
     from fieldmon.simulation import executor
     from fieldmon.simulation.experiment import run
     from fieldmon.studies.outcome_table import OutcomeTable
+    from fieldmon.studies.samplers.mapped_plots import FILES
     from fieldmon.studies.verdicts.until_verdict import (
         VerdictOutcome,
         real_questions,
@@ -61,6 +62,8 @@ def verdicts(
     can_be_folder(output)
     pest_in_weather = pest_in_weather_of(pest)
     real, left = ([], []) if maps is None else real_questions(maps)
+    if maps is not None:
+        tell_not_read(maps, FILES)
     if left:
         typer.echo(
             f"Left out: {', '.join(left)}. Only maps are asked about of which between 0.5 % and "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,13 +48,15 @@ class MapVerdict:
         Share of plants infested as expected, and the interval that holds it with `sure`.
     sure
         How sure a verdict must be.
+    inspected
+        Whether anybody has inspected; else the verdict is to look on, whatever was told before.
 
     Examples
     --------
     >>> import fieldmon as fm
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> fm.Monitor(plot).verdict(level=0.05).verdict
-    'do not treat'
+    'look on'
     """
 
     verdict: Verdict
@@ -64,6 +66,11 @@ class MapVerdict:
     low: float
     high: float
     sure: float
+    inspected: bool = True
+
+    def where(self, *, inspected: bool) -> MapVerdict:
+        """Return it where anybody has inspected, or nobody: then there is no verdict yet."""
+        return self if inspected else replace(self, verdict=LOOK_ON, inspected=False)
 
     @property
     def wrong(self) -> float:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.options import Upload, source_name
 from fieldmon.io.packaged import packaged_table, pest_names
 from fieldmon.io.parse.own_table import own_table
-from fieldmon.io.parse.values import told_number
+from fieldmon.io.parse.values import decimal_mark, number, told_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -220,14 +220,21 @@ def threshold_of(said: str, known: Iterable[Threshold] | None = None) -> Thresho
             pass
         else:
             return Threshold(said, "share of plants", share)
-    raise SettingError(
-        worded(
-            "An action threshold must be a share of the plants, as 5%, or one of {names}; but "
-            "it is {said!r}.",
-            names=", ".join(options),
-            said=said,
-        )
+    rule = worded(
+        "An action threshold must be a share of the plants, as 5%, or one of {names}; but "
+        "it is {said!r}.",
+        names=", ".join(options),
+        said=said,
     )
+    raise SettingError(joined(" ", (rule, *_meant(said))))
+
+
+def _meant(said: str) -> list[str]:
+    """Return in a question which share a number alone may mean; nothing where it is none."""
+    value = number(said, decimal_mark([said]) or ".")
+    if not 0.0 < value < 100.0:
+        return []
+    return [worded("Did you mean {percents:g}%?", percents=value if value >= 1.0 else 100 * value)]
 
 
 def _read(where: str, row: Mapping[str, str]) -> Threshold:

@@ -5,11 +5,20 @@ from __future__ import annotations
 import os
 import secrets
 import sqlite3
-from contextlib import closing, suppress
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
+
+try:
+    import fcntl
+except ImportError:  # Windows: nobody waits
+    fcntl = None  # type: ignore[assignment]
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 #: SQLite's codes where another connection holds a database
 HELD = frozenset({sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED})
@@ -81,6 +90,21 @@ def write_whole(path: str | Path, data: bytes) -> None:
     finally:
         with suppress(OSError):
             half.unlink(missing_ok=True)
+
+
+@contextmanager
+def others_waiting(folder: Path) -> Iterator[None]:
+    """Have whoever calls this for the same folder wait: to read a file, and write it with more."""
+    holding = -1
+    try:
+        if fcntl is not None:
+            with suppress(OSError):  # some file systems hold nothing
+                holding = os.open(folder, os.O_RDONLY)
+                fcntl.flock(holding, fcntl.LOCK_EX)
+        yield
+    finally:
+        if holding >= 0:
+            os.close(holding)
 
 
 def why_not_written(error: Exception) -> str:

@@ -360,7 +360,15 @@ class Advice:
             "Treat: the plot is above the threshold, though by these costs it pays nowhere."
         )
 
+    def before_inspections(self) -> Advice:
+        """Return it where nobody has inspected yet: neither the plot nor a zone has a verdict."""
+        zones = tuple(one.where(inspected=False) for one in self.said.zones)
+        plot = self.plot.where(inspected=False)
+        return replace(self, plot=plot, said=replace(self.said, zones=zones), more=None)
+
     def _look_on(self) -> str:
+        if not self.plot.inspected:
+            return worded("Keep inspecting before you decide: nobody has inspected yet.")
         more = self.more or MoreInspections(None, None)
         if more.if_clean is not None:
             return worded(

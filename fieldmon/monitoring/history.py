@@ -301,6 +301,12 @@ class History:
         """Return the inspections up to the evening of a day."""
         return self.inspections.take(slice(0, np.searchsorted(self.days, day + 1)))
 
+    def inspected(self, day: int) -> NDArray[np.int32]:
+        """Return the plants inspected until the end of a day, some perhaps often."""
+        done = self.until(day)
+        plants: NDArray[np.int32] = done.plant[done.result != SKIPPED]
+        return plants
+
     def night_after(self, morning: Belief, day: int) -> Belief:
         """Return what is believed the next morning, from what was on the morning of a day."""
         return self.evening(morning, day).overnight(self.night(day))

@@ -294,7 +294,8 @@ class Monitor:
         sure
             How likely the answer must be to be right.
         """
-        return verdict_of(self.plot.grid, self._told, level, sure, self._left)
+        said = verdict_of(self.plot.grid, self._told, level, sure, self._left)
+        return said.where(inspected=bool((self._last_inspected != NEVER).any()))
 
     @checked
     def forecast(self, nights: int = NIGHTS) -> Forecast:

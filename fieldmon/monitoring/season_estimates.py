@@ -102,7 +102,8 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             evening = contents.history.in_hindsight(morning, day)
         found = contents.history.found_and_left(evening, day)
-        return verdict_of(contents.history.grid, evening, level, sure, found, plants=plants)
+        said = verdict_of(contents.history.grid, evening, level, sure, found, plants=plants)
+        return said.where(inspected=len(contents.history.inspected(day)) > 0)
 
     def advice(self, on: date, asked: AdviceSettings | None = None) -> Advice:
         """Return whether to treat after a day's work, where, and how many looks decide.
@@ -123,12 +124,14 @@ class SeasonEstimates(OpenSeason):
         history, asked = contents.history, asked or AdviceSettings()
         done = tuple(one for one in history.treatments if one.day == day)
         found = history.found_and_left(evening, day)
+        inspected = history.inspected(day)
+        if not len(inspected):
+            made = advice(history.grid, evening, asked, None, done, found).before_inspections()
+            return replace(made, not_reached=NotReached.of(history.grid, inspected))
         made = advice(history.grid, evening, asked, scene, done, found)
         if made.verdict != LEAVE:
             return made
         ahead = history.forecast(morning, day)  # others may plan meanwhile
-        done_until = history.until(day)
-        inspected = done_until.plant[done_until.result != SKIPPED]
         return replace(
             made,
             again=InspectAgain.of(ahead, on, asked.level * len(history.grid)),

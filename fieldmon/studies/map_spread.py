@@ -64,7 +64,10 @@ class Interval(NamedTuple):
     half
         ``(n,)`` which half of the plot each plant is in.
     earlier
-        Who was infested before and after each earlier interval of the map.
+        Earlier intervals of the map.
+    unknown
+        ``(n,)`` whose state nobody knows on one of the dates, or who stood there on neither; None:
+        all are known.
     """
 
     name: str
@@ -72,11 +75,13 @@ class Interval(NamedTuple):
     before: Mask
     after: Mask
     half: Mask
-    earlier: tuple[tuple[Mask, Mask], ...] = ()
+    earlier: tuple[Interval, ...] = ()
+    unknown: Mask | None = None
 
-    def as_of(self, before: Mask, after: Mask) -> Interval:
-        """Return another interval of the same map."""
-        return self._replace(before=before, after=after, earlier=())
+    @property
+    def clean(self) -> Mask:
+        """Return who was known to be clean before, and of whom it is known after ``(n,)``."""
+        return ~self.before if self.unknown is None else ~(self.before | self.unknown)
 
 
 @dataclass(frozen=True)
@@ -89,6 +94,8 @@ class MapScores:
         Map and dates.
     clean, new
         Plants that were clean, and that were infested by the second date.
+    unknown
+        Plants that are left out, as nobody knows their state on one of the dates.
     no_change
         Nothing happens.
     evenly
@@ -112,6 +119,7 @@ class MapScores:
     kernel: float
     weighed: float
     reach: tuple[float, float]
+    unknown: int = 0
 
     def sentence(self) -> str:
         """Return them in words."""
@@ -120,6 +128,7 @@ class MapScores:
             f"{self.no_change:.3f}, evenly {self.evenly:.3f}, the thesis's rule {self.thesis:.3f}, "
             f"kernel {self.kernel:.3f} (mean jump {self.reach[0]:g} and {self.reach[1]:g} plants), "
             f"kernels weighed {self.weighed:.3f}"
+            + (f"; {self.unknown} plants of unknown state left out" if self.unknown else "")
         )
 
 
@@ -143,22 +152,21 @@ def _intervals(of: PlantMap) -> list[Interval]:
     made: list[Interval] = []
     for k in range(len(of.dates) - 1):
         before, after = of.infested[k], of.infested[k + 1]
-        new, clean = np.count_nonzero(after & ~before), np.count_nonzero(~before)
+        name, known = f"{of.name} {of.dates[k]} to {of.dates[k + 1]}", of.known[k] & of.known[k + 1]
+        one = Interval(name, grid, before, after, half, tuple(made), ~known)
+        new, clean = np.count_nonzero(after & one.clean), np.count_nonzero(one.clean)
         if new >= _FEW and clean - new >= _FEW and before.any():
-            name = f"{of.name} {of.dates[k]} to {of.dates[k + 1]}"
-            earlier = tuple((one.before, one.after) for one in made)
-            made.append(Interval(name, grid, before, after, half, earlier))
+            made.append(one)
     return made
 
 
 def scores(of: Interval) -> MapScores:
     """Return how well each way of spreading foretells an interval."""
-    clean = ~of.before
+    clean = of.clean
     total, reaches, ways = dict.fromkeys(_WAYS, 0.0), [], _ways(of)
     before = np.zeros(1 + _N_KERNELS)
-    for then in of.earlier:
-        past = of.as_of(*then)
-        before += [one.evidence for one in _fits(past, _ways(past), ~past.before)]
+    for past in of.earlier:
+        before += [one.evidence for one in _fits(past, _ways(past), past.clean)]
     for half in (False, True):
         told, asked = (clean & (of.half == side) for side in (half, not half))
         each = _fits(of, ways, told)
@@ -176,7 +184,9 @@ def scores(of: Interval) -> MapScores:
     n = np.count_nonzero(clean)
     scored = {name: one / n for name, one in total.items()}
     new = int(np.count_nonzero(of.after & clean))
-    return MapScores(of.name, int(n), new, **scored, reach=(reaches[0], reaches[1]))
+    unknown = 0 if of.unknown is None else int(np.count_nonzero(of.unknown))
+    reach = reaches[0], reaches[1]
+    return MapScores(of.name, int(n), new, **scored, reach=reach, unknown=unknown)
 
 
 class _Fit(NamedTuple):

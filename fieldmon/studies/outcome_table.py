@@ -5,11 +5,12 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import astuple
+from math import isfinite
 from time import monotonic
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar
 
 from fieldmon.errors import FileProblem
-from fieldmon.io.atomic_write import write_whole
+from fieldmon.io.atomic_write import others_waiting, write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterable, Sequence
@@ -28,11 +29,11 @@ class StudyOutcome(Protocol):
     Attributes
     ----------
     columns, kinds
-        What its columns are called in files, and what their values are.
+        What its columns are called in files, and what reads their values: `ValueError` for none.
     """
 
     columns: ClassVar[tuple[str, ...]]
-    kinds: ClassVar[tuple[type[Any], ...]]
+    kinds: ClassVar[tuple[Callable[[str], Any], ...]]
 
     @property
     def key(self) -> Hashable:
@@ -43,8 +44,25 @@ class StudyOutcome(Protocol):
 Row = TypeVar("Row", bound=StudyOutcome)
 
 
+def finite(cell: str) -> float:
+    """Return a number that is one; raise `ValueError` for nan and infinity.
+
+    Examples
+    --------
+    >>> finite("2.5")
+    2.5
+    """
+    value = float(cell)
+    if not isfinite(value):
+        raise ValueError(cell)
+    return value
+
+
 class OutcomeTable(Generic[Row]):
     """Outcomes by the keys of their chunks, written now and then, and when it is left.
+
+    What another study wrote into the file meanwhile stays there, as in the folder of
+    `fieldmon study run`.
 
     Parameters
     ----------
@@ -69,13 +87,22 @@ class OutcomeTable(Generic[Row]):
         self.file, self._kind = file, kind
         self._by_key: dict[Hashable, list[Row]] = {}
         self._order = list(order)
+        self._whole = whole
         self._saved = monotonic()
-        text = file.read_text(encoding="utf-8", errors="replace") if file.exists() else None
-        for outcome in [] if text is None else outcomes_from(text, file.name, kind):
-            self._by_key.setdefault(outcome.key, []).append(outcome)
-        for key in self._order:
-            if key in self._by_key and not whole(self._by_key[key]):
-                del self._by_key[key]
+        self._take_in()
+
+    def _take_in(self) -> None:
+        """Take the chunks of the file that are not known; of those asked for only whole ones."""
+        if not self.file.exists():
+            return
+        text = self.file.read_text(encoding="utf-8", errors="replace")
+        written: dict[Hashable, list[Row]] = {}
+        for outcome in outcomes_from(text, self.file.name, self._kind):
+            written.setdefault(outcome.key, []).append(outcome)
+        asked = set(self._order)
+        for key, rows in written.items():
+            if key not in asked or self._whole(rows):
+                self._by_key.setdefault(key, rows)
 
     def holds(self, key: Hashable) -> bool:
         """Tell whether a chunk is there."""
@@ -89,11 +116,13 @@ class OutcomeTable(Generic[Row]):
 
     def save(self) -> None:
         """Write the file, into a folder that is made where it is not there."""
-        asked = set(self._order)
-        others = [key for key in self._by_key if key not in asked]
-        rows = [row for key in (*others, *self._order) for row in self._by_key.get(key, [])]
         self.file.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(self.file, csv_text(rows, self._kind).encode())
+        with others_waiting(self.file.parent):
+            self._take_in()
+            asked = set(self._order)
+            others = [key for key in self._by_key if key not in asked]
+            rows = [row for key in (*others, *self._order) for row in self._by_key.get(key, [])]
+            write_whole(self.file, csv_text(rows, self._kind).encode())
         self._saved = monotonic()
 
     def asked(self) -> list[Row]:

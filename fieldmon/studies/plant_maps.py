@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass, replace
-from datetime import date
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import first_few
 from fieldmon.errors import FileProblem, ObservationError
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.observations import PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.tables import read_text_table
-from fieldmon.io.options import ReadOptions
-from fieldmon.io.parse.result_words import meaning
-from fieldmon.io.parse.values import decimal_mark, number, numbers
+from fieldmon.io.options import ReadOptions, RecordOptions
+from fieldmon.io.parse.result_words import MAYBE_GONE, ResultWords, plain_word
+from fieldmon.io.parse.values import dates, decimal_mark, is_missing, number, numbers
+from fieldmon.io.readers.inspection_file.results import result_of
 from fieldmon.plot.layout import rectangle
+from fieldmon.plot.missing_plants import without
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.travel import Aisles
 
@@ -28,9 +31,15 @@ if TYPE_CHECKING:
 
     from fieldmon.io.formats.layer import Layer
 
-# nobody knows of these plants, or they are not there: they count as not infested
-_UNKNOWN = frozenset({"", "na", "nan"})
 _MOST_PLANTS = 1_000_000
+# so many cells or files are named
+_SHOWN, _NAMED = 3, 5
+# files that may have been meant as maps
+_TABLES = frozenset({".csv", ".tsv", ".txt", ".xls", ".xlsx", ".ods"})
+# a day and a month without a year: as a number, 30.4 comes after 1.6
+_DAY_AND_MONTH = re.compile(r"(\d{1,2})\.(\d{1,2})")
+_DOTTED = re.compile(r"\d{1,2}\.\d{1,2}\.\d{2}")
+_DAYS, _MONTHS = 31, 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +51,11 @@ class PlantMap:
     name
         What it is called: its file in the folder of maps without the ending, and its part.
     dates
-        ``(d,)`` as the file writes them, the earliest first.
+        ``(d,)`` the earliest first: numbers as the file writes them, days as 2026-11-18.
     infested
         ``(d, n)`` plants row by row.
+    known
+        ``(d, n)`` of which plants the state is known; others may not stand there at all.
     n_rows, n_plants
         Rows, and plants in each.
     row_m, plant_m
@@ -54,6 +65,7 @@ class PlantMap:
     name: str
     dates: tuple[str, ...]
     infested: NDArray[np.bool_]
+    known: NDArray[np.bool_]
     n_rows: int
     n_plants: int
     row_m: float
@@ -61,20 +73,22 @@ class PlantMap:
 
     def __post_init__(self) -> None:
         shape = (len(self.dates), self.n_rows * self.n_plants)
-        if self.infested.shape != shape:
-            raise ObservationError(
-                f"The map {self.name} must have one entry a plant and date {shape}, "
-                f"but it has {self.infested.shape}."
-            )
+        for entries in (self.infested, self.known):
+            if entries.shape != shape:
+                raise ObservationError(
+                    f"The map {self.name} must have one entry a plant and date {shape}, "
+                    f"but it has {entries.shape}."
+                )
 
     def name_on(self, date: str) -> str:
         """Return what it is called on one of its dates."""
         return f"{self.name} {date}".rstrip()
 
-    def aisles(self) -> Aisles:
-        """Return its plants and the ways between them."""
+    def aisles(self, stand: NDArray[np.bool_] | None = None) -> Aisles:
+        """Return its plants, or those that `stand` ``(n,)``, and the ways between them."""
         planting = Planting(row_spacing_m=self.row_m, plant_spacing_m=self.plant_m)
-        return Aisles.of(rectangle(self.n_rows, self.n_plants, planting))
+        whole = rectangle(self.n_rows, self.n_plants, planting)
+        return Aisles.of(whole if stand is None or stand.all() else without(whole, ~stand))
 
 
 @dataclass(frozen=True)
@@ -85,7 +99,8 @@ class MapColumns:
     ----------
     row, plant, state
         Number of the row, number of the plant in it, and its state: a count or a severity, or a
-        word for infested or clean. NA and an empty cell count as not infested.
+        word for infested or clean, as in records. Of NA, an empty cell and a plant that is gone
+        the state is unknown.
     row_m, plant_m
         Distances between rows and between plants.
     date, part
@@ -127,9 +142,7 @@ def read_plant_maps(folder: Path, public: Collection[str] = tuple(PUBLIC_MAPS)) 
     if not folder.is_dir():
         but = "is a file" if folder.exists() else "does not exist"
         raise FileProblem(f"Maps must be in a folder that exists, but {folder} {but}.")
-    files = sorted(
-        path for path in folder.rglob("*") if path.name in public or path.name.endswith(_OWN_ENDING)
-    )
+    files = sorted(path for path in folder.rglob("*") if _is_map(path, public))
     if not files:
         raise FileProblem(
             f"The folder {folder} must hold a map of plants, one of {', '.join(public)}, or one of "
@@ -138,9 +151,32 @@ def read_plant_maps(folder: Path, public: Collection[str] = tuple(PUBLIC_MAPS)) 
         )
     maps = []
     for path in files:
+        if path.name.casefold() == _OWN_ENDING:
+            raise FileProblem(
+                f"A map must have a name, as NAME{_OWN_ENDING}, but {path} has none. Give it one."
+            )
         maps += read_plant_map(path, _columns_of(path), str(path.relative_to(folder).as_posix()))
     _must_differ(each.name_on(date) for each in maps for date in each.dates)
     return maps
+
+
+def not_read(folder: Path, public: Collection[str] = tuple(PUBLIC_MAPS)) -> str:
+    """Return which tables of a folder `read_plant_maps` passes over, in a sentence; "": none."""
+    names = sorted(
+        path.relative_to(folder).as_posix()
+        for path in folder.rglob("*")
+        if path.suffix.casefold() in _TABLES and path.is_file() and not _is_map(path, public)
+    )
+    if not names:
+        return ""
+    return (
+        f"Not read as {'a map' if len(names) == 1 else 'maps'}: {first_few(names, _NAMED)} "
+        f"({len(names)}). A map of your own is called NAME{_OWN_ENDING}."
+    )
+
+
+def _is_map(path: Path, public: Collection[str]) -> bool:
+    return path.name in public or path.name.casefold().endswith(_OWN_ENDING)
 
 
 def _must_differ(names: Iterable[str]) -> None:
@@ -207,7 +243,9 @@ def read_plant_map(path: Path, columns: MapColumns, file: str = "") -> list[Plan
             f"but {', '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing."
         )
     parts = _texts(layer, columns.part)
-    stem = (file or path.name).removesuffix(_OWN_ENDING).removesuffix(path.suffix)
+    name = file or path.name
+    is_own = name.casefold().endswith(_OWN_ENDING)
+    stem = name[: -len(_OWN_ENDING)] if is_own else name.removesuffix(path.suffix)
     named = stem if columns.part == "" else f"{stem} "
     return [
         _map(named + part, layer.take(parts == part), columns, path.name)
@@ -217,33 +255,33 @@ def read_plant_map(path: Path, columns: MapColumns, file: str = "") -> list[Plan
 
 def _map(name: str, layer: Layer, columns: MapColumns, file: str) -> PlantMap:
     row, plant = (_numbers(layer, column, file) for column in (columns.row, columns.plant))
-    dates, date = np.unique(_texts(layer, columns.date), return_inverse=True)
+    when, date = _dates(_texts(layer, columns.date), file, columns.date)
     n_rows, n_plants = int(row.max()), int(plant.max())
     if n_rows * n_plants > _MOST_PLANTS:
         raise FileProblem(
             f"{file} must map {_MOST_PLANTS} plants at most, but it has {n_rows} rows of "
             f"{n_plants}."
         )
-    infested = np.zeros((len(dates), n_rows * n_plants), np.bool_)
+    infested = np.zeros((len(when), n_rows * n_plants), np.bool_)
+    known = np.zeros_like(infested)
     at = date, (row - 1) * n_plants + plant - 1
     lines = np.zeros(infested.shape, np.int64)
     np.add.at(lines, at, 1)
     if (lines != 1).any():
-        when, which = np.argwhere(lines != 1)[0]
+        on, which = np.argwhere(lines != 1)[0]
         raise FileProblem(
             f"{file} must have one line for each of its {n_rows} rows of {n_plants} plants"
             f"{' and each date' if columns.date else ''}, but row {which // n_plants + 1}, plant "
-            f"{which % n_plants + 1}{f' on {dates[when]}' if columns.date else ''} has "
-            f"{lines[when, which]}. Write NA as the state of a plant that nobody knows of."
+            f"{which % n_plants + 1}{f' on {when[on]}' if columns.date else ''} has "
+            f"{lines[on, which]}. Write NA as the state of a plant that nobody knows of, or that "
+            "is not there."
         )
-    states = _texts(layer, columns.state).tolist()
-    mark = decimal_mark(states) or "."
-    infested[at] = [_is_infested(state, mark, (columns.state, file)) for state in states]
-    order = _in_order(dates, file, columns.date)
+    infested[at], known[at] = _states(_texts(layer, columns.state).tolist(), columns.state, file)
     return PlantMap(
         name=name,
-        dates=tuple(str(dates[k]) for k in order),
-        infested=infested[order],
+        dates=when,
+        infested=infested,
+        known=known,
         n_rows=n_rows,
         n_plants=n_plants,
         row_m=columns.row_m,
@@ -251,36 +289,70 @@ def _map(name: str, layer: Layer, columns: MapColumns, file: str) -> PlantMap:
     )
 
 
-def _in_order(dates: NDArray[np.str_], file: str, column: str) -> list[int]:
-    """Return which of the dates comes when: numbers as years or days, or dates of a calendar."""
-    times = [number(each) for each in dates.tolist()]
-    if not np.isfinite(times).all() and len(dates) > 1:
-        try:
-            times = [float(date.fromisoformat(each).toordinal()) for each in dates.tolist()]
-        except ValueError:
+def _dates(
+    cells: NDArray[np.str_], file: str, column: str
+) -> tuple[tuple[str, ...], NDArray[np.intp]]:
+    """Return the dates, the earliest first, and which of them each cell is.
+
+    Numbers as years or days, or days of a calendar as records have them.
+    """
+    distinct, which = np.unique(cells, return_inverse=True)
+    if len(distinct) == 1:  # of a single one there is no order
+        return (str(distinct[0]),), which
+    times = np.array([number(each) for each in distinct.tolist()])
+    if np.isfinite(times).all():
+        _must_be_numbers(distinct.tolist(), times, file, column)
+    else:
+        dotted = all(_DOTTED.match(cell) for cell in distinct.tolist())  # nobody dots a month first
+        read = dates(distinct.astype(object), "dmy" if dotted else None)
+        if np.isnat(read.day).any() or read.is_ambiguous or read.n_mixed:
             raise FileProblem(
                 f"The column {column} of {file} must tell the order of its maps by numbers (as "
-                f"years, or days) or dates as 2026-11-18, but it holds {', '.join(dates[:3])}."
-            ) from None
-    return sorted(range(len(times)), key=times.__getitem__)
+                f"years, or days) or dates as 2026-11-18, but it holds {_some(distinct.tolist())}."
+            )
+        days, of = np.unique(read.day, return_inverse=True)
+        return tuple(days.astype(str).tolist()), of[which]
+    order = np.argsort(times, kind="stable")
+    return tuple(distinct[order].tolist()), np.argsort(order)[which]
 
 
-def _is_infested(state: str, mark: str, where: tuple[str, str]) -> bool:
-    """Tell what a state says: a count or a severity with a decimal mark, or a word.
+def _must_be_numbers(cells: list[str], times: NDArray[np.float64], file: str, column: str) -> None:
+    """Raise `FileProblem` if cells may be days of a year that are in another order as numbers."""
+    parts = [_DAY_AND_MONTH.fullmatch(cell) for cell in cells]
+    for day, month in ((1, 2), (2, 1)):
+        as_days = [(int(p[month]), int(p[day])) for p in parts if p is not None]
+        if len(as_days) < len(cells) or not all(
+            1 <= m <= _MONTHS and 1 <= d <= _DAYS for m, d in as_days
+        ):
+            continue
+        if np.argsort(times).tolist() != sorted(range(len(cells)), key=as_days.__getitem__):
+            raise FileProblem(
+                f"The column {column} of {file} must tell the order of its maps, but "
+                f"{_some(cells)} may be numbers, or days and months without a year. Write "
+                "2026-04-30 for days, and numbers without a point."
+            )
 
-    `where` it stands: column and file.
-    """
-    if state.casefold() in _UNKNOWN:
-        return False
-    if (said := meaning(state)) is not None:
-        return said == PRESENT
-    value = number(state, mark)
-    if not 0.0 <= value < float("inf"):
-        raise FileProblem(
-            f"The column {where[0]} of {where[1]} must say of each plant whether it is infested: a "
-            f"number from 0, a word as yes or clean, or NA; but it holds {state!r}."
-        )
-    return value > 0.0
+
+def _some(cells: list[str]) -> str:
+    return first_few([cell or "an empty cell" for cell in cells], _SHOWN)
+
+
+def _states(
+    cells: list[str], column: str, file: str
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return who is infested, and of whom it is known, as records say it."""
+    words, mark = ResultWords(cells, RecordOptions()), decimal_mark(cells) or "."
+    said = {}
+    for cell in set(cells):
+        read = result_of(cell, mark, words)
+        if not (read.is_read or is_missing(cell) or plain_word(cell) in MAYBE_GONE):
+            raise FileProblem(
+                f"The column {column} of {file} must say of each plant whether it is infested: a "
+                f"number from 0, a word as yes or clean, or NA; but it holds {cell!r}."
+            )
+        said[cell] = read.result
+    results = np.array([said[cell] for cell in cells])
+    return results == PRESENT, results != UNKNOWN
 
 
 def _texts(layer: Layer, column: str) -> NDArray[np.str_]:

@@ -16,7 +16,19 @@ CHEAP = ["--per-ha", "1", "--per-zone", "0", "--least-on", "0", "--section-rows"
 ALMOND = ["--leaves", "40", "--counted", "1"]
 
 
+def _inspected(season):
+    """Record one clean plant: before, nobody is told anything but to inspect."""
+    clean = Inspections.of(np.zeros(1), np.zeros(1), np.datetime64(BEGINS))
+    Season(season).record(clean, "x")
+
+
+def test_before_anybody_has_inspected_there_is_no_verdict(run, season):
+    out = run("decide", season, "--threshold", "30%", "--date", BEGINS)[1]
+    assert "Keep inspecting before you decide: nobody has inspected yet." in out.splitlines()
+
+
 def test_the_answer_is_the_headline_of_the_app_and_what_is_assumed_is_said(run, season):
+    _inspected(season)
     code, out, err, _ = run("decide", season, "--threshold", "30%", "--date", BEGINS)
     assert code == 0, err
     kept = Season(season)
@@ -34,6 +46,7 @@ def test_the_answer_is_the_headline_of_the_app_and_what_is_assumed_is_said(run, 
 
 
 def test_zones_that_only_pay_are_told_from_what_the_threshold_asks_for(run, season):
+    _inspected(season)
     cheap = ["--date", BEGINS, *CHEAP]
     below = run("decide", season, "--threshold", "99%", *cheap)[1].splitlines()
     said = next(k for k, line in enumerate(below) if line.startswith("The zones are below the"))

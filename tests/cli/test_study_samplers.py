@@ -17,6 +17,8 @@ from tests.cli.estate import table
         ),
         (["--scenario", "C, start"], '", and more with --full.'),
         (["--maps", "."], "must hold a map of plants"),
+        (["--maps", ".", "--seeds", "10"], "--maps goes without --seeds, --scenario, --full and"),
+        (["--maps", ".", "--scenario", "A"], "--maps goes without --seeds, --scenario"),
         (["--pest", "whitefly", "--tune"], "--pest goes without --maps"),
         (["--sampler", "snake", "--tune"], "--sampler goes without --tune"),
         (["--sampler", "best"], "A sampler must be one of naive, bouncy"),

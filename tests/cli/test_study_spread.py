@@ -12,8 +12,10 @@ def test_a_map_of_two_dates_is_scored(run, tmp_path):
         for t, state in ((1991, before), (1992, after)) for y in range(12) for x in range(12)
     ]  # fmt: skip
     (tmp_path / "citrus_ctv_IVI3and4.csv").write_text("\n".join(["x,y,t,i,n", *rows]))
+    (tmp_path / "north.csv").touch()
     code, out, err, _ = run("study", "spread", str(tmp_path))
     assert code == 0, err
+    assert "Not read as a map: north.csv (1)." in err
     assert "1991 to 1992" in out
     assert "the thesis's rule" in out
 

@@ -79,6 +79,12 @@ def test_ones_own_are_read_from_a_file(tmp_path):
     assert own == Threshold("tomato", "share of plants", 0.04, "ours")
 
 
+@pytest.mark.parametrize(("said", "meant"), [("5", "5"), ("0.05", "5"), ("2,5", "2.5")])
+def test_a_number_alone_may_be_a_share(said, meant):
+    with pytest.raises(SettingError, match=rf"it is '{said}'\. Did you mean {meant}%\?$"):
+        threshold_of(said)
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -17,7 +17,7 @@ from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.monitoring.advice import Advice, AdviceSettings, _first
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.samplers.decide import Decide
@@ -36,6 +36,20 @@ def season(tmp_path_factory):
     found = (corner < 16).all(axis=1)
     made.record(Inspections.of(plants, found.astype(int), np.datetime64(BEGINS)), "day")
     return made
+
+
+def test_where_nobody_has_inspected_there_is_no_verdict(tmp_path):
+    """Whatever was told; skipped plants are no inspections."""
+    made = a_season(tmp_path / "season.gpkg")
+    made.record(Inspections.of(np.arange(5), np.full(5, SKIPPED), np.datetime64(BEGINS)), "day")
+    for level in (0.9, 1e-6):
+        advice = made.advice(BEGINS, AdviceSettings(level, costs=CHEAP))
+        assert advice.verdict == made.verdict(BEGINS, level).verdict == LOOK_ON
+        assert advice.headline().startswith("Keep inspecting before you decide: nobody has")
+        assert advice.reasons()[1].startswith("Nobody has inspected yet: the answer rests on")
+        assert {one.verdict for one in advice.said.zones} <= {LOOK_ON}
+    made.record(Inspections.of(np.arange(5), np.zeros(5), np.datetime64(BEGINS)), "day")
+    assert made.verdict(BEGINS, 0.9).verdict == LEAVE
 
 
 def test_a_corner_is_treated_and_not_the_plot(season):

@@ -44,7 +44,7 @@ def test_kernels_weighed_foretell_nearly_as_well_as_whichever_way_is_right(told)
 
 def test_earlier_dates_tell_which_kernel_it_is():
     first, now = made(4.5, 4.0, 1), made(4.5, 1.0, 2)
-    alone, informed = scores(now), scores(now._replace(earlier=((first.before, first.after),)))
+    alone, informed = scores(now), scores(now._replace(earlier=(first,)))
     assert informed.weighed < alone.weighed + 0.01
     assert informed.kernel == alone.kernel
 
@@ -67,3 +67,22 @@ def test_scores_of_nothing_and_of_evenly_are_as_by_hand(told):
 def test_a_folder_without_dated_maps_is_told(tmp_path):
     with pytest.raises(FileProblem, match="must hold a map of plants"):
         intervals_in(tmp_path)
+
+
+def test_plants_unknown_on_either_date_are_left_out_and_counted(tmp_path):
+    """As if they stood there without ever having been clean."""
+    interval = made(4.5, 4.0, 1)
+    unknown = np.random.default_rng(0).random(576) < 0.3
+    lines = ["row,plant,date,infested,row_m,plant_m"]
+    for day, states in (("1", interval.before), ("2", interval.after)):
+        gone = unknown & (day == "1")
+        of_day = np.where(gone, "NA", states.astype(int).astype(str)).tolist()
+        lines += [f"{k // 24 + 1},{k % 24 + 1},{day},{s},4,3" for k, s in enumerate(of_day)]
+    (tmp_path / "a.map.csv").write_text("\n".join(lines))
+    (one,) = intervals_in(tmp_path)
+    told = scores(one)
+    known = ~interval.before & ~unknown
+    assert (told.clean, told.new) == (known.sum(), (known & interval.after).sum())
+    assert told.unknown == unknown.sum()
+    assert told.sentence().endswith(f"; {unknown.sum()} plants of unknown state left out")
+    assert not one.before[unknown].any()

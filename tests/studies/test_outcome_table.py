@@ -1,5 +1,7 @@
 """The study's table: read back as written, and gone on with."""
 
+import os
+
 import pytest
 from typer.testing import CliRunner
 
@@ -33,7 +35,9 @@ def test_another_table_is_refused(text):
         outcomes_from(text, "samplers.csv", SeasonOutcome)
 
 
-@pytest.mark.parametrize("line", ["A,0,naive,x,2,3,4,5,6.5", "A,0,naive,1", "A,0,na\ufffd"])
+@pytest.mark.parametrize(
+    "line", ["A,0,naive,x,2,3,4,5,6.5", "A,0,naive,nan,2,3,4,5,6", "A,0,naive,1", "A,0,na\ufffd"]
+)
 def test_a_line_that_was_changed_or_cut_is_named(line):
     text = csv_text(outcomes("A", 0), SeasonOutcome) + line
     with pytest.raises(FileProblem, match=r"^Line 4 of samplers\.csv must hold cell, seed, .*cut"):
@@ -102,6 +106,33 @@ def test_what_the_file_holds_is_not_done_again_and_others_stay(tmp_path):
     assert table.asked() == outcomes("A", 0) + outcomes("A", 1)
     written = outcomes_from(file.read_text(), "", SeasonOutcome)
     assert written == outcomes("other", 3) + outcomes("A", 0) + outcomes("A", 1)
+
+
+def test_of_two_studies_in_one_table_at_once_both_are_kept(tmp_path):
+    file = tmp_path / "samplers.csv"
+    one, other = (OutcomeTable(file, [(name, 0)], SeasonOutcome) for name in "AB")
+    with one, other:
+        one.keep(("A", 0), outcomes("A", 0))
+        other.keep(("B", 0), outcomes("B", 0))
+    written = outcomes_from(file.read_text(), "", SeasonOutcome)
+    assert written == outcomes("B", 0) + outcomes("A", 0)
+    assert one.asked() == outcomes("A", 0)
+
+
+def test_while_a_table_is_written_others_wait_with_reading_it(tmp_path, monkeypatch):
+    fcntl = pytest.importorskip("fcntl")
+    table = OutcomeTable(tmp_path / "samplers.csv", [("A", 0)], SeasonOutcome)
+
+    def written(*_):
+        holding = os.open(tmp_path, os.O_RDONLY)
+        try:
+            with pytest.raises(BlockingIOError):
+                fcntl.flock(holding, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        finally:
+            os.close(holding)
+
+    monkeypatch.setattr(outcome_table, "write_whole", written)
+    table.save()
 
 
 def test_the_command_writes_table_and_report_and_goes_on_where_it_stopped(tmp_path):

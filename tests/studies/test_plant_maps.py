@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.studies.plant_maps import PUBLIC_MAPS, MapColumns, read_plant_map, read_plant_maps
+from fieldmon.studies.plant_maps import (
+    PUBLIC_MAPS,
+    MapColumns,
+    not_read,
+    read_plant_map,
+    read_plant_maps,
+)
 
 DATED = MapColumns("row", "plant", "state", 4.0, 3.0, date="year")
 
@@ -46,9 +52,39 @@ def test_dates_of_a_calendar_are_in_their_order(tmp_path):
     assert made.infested[:, 0].tolist() == [False, False, True]
 
 
-@pytest.mark.parametrize("first", ["01.10.2026", "May", "9/1", "2026-13-01"])
+@pytest.mark.parametrize(
+    "written",
+    [("1.10.2026", "31.12.2025", "30.09.2026"), ("1.10.26", "31.12.25", "30.9.26"),
+     ("1 Oct 2026", "31 Dec 2025", "30 Sep 2026"),
+     ("2026-10-01 09:00", "2025-12-31 9:00", "2026-09-30T17:00")],
+)  # fmt: skip
+def test_dates_are_written_as_in_records(tmp_path, written):
+    rows = [f"1,1,{when},{k}" for k, when in enumerate(written)]
+    (made,) = read_plant_map(write(tmp_path / "a.csv", "row,plant,year,state", *rows), DATED)
+    assert made.dates == ("2025-12-31", "2026-09-30", "2026-10-01")
+    assert made.infested[:, 0].tolist() == [True, True, False]
+
+
+def test_a_time_with_each_plant_leaves_it_one_date(tmp_path):
+    rows = [f"1,{k},2026-05-0{d} 09:0{k},1" for d in "21" for k in (1, 2)]
+    (made,) = read_plant_map(write(tmp_path / "a.csv", "row,plant,year,state", *rows), DATED)
+    assert made.dates == ("2026-05-01", "2026-05-02")
+
+
+@pytest.mark.parametrize("days", [("2.5", "12.5", "30.4"), ("4.30", "5.4", "5.12")])
+def test_days_and_months_without_a_year_are_no_numbers(tmp_path, days):
+    rows = [f"1,1,{when},0" for when in days]
+    path = write(tmp_path / "a.csv", "row,plant,year,state", *rows)
+    with pytest.raises(FileProblem, match=r"may be numbers, or days and months without a year"):
+        read_plant_map(path, DATED)
+    # in the order that both give there is no doubt
+    path = write(tmp_path / "a.csv", "row,plant,year,state", "1,1,2.5,0", "1,1,1.5,0")
+    assert read_plant_map(path, DATED)[0].dates == ("1.5", "2.5")
+
+
+@pytest.mark.parametrize("first", ["05/06/2026", "May", "9/1", "2026-13-01", ""])
 def test_dates_whose_order_nobody_knows_are_refused(tmp_path, first):
-    rows = [f"1,1,{first},1", "1,1,30.09.2026,0"]
+    rows = [f"1,1,{first},1", "1,1,07/06/2026,0"]
     path = write(tmp_path / "a.csv", "row,plant,year,state", *rows)
     with pytest.raises(FileProblem, match=r"must tell the order of its maps by numbers .* holds"):
         read_plant_map(path, DATED)
@@ -107,13 +143,16 @@ def test_known_maps_are_found_by_name_in_folders(tmp_path):
 
 @pytest.mark.parametrize(
     ("state", "infested"),
-    [("0.0", False), ("0", False), ("NA", False), ("clean", False), ("N", False), ("", False),
-     ("3", True), ("0.5", True), ("infested", True), ("Y", True)],
+    [("0.0", False), ("0", False), ("clean", False), ("N", False), ("0%", False), ("-", False),
+     ("3", True), ("0.5", True), ("infested", True), ("Y", True), ("12%", True), ("+", True)]
+    + [(unknown, None) for unknown in ("NA", "", ".", "?", "null", "nd", "missing", "dead",
+                                       "skipped", "gone", "-9999")],
 )  # fmt: skip
-def test_a_state_is_a_number_or_a_word(tmp_path, state, infested):
-    file = write(tmp_path / "a.csv", "row;plant;year;state", f"1;1.0;2001;{state}")
-    (made,) = read_plant_map(file, DATED)
-    assert made.infested.tolist() == [[infested]]
+def test_a_state_is_a_number_or_a_word_as_in_records(tmp_path, state, infested):
+    lines = f"1;1.0;2001;{state}", "1;2;2001;+"
+    (made,) = read_plant_map(write(tmp_path / "a.csv", "row;plant;year;state", *lines), DATED)
+    assert made.known.tolist() == [[infested is not None, True]]
+    assert made.infested.tolist() == [[bool(infested), True]]
 
 
 OWN = ("row,plant,infested,row_m,plant_m,plot,date", "1,1,1,3.5,1.2,A,2025", "1,1,0,3.5,1.2,B,2025")
@@ -134,6 +173,25 @@ def test_maps_are_called_by_their_folder_and_all_of_their_name(tmp_path):
         write(tmp_path / f"{name}.map.csv", OWN[0], OWN[1])
     names = [each.name_on("2025") for each in read_plant_maps(tmp_path)]
     assert names == ["a/field A 2025", "b/field A 2025", "block.1 A 2025", "block.2 A 2025"]
+
+
+def test_tables_that_are_not_read_are_named(tmp_path):
+    write(tmp_path / "vines.map.CSV", *OWN)
+    write(tmp_path / "citrus_ctv_IVI3and4.csv", "x,y,t,i", "1,1,1991,1")
+    assert [each.name for each in read_plant_maps(tmp_path, ())] == ["vines A", "vines B"]
+    said = "Not read as a map: citrus_ctv_IVI3and4.csv (1). A map of your own is called"
+    assert not_read(tmp_path, ()).startswith(said)
+    assert not_read(tmp_path) == ""
+    write(tmp_path / "north.csv", *OWN)
+    (tmp_path / "east.map.xlsx").touch()
+    (tmp_path / "README.md").touch()
+    assert not_read(tmp_path).startswith("Not read as maps: east.map.xlsx, north.csv (2). A map")
+
+
+def test_a_map_without_a_name_is_refused(tmp_path):
+    write(tmp_path / ".map.csv", *OWN)
+    with pytest.raises(FileProblem, match=r"must have a name, as NAME\.map\.csv, but .* none"):
+        read_plant_maps(tmp_path)
 
 
 def test_two_maps_of_one_name_are_refused(tmp_path):

@@ -68,8 +68,8 @@ _NAMES = {
     "row": "row rowno rownumber rownr rowid reihe zeile fila hilera rang rangée rangee fileira "
     "filare linha שורה מספרשורה vinerow line rij صف الصف خط الخط",
     "plant": "plant plantno plantnumber plantid tree treeno treeid treenumber vine vineno vineid "
-    "pflanze rebe baum planta arbol árbol cepa plante arbre cep pianta albero עץ שתיל צמח "
-    "מספרעץ מספרצמח "
+    "pflanze rebe baum planta arbol árbol cepa plante arbre cep pied souche pianta albero עץ שתיל "
+    "צמח מספרעץ מספרצמח "
     "نبتة النبتة نبات النبات شجرة الشجرة نخلة النخلة "
     "col column quadrat position_in_row positioninrow",
     "name": "name plotname fieldname parcelname plot field parcel block title label nombre nom "

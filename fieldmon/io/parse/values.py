@@ -202,13 +202,13 @@ def _roughly(word: str, decimal: str) -> CellCount:
     return _countable(value, CellCount(value, PRESENT if value > 0 else UNKNOWN, is_rough=True))
 
 
-def presence(cell: str) -> int:
+def presence(cell: str, decimal: str = ".") -> int:
     """Return `PRESENT`, `ABSENT` or `UNKNOWN` for a cell that says whether."""
     word = cell.strip().casefold()
     if word in MISSING:
         return UNKNOWN
     said = meaning(word)
-    return counted(cell).present if said is None else said
+    return counted(cell, decimal).present if said is None else said
 
 
 # --- positions ---------------------------------------------------------------------------------

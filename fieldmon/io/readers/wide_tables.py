@@ -1,4 +1,4 @@
-"""Tables with a column for each day become records, one for each cell that was filled in."""
+"""Tables with a column for each day, or each plant, become records: one a cell filled in."""
 
 from __future__ import annotations
 
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from fieldmon.io.parse.values import DatedColumn
 
 _FEWEST = 2
+# columns called by numbers that are plants of a row
+_FEWEST_PLANTS = 3
 
 
 def by_day(layer: Layer, options: RecordOptions) -> Layer:
@@ -46,11 +48,34 @@ def by_day(layer: Layer, options: RecordOptions) -> Layer:
         return layer.saying(doubtful(said, stated))
     limits.check("records", len(layer) * len(dated), limits.RECORDS, layer.name)
     days = {name: str(day) for name, day in zip(names, read.day, strict=True)}
-    return _unfolded(layer, {name: days[name] for name in dated}, _about(read, dated))
+    return _unfolded(layer, {name: days[name] for name in dated}, _about(read, dated), "date")
 
 
-def _unfolded(layer: Layer, days: dict[str, str], messages: list[ImportMessage]) -> Layer:
-    """Return one record a cell of the columns whose ``days`` are known."""
+def by_plant(layer: Layer, options: RecordOptions) -> Layer:
+    """Return a grid, a line for each row of plants and columns 1, 2, 3, ..., with a record a cell.
+
+    Only where nothing else says which plant or what was found; any other table stays as it is.
+    """
+    row = options.column("row") or find("row", layer.columns)
+    numbered = [name for name in layer.columns if name.strip().isdecimal()]
+    counts_on = [int(name) for name in numbered] == list(range(1, len(numbered) + 1))
+    others = [name for name in layer.columns if name not in {row, *numbered}]
+    said = any(options.column(role) or find(role, others) for role in ("plant", "count", "present"))
+    if row is None or row in numbered or not counts_on or len(numbered) < _FEWEST_PLANTS or said:
+        return layer
+    limits.check("records", len(layer) * len(numbered), limits.RECORDS, layer.name)
+    about = worded(
+        "{n} columns are called by numbers from 1: each cell is one plant of its row.",
+        n=len(numbered),
+    )
+    plants = {name: name.strip() for name in numbered}
+    return _unfolded(layer, plants, [guessed(about)], "plant")
+
+
+def _unfolded(
+    layer: Layer, days: dict[str, str], messages: list[ImportMessage], what_they_are: str
+) -> Layer:
+    """Return one record a cell of the columns whose ``days``, or plants, are known."""
     cells = np.stack([layer.columns[name] for name in days], axis=1)
     filled = np.array([[bool(text(cell)) for cell in row] for row in cells], dtype=bool)
     row, column = np.nonzero(filled)
@@ -80,7 +105,7 @@ def _unfolded(layer: Layer, days: dict[str, str], messages: list[ImportMessage])
         )
     return replace(
         long,
-        columns=columns | {"date": day, what: values},
+        columns=columns | {what_they_are: day, what: values},
         messages=(*layer.messages, *messages),
     )
 

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Sampler
+    from fieldmon.studies.plant_maps import PlantMap
     from fieldmon.studies.samplers.contenders import Added
 
     Believe = Callable[[PlantGrid, NDArray[np.float64]], Belief]
@@ -58,27 +59,52 @@ FILES = (
 
 
 class DatedMap(NamedTuple):
-    """A mapped plot on one date: what it is called, its plants, and ``(n,)`` who is infested."""
+    """A mapped plot on one date.
+
+    Parameters
+    ----------
+    name
+        What it is called.
+    aisles
+        The plants whose state is known.
+    infested
+        ``(n,)`` who of them is infested.
+    whole
+        The map of which this is one date, and ``(plants,)`` whose state is known there; None: of
+        all.
+    """
 
     name: str
     aisles: Aisles
     infested: NDArray[np.bool_]
+    whole: tuple[PlantMap, NDArray[np.bool_]] | None = None
+
+    @property
+    def unknown(self) -> int:
+        """Return of how many plants nobody knows the state: they are left out."""
+        return 0 if self.whole is None else int(np.count_nonzero(~self.whole[1]))
 
 
 def plots_in(folder: Path) -> list[DatedMap]:
     """Return the plots that a folder has maps of, one for each date; `FileProblem` if none."""
-    maps = read_plant_maps(folder, FILES)
-    small = next((each for each in maps if each.n_rows * each.n_plants < _FEWEST), None)
+    made = [
+        _on_date(each, k) for each in read_plant_maps(folder, FILES) for k in range(len(each.dates))
+    ]
+    small = next((each for each in made if len(each.infested) < _FEWEST), None)
     if small is not None:
         raise FileProblem(
-            f"A map must have {_FEWEST} plants or more, of which the first {SHARES[0]:.0%} are "
-            f"inspected, but {small.name} has {small.n_rows * small.n_plants}."
+            f"A map must have {_FEWEST} plants or more of known state, of which the first "
+            f"{SHARES[0]:.0%} are inspected, but {small.name} has {len(small.infested)}."
         )
-    return [
-        DatedMap(each.name_on(date), each.aisles(), infested)
-        for each in maps
-        for date, infested in zip(each.dates, each.infested, strict=True)
-    ]
+    return made
+
+
+def _on_date(each: PlantMap, date: int) -> DatedMap:
+    """Return a map on one of its dates, without the plants whose state is unknown."""
+    name, known, infested = each.name_on(each.dates[date]), each.known[date], each.infested[date]
+    if known.all() or np.count_nonzero(known) < _FEWEST:
+        return DatedMap(name, each.aisles(), infested if known.all() else infested[known])
+    return DatedMap(name, each.aisles(known), infested[known], (each, known))
 
 
 def found_at(
@@ -123,11 +149,16 @@ def found_at(
 
 
 def correlation(plot: DatedMap) -> float:
-    """Return how much alike neighbours are: the correlation of the two of every pair."""
+    """Return how much alike neighbours are: the correlation of the two of every pair.
+
+    NaN where all plants are alike, or none stands beside another.
+    """
     start, other = plot.aisles.grid.adjacent
     state = plot.infested - plot.infested.mean()
+    if not len(other) or plot.infested.all() or not plot.infested.any():
+        return float("nan")
     alike = float((np.repeat(state, np.diff(start)) * state[other]).mean())
-    return alike / max(float(state.var()), 1e-12)
+    return alike / float(state.var())
 
 
 class MapRow(NamedTuple):
@@ -241,12 +272,27 @@ def table_csv(rows: list[MapRow]) -> str:
     for row in rows:
         values = [*row.per_inspection, *(row.per_hour or [np.nan] * len(SHARES))]
         cells = ["" if np.isnan(value) else f"{value:.4f}" for value in values]
-        lines.writerow([row.name, f"{row.correlation:.3f}", row.who, *cells])
+        alike = "" if np.isnan(row.correlation) else f"{row.correlation:.3f}"
+        lines.writerow([row.name, alike, row.who, *cells])
     return text.getvalue()
 
 
 def _turned(each: DatedMap) -> list[DatedMap]:
     """Return a plot and its three mirror images: the gate at another corner each."""
-    rows = each.infested.reshape(each.aisles.grid.n_rows, -1)
-    mirrored = (rows, rows[::-1], rows[:, ::-1], rows[::-1, ::-1])
-    return [each._replace(infested=np.ravel(image)) for image in mirrored]
+    if each.whole is None:
+        infested = _mirrored(each.infested, each.aisles.grid.n_rows)
+        return [each._replace(infested=image) for image in infested]
+    whole, known = each.whole
+    states = np.zeros(len(known), np.bool_)
+    states[known] = each.infested
+    return [
+        DatedMap(each.name, whole.aisles(stand), image[stand])
+        for image, stand in zip(
+            _mirrored(states, whole.n_rows), _mirrored(known, whole.n_rows), strict=True
+        )
+    ]
+
+
+def _mirrored(plants: NDArray[np.bool_], n_rows: int) -> list[NDArray[np.bool_]]:
+    rows = plants.reshape(n_rows, -1)
+    return [np.ravel(image) for image in (rows, rows[::-1], rows[:, ::-1], rows[::-1, ::-1])]

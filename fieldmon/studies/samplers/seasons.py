@@ -10,6 +10,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.paired_seasons import paired
 from fieldmon.simulation.season import simulated_days
+from fieldmon.studies.outcome_table import finite
 from fieldmon.studies.samplers.contenders import (
     CLAIRVOYANT,
     CONTENDERS,
@@ -21,7 +22,7 @@ from fieldmon.studies.samplers.contenders import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from fieldmon.simulation.experiment import Experiment
     from fieldmon.simulation.metrics import SeasonMetrics
@@ -53,7 +54,7 @@ class SeasonOutcome:
 
     # the first and third column are a scenario and a contender, named as in the tables made first
     columns: ClassVar[tuple[str, ...]] = ("cell", "seed", "who", *MEASURES)
-    kinds: ClassVar[tuple[type[Any], ...]] = (str, int, str, *(float,) * len(MEASURES))
+    kinds: ClassVar[tuple[Callable[[str], Any], ...]] = (str, int, str, *(finite,) * len(MEASURES))
 
     @property
     def key(self) -> Key:

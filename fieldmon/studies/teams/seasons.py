@@ -23,9 +23,10 @@ from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler as sampler_of
 from fieldmon.simulation.paired_seasons import SameInsects, paired
 from fieldmon.simulation.season import SimulationSettings
+from fieldmon.studies.outcome_table import finite
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -136,7 +137,12 @@ class TeamOutcome:
         *("scenario", "who", "robots", "seed", "hectares", "spread"),
         *("infested_plant_days", "d80", "worked_h", "found"),
     )
-    kinds: ClassVar[tuple[type[Any], ...]] = (str, str, int, int, *(float,) * 6)
+    kinds: ClassVar[tuple[Callable[[str], Any], ...]] = (
+        *(str, str, int, int),
+        finite,
+        float,
+        *(finite,) * 4,
+    )
 
     @property
     def key(self) -> tuple[str, str, int, int]:

@@ -22,10 +22,11 @@ from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.season import simulated_days
 from fieldmon.simulation.statistics import SummaryStatistics, summary_statistics
 from fieldmon.simulation.treating import WHOLE, ZONES, TreatmentRule
+from fieldmon.studies.outcome_table import finite
 from fieldmon.studies.samplers.scenarios import Scenario
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -59,7 +60,16 @@ class TreatedSeason:
     columns: ClassVar[tuple[str, ...]] = (
         "scenario", "seed", "sampler", "rule", "plant_days", "sprayed_ha", "spent", "cost"
     )  # fmt: skip
-    kinds: ClassVar[tuple[type[Any], ...]] = (str, int, str, str, float, float, float, float)
+    kinds: ClassVar[tuple[Callable[[str], Any], ...]] = (
+        str,
+        int,
+        str,
+        str,
+        finite,
+        finite,
+        finite,
+        finite,
+    )
 
     @property
     def key(self) -> tuple[str, int]:

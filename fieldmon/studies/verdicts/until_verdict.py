@@ -25,6 +25,7 @@ from fieldmon.samplers.adaptive import Adaptive
 from fieldmon.samplers.base import NEVER, Scene
 from fieldmon.samplers.decide import Decide
 from fieldmon.simulation.experiment import Experiment
+from fieldmon.studies.outcome_table import finite
 from fieldmon.studies.samplers.mapped_plots import DatedMap, plots_in
 from fieldmon.studies.samplers.scenarios import (
     Scenario,
@@ -117,7 +118,7 @@ class VerdictOutcome:
     columns: ClassVar[tuple[str, ...]] = (
         "question", "seed", "contender", "looks", "verdict", "right", "share"
     )  # fmt: skip
-    kinds: ClassVar[tuple[type[Any], ...]] = (str, int, str, float, str, float, float)
+    kinds: ClassVar[tuple[Callable[[str], Any], ...]] = (str, int, str, finite, str, finite, finite)
 
     @property
     def key(self) -> tuple[str, int]:

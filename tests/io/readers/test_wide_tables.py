@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.io.options import RecordOptions
-from fieldmon.io.readers.wide_tables import by_day
+from fieldmon.io.readers.wide_tables import by_day, by_plant
 from tests.io.tables_of_cells import sentences, table
 
 DAYS = ("2026-03-01", "2026-03-08", "2026-03-15")
@@ -28,6 +28,29 @@ def test_words_become_results_and_totals_are_passed_over():
     assert long.columns["result"].tolist() == ["sano", "-"]
     assert "Total" not in long.columns
     assert "these were passed over: Total" in sentences(long)
+
+
+def test_a_grid_of_rows_and_numbered_plants_is_a_record_a_cell():
+    grid = table(**{"row": [1, 2], "1": [0, 1], "2": [None, 0], "3": [1, 1]})
+    long = by_plant(grid, RecordOptions())
+    got = zip(*(long.columns[name].tolist() for name in ("row", "plant", "count")), strict=True)
+    assert [*got] == [(1, "1", 0), (1, "3", 1), (2, "1", 1), (2, "2", 0), (2, "3", 1)]
+    assert "3 columns are called by numbers from 1: each cell is one plant of its row." in (
+        sentences(long)
+    )
+
+
+def test_numbers_above_columns_are_plants_only_where_nothing_else_says_which():
+    numbers = {"1": [0], "2": [1], "3": [0]}
+    for columns in (
+        numbers,
+        {"row": [1], "tree": [4], **numbers},
+        {"row": [1], "found": [1], **numbers},
+        {"row": [1], "1": [0], "2": [1]},
+        {"row": [1], "1": [0], "2": [1], "4": [1]},
+    ):
+        layer = table(**columns)
+        assert by_plant(layer, RecordOptions()) is layer
 
 
 def test_a_table_with_a_date_or_with_one_day_stays_as_it_is():

@@ -204,3 +204,33 @@ def test_a_name_with_a_comma_stays_one_column():
     assert line[:3] == ["north, old", "0.200", "adaptive"]
     assert head[3] == "finds_per_inspection_at_5_pct"
     assert len(head) == len(line)
+
+
+def test_plants_of_unknown_state_count_in_nothing(tmp_path):
+    """Not in the share, the correlation, the finds or what is inspected, from whichever corner."""
+    lines = ["row,plant,infested,row_m,plant_m"]
+    for row in range(10):
+        for plant in range(10):
+            state = "NA" if plant in {3, 8} or row == 2 else str(int(plant < 3))
+            lines.append(f"{row + 1},{plant + 1},{state},3,1.5")
+    (tmp_path / "a.map.csv").write_text("\n".join(lines))
+    (plot,) = plots_in(tmp_path)
+    assert (len(plot.infested), plot.unknown) == (72, 28)
+    assert plot.infested.mean() == 27 / 72
+    pairs = [(a, b) for a, b in zip([0, 1, 4, 5, 6], [1, 2, 5, 6, 7], strict=True)] * 9
+    along = [(float(a < 3), float(b < 3)) for a, b in pairs]
+    across = [(float(k < 3), float(k < 3)) for k in (0, 1, 2, 4, 5, 6, 7, 9)] * 7
+    state = np.array(along + across) - 27 / 72
+    assert correlation(plot) == pytest.approx(state.prod(1).mean() / plot.infested.var())
+    (naive,) = [row for row in table([plot]) if row.who == "naive"]
+    walk = [plant for plant in range(10) if plant not in {3, 8}]
+    order = [p < 3 for row in range(9) for p in (walk if row % 2 == 0 else walk[::-1])]
+    back = [p < 3 for row in range(9) for p in (walk[::-1] if row % 2 == 0 else walk)]
+    assert naive.per_inspection[-1] == (sum(order[:29]) + sum(back[:29])) / 2 / 29
+
+
+def test_where_all_plants_are_alike_there_is_no_correlation():
+    for infested in ((), range(200)):
+        rows = table([mapped(*infested)])
+        assert np.isnan(rows[0].correlation)
+        assert table_csv(rows).splitlines()[1].startswith("made up,,adaptive,")

@@ -10,10 +10,11 @@ import numpy as np
 from fieldmon.compute.ranges import DETECTS
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, ObservationError, SettingError
+from fieldmon.infestation.observations import ABSENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find, is_confidence, is_id, is_of_rows, plain, recognised
 from fieldmon.io.parse.result_words import ResultWords
-from fieldmon.io.parse.values import told_number
+from fieldmon.io.parse.values import is_missing, presence, told_number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -45,6 +46,8 @@ PLANNED = re.compile(
     r"^plant \d+; (?:arrive (?P<arrive>[^;]*)|after [^;]* s); stay [^;]* s; "
     r"chance [\d.]+ ?%(?:; detects (?P<detects>[\d.]+(?<!\.)))?[\s.,;]*"
 )
+# so many cells tell whether a column numbers its records
+_LOOKED_AT = 200
 _BLANK = frozenset({"", "nan", "nat", "none", "null", "<na>"})
 
 
@@ -78,6 +81,7 @@ def is_own(role: str, name: str) -> bool:
 def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     """Return the columns that matter; raise `ChoiceNeeded` where nothing says what was found."""
     names = list(layer.columns)
+    _must_be_apart(options)
     line = _line(layer, options)
     number = own_column("number", layer, {line})
     plant = options.column("plant") or own_column("id", layer)
@@ -102,6 +106,11 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
                 "columns",
                 tuple(f"{role}={n}" for role in ("present", "count") for n in _open(layer)),
             )
+    if plant is not None and plant == line:
+        raise SettingError(_one_column(worded("row"), worded("plant"), plant))
+    if (told := options.column("present")) is not None and told in {line, plant}:
+        which = worded("plant") if told == plant else worded("row")
+        raise SettingError(_one_column(which, worded("result"), told))
     if plant is not None and line is not None and number is None:
         plant, number = None, plant
     arrive = next((n for n in names if plain(n) == "arrive"), None)
@@ -162,6 +171,24 @@ def _is_figure(cell: str) -> bool:
     return cell.replace(".", "", 1).isdecimal()
 
 
+def _must_be_apart(options: InspectionOptions) -> None:
+    """Raise `SettingError` if two of row, plant, result and count are told to be one column."""
+    called = {"row": worded("row"), "plant": worded("plant"), "present": worded("result")}
+    roles = [(role, name) for role in called if (name := options.column(role))]
+    for k, (role, name) in enumerate(roles):
+        for other, same in roles[:k]:
+            if same == name:
+                raise SettingError(_one_column(called[other], called[role], name))
+
+
+def _one_column(one: str, other: str, name: str) -> str:
+    return worded(
+        "What is the {one} and what is the {other} must be in two columns, but both are said to "
+        "be {name!r}. Name another column for one of them.",
+        one=one, other=other, name=name,
+    )  # fmt: skip
+
+
 def plot_column(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> str | None:
     """Return the column that names plots; None: none does, as one may say of any."""
     told = options.column("plot")
@@ -178,15 +205,26 @@ def names_in(layer: Layer) -> str | None:
 
 
 def _open(layer: Layer) -> list[str]:
-    """Return the columns that could hold results: none of known use, no running number."""
+    """Return the columns that could hold results: none of known use, no running number.
+
+    Those whose cells look like results come first.
+    """
     known = recognised(layer.columns)
-    return [
+    open_yet = [
         name
         for name in layer.columns
         if name not in known
         and not is_confidence(name)
-        and not is_id(name, [text(v) for v in layer.columns[name][:200]])
+        and not is_id(name, [text(v) for v in layer.columns[name][:_LOOKED_AT]])
     ] or list(layer.columns)
+    return sorted(open_yet, key=lambda name: not _looks_like_results(layer, name))
+
+
+def _looks_like_results(layer: Layer, name: str) -> bool:
+    """Return whether every cell says found or clean, and one says clean: no plant's number does."""
+    cells = {text(v) for v in layer.columns[name]}
+    read = {presence(cell) for cell in cells if not is_missing(cell)}
+    return ABSENT in read and UNKNOWN not in read
 
 
 def _result_name(layer: Layer, count: str | None) -> str | None:

@@ -91,6 +91,9 @@ def positions_in(
     is_named = columns.plant is not None or columns.number is not None
     if not given and (is_named or not roles >= {"x", "y"}):
         if not is_named:
+            taken = {columns.line, columns.result, columns.number_found}
+            named = [f"plant={name}" for name in layer.columns]
+            choices = dict.fromkeys((*named, *could_be_positions(layer, options)))
             raise ChoiceNeeded(
                 worded(
                     "{name} must say which plants were inspected (a plant's "
@@ -100,8 +103,7 @@ def positions_in(
                     names=", ".join(layer.columns),
                 ),
                 "columns",
-                tuple(f"plant={name}" for name in layer.columns)
-                + could_be_positions(layer, options),
+                tuple(one for one in choices if one.partition("=")[2] not in taken),
             )
         return lonlat, accuracy_m, unread, ()
     rows = np.empty(len(layer), dtype=object)

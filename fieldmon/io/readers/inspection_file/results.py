@@ -101,7 +101,7 @@ def _by_result(
     cells = [text(v) for v in layer.column(column)]
     words = ResultWords(cells, options)
     mark, guess = _mark(layer, column, cells, options)
-    known = {cell: _of_word(cell, mark, words) for cell in set(cells)}
+    known = {cell: result_of(cell, mark, words) for cell in set(cells)}
     known |= {cell: _NOT_INSPECTED for cell in known if is_gone(cell, options.gone)}
     numbers = (counted(cell, mark).number for cell in known)
     return [known[cell] for cell in cells], [
@@ -223,11 +223,12 @@ def _some(cells: list[str]) -> str:
     return ", ".join(repr(cell) for cell in list(dict.fromkeys(cells))[:5])
 
 
-def _of_word(cell: str, mark: str, words: ResultWords) -> CellResult:
+def result_of(cell: str, mark: str, words: ResultWords) -> CellResult:
     """Return what a cell for a result says: a word in many languages, a sign, or a count.
 
-    A lone minus is "clean" only in a column that has a plus somewhere, else it is nothing. A number
-    above 1 is a find with that count; 1 is "yes", which counts nothing.
+    `words` are what those of its column mean: a lone minus is "clean" only in a column that has a
+    plus somewhere, else it is nothing. A number above 1 is a find with that count; 1 is "yes",
+    which counts nothing.
     """
     word = " ".join(cell.casefold().replace("_", " ").split())
     plus = _PLUS.match(word)
@@ -238,7 +239,7 @@ def _of_word(cell: str, mark: str, words: ResultWords) -> CellResult:
     meant = words[cell]
     if meant is not None and not np.isfinite(number(word)):
         return CellResult(meant, np.nan, is_said=True)
-    result = presence(word)
+    result = presence(word, mark)
     if result == UNKNOWN:
         is_empty = is_missing(word) and plain_word(cell) not in _SAYS_SOMETHING
         return CellResult(UNKNOWN, np.nan, is_said=False, is_read=is_empty)
@@ -277,5 +278,5 @@ def _of_mark(name: str, words: ResultWords) -> CellResult:
         return CellResult(ABSENT, np.nan, is_said=True)
     if not bare or re.fullmatch(r"[\d\s]+", bare):
         return _SILENT
-    said = _of_word(bare, ".", words)
+    said = result_of(bare, ".", words)
     return said if said.is_said else _SILENT

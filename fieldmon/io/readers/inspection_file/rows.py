@@ -36,7 +36,7 @@ from fieldmon.io.readers.inspection_file.results import results_in
 from fieldmon.io.readers.inspection_file.times import times_in
 from fieldmon.io.readers.species import species_in
 from fieldmon.io.readers.visits import telling
-from fieldmon.io.readers.wide_tables import by_day
+from fieldmon.io.readers.wide_tables import by_day, by_plant
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -90,7 +90,7 @@ def _known_layers(infos: tuple[LayerInfo, ...]) -> list[LayerInfo]:
 def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Imported[InspectionRows]:
     """Return what one layer or table of a `file` says of plants that were inspected."""
     layer, messages = _each_point(*_without_lines(layer))
-    layer = by_day(_without_undone(layer), options)
+    layer = by_plant(by_day(_without_undone(layer), options), options)
     columns = columns_of(layer, options)
     results = results_in(layer, columns, options)
     said, notes = results.said, _notes(layer, results)

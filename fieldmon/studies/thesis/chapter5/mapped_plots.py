@@ -115,7 +115,8 @@ def inspect(
 ) -> Floats:
     """Return percent found after each of `SHARES_PCT` visited, ``(d, shares)``; NaN if not reached.
 
-    Of the plants infested on a date and not found on earlier ones; 100 if there are none.
+    Of the plants infested on a date and not found on earlier ones; 100 if there are none. Plants of
+    unknown state are not visited, and count in no share.
     """
     robot, grid = rules.robot, aisles.grid
     belief = _believed_from_records(plants, aisles, rules, streams)
@@ -131,7 +132,7 @@ def inspect(
             aisles=aisles,
             robot=robot,
             chance=belief,
-            last_inspected=last,
+            last_inspected=np.where(plants.known[day], last, np.int32(day)),
             day=day,
             seconds_left=robot.day_s,
             trail=trail,
@@ -139,7 +140,9 @@ def inspect(
         )
         trail = sampler(name).walk(scene, would_find).plant
         found = would_find[trail]
-        curves[day] = _curve(found, int(np.count_nonzero(truth)), len(grid))
+        curves[day] = _curve(
+            found, int(np.count_nonzero(truth)), int(np.count_nonzero(plants.known[day]))
+        )
         last[trail] = day
         gone[trail[found]] = True
         evening = learn(belief, grid, trail, found, Learning(detection=robot.detects))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.errors import ChoiceNeeded
+from fieldmon.errors import ChoiceNeeded, SettingError
 from fieldmon.io.readers.inspection_file.columns import (
     _NAMES,
     columns_of,
@@ -71,6 +71,29 @@ def test_a_file_that_says_nothing_of_what_was_found_is_a_question():
         "columns",
         ("present=height", "count=height"),
     )
+
+
+def test_a_column_that_looks_like_results_is_suggested_first():
+    layer = table(rangée=[1, 1, 2, 2], stick=[1, 2, 1, 2], kl=[0, 3, None, "NA"], datum=["x"] * 4)
+    with pytest.raises(ChoiceNeeded) as asked:
+        columns_of(layer, InspectionOptions())
+    assert asked.value.choices[0] == "present=kl"
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"plant": "rangée"},
+        {"present": "pied"},
+        {"present": "rangée"},
+        {"plant": "x", "row": "x"},
+        {"plant": "x", "present": "x"},
+    ],
+)
+def test_one_column_plays_no_two_roles(told):
+    layer = table(rangée=[1, 2], pied=[3, 4], x=[1, 2], found=[0, 1])
+    with pytest.raises(SettingError, match="must be in two columns, but both are said to be"):
+        columns_of(layer, InspectionOptions().naming(**told))
 
 
 @pytest.mark.parametrize("role", sorted(_NAMES))

@@ -35,6 +35,10 @@ def test_results_are_read_in_many_spellings(word, result):
     assert seen.said.all()
 
 
+def test_a_decimal_comma_alone_is_a_number():
+    assert read(plant=[7, 8], found=["0,5", "0,0"]).result.tolist() == [PRESENT, ABSENT]
+
+
 @pytest.mark.parametrize("blank", ["", "  ", "NA", "?", "nan", "-", None])
 def test_what_is_not_filled_in_says_nothing(blank):
     seen = read(plant=[7, 8], found=[blank, "no"])

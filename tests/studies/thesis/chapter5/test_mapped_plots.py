@@ -26,7 +26,7 @@ def mapped(*infested, n_rows=10, n_plants=20):
     for day, plants in enumerate(infested):
         states[day, list(plants)] = True
     dates = tuple(str(k) for k in range(len(infested)))
-    return PlantMap("made up", dates, states, n_rows, n_plants, 4.0, 3.0)
+    return PlantMap("made up", dates, states, np.ones_like(states), n_rows, n_plants, 4.0, 3.0)
 
 
 @pytest.mark.parametrize("name", SAMPLERS)
@@ -83,6 +83,15 @@ def test_where_no_plant_is_infested_no_share_is_found():
 
 def test_maps_and_rules_that_do_not_fit_are_refused():
     with pytest.raises(ObservationError, match="one entry a plant"):
-        PlantMap("bad", ("1",), np.zeros((1, 3), bool), 2, 2, 1.0, 1.0)
+        PlantMap("bad", ("1",), np.zeros((1, 3), bool), np.ones((1, 3), bool), 2, 2, 1.0, 1.0)
     with pytest.raises(SettingError, match="recorded_share"):
         replace(SURE, recorded_share=2.0)
+
+
+def test_plants_of_unknown_state_are_not_visited_and_count_in_no_share():
+    plants = mapped((5,), n_rows=2, n_plants=10)
+    half = np.arange(20)[None] % 2 == 1
+    plants = replace(plants, known=half)
+    curve = inspect(plants, plants.aisles(), "naive", SURE, RandomStreams(1))[0]
+    # plant 5 is the third of ten
+    assert curve.tolist() == [0.0] * 6 + [100.0] * 15

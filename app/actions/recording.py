@@ -17,6 +17,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.io.parse import result_words
+from fieldmon.io.writers.day_file import with_face
 from fieldmon.monitoring.brought_findings import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, row_label
@@ -434,7 +435,8 @@ def show_said_otherwise(choices: Choices) -> None:
             texts.HISTORY_RESULTS[result]
             for result, who in zip(of.result.tolist(), of.who, strict=True)
         ]  # fmt: skip
-        place = {"row": signs[int(label.line[plant])], "plant": label.number[plant]}
+        number = with_face(choices.plot.grid, plant, int(label.number[plant]))
+        place = {"row": signs[int(label.line[plant])], "plant": in_words(number)}
         lines.append(f"- {texts.SAID_BY.format(said=', '.join(each), **place)}")
     st.info("\n".join([texts.SAID_OTHERWISE, "", *lines[:_MOST]]))
 

@@ -78,6 +78,7 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
 def _contradicting(season: Season, on: date) -> Iterator[str]:
     """Yield of which plants two people said otherwise on a day, line by line."""
     from fieldmon.infestation.inspections import RESULT_NAMES
+    from fieldmon.io.writers.day_file import with_face
 
     said = season.contradicting(on)
     plants = list(dict.fromkeys(said.plant.tolist()))
@@ -88,7 +89,8 @@ def _contradicting(season: Season, on: date) -> Iterator[str]:
             for result, who in zip(of.result.tolist(), of.who, strict=True)
         )
         row = season.plot.grid.row_signs[int(season.label.line[plant])]
-        place = f"row {row}, plant {season.label.number[plant]}"
+        number = with_face(season.plot.grid, plant, int(season.label.number[plant]))
+        place = f"row {row}, plant {number}"
         yield f"  contradiction          {place}: {each}"
     if (more := len(plants) - _CONTRADICTING) > 0:
         yield f"  {'':22} and {more} more"

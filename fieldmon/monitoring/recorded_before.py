@@ -10,6 +10,7 @@ import numpy as np
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
+from fieldmon.io.writers.day_file import with_face
 from fieldmon.monitoring.inspection_table import time_text
 from fieldmon.plot.grid import row_label
 
@@ -57,12 +58,13 @@ class Contradictions:
     def sentences(self, grid: PlantGrid) -> list[str]:
         """Return one sentence for each, with rows as the plot's file names them."""
         label = row_label(grid, self.plant)
-        told = (*label, self.date, self.recorded, self.brought, self.together)
+        told = (self.plant, *label, self.date, self.recorded, self.brought, self.together)
         sentences: list[str] = []
-        for line, number, date, was, now, together in zip(*(v.tolist() for v in told), strict=True):
+        columns = (values.tolist() for values in told)
+        for plant, line, number, date, was, now, together in zip(*columns, strict=True):
             values = {
                 "line": grid.row_signs[line],
-                "number": number,
+                "number": with_face(grid, plant, number),
                 "date": date,
                 "result_names": worded(RESULT_NAMES[was]),
                 "result_names_2": worded(RESULT_NAMES[now]),

@@ -60,7 +60,7 @@ def threshold() -> None:
 
 def assumed(advice: Advice) -> None:
     """Say what the answer assumes, with the way to say otherwise."""
-    st.caption(in_words(advice.asked.assumed(units().of_library)))
+    st.caption(in_words(advice.assumed(units().of_library)))
     with st.expander(texts.ASSUMED_CHANGE):
         st.markdown(f"**{texts.DECIDE_SPRAYER}**")
         for key in _SPRAYER:

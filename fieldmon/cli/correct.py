@@ -12,6 +12,9 @@ from fieldmon.cli.times import clock, day
 from fieldmon.compute.ranges import NUMBER
 from fieldmon.errors import ContradictionError, SettingError
 
+# corrections that the answer names; the log has all
+_MOST_NAMED = 5
+
 
 def correct(
     season: SeasonFile,
@@ -71,6 +74,6 @@ def correct(
         raise ContradictionError(f"{error} Confirm with: --contradicting") from None
     if n:
         typer.echo(f"{n} correction{'s' if n > 1 else ''} taken, by {who.strip()}.")
-        typer.echo(kept.log()[-1].sentence())
+        typer.echo(kept.log()[-1].sentence(_MOST_NAMED))
     else:
         typer.echo("Nothing was changed that inspections say: there is nothing to correct.")

@@ -185,7 +185,7 @@ class CostOptions:
     loss: Annotated[
         float,
         typer.Option(
-            help="Loss per plant that is infested for a day.",
+            help="Loss per plant that is infested for a day; with --both-faces, per face.",
             callback=within(COSTS["infested_plant_day"]),
         ),
     ] = TreatmentCosts.infested_plant_day

@@ -6,6 +6,9 @@ exactly, section by section: plants stand in order along the rows, so that the b
 switchings up to a plant follows from the best up to the one before.
 
 With a knapsack plants are chosen one by one, each with the ring of plants around it.
+
+Where both faces of a row are inspected, each face is a plant that may be infested, loses and counts
+as everywhere else. Both are sprayed together, and their ground is paid for once.
 """
 
 from __future__ import annotations
@@ -52,7 +55,7 @@ class Zones:
     m2, plot_m2
         Area sprayed, and of all plants.
     inside, outside
-        Infested plants expected where it is sprayed, and elsewhere.
+        Infested plants expected where it is sprayed, and elsewhere; each face counts.
     cost, saved
         What spraying costs, and what it is expected to save.
     whole_cost
@@ -139,7 +142,7 @@ def best_zones(
     sprayer, costs = sprayer or Sprayer(), costs or TreatmentCosts()
     plants = _Plants.of(grid, chance, costs)
     if spared is not None:
-        plants = plants.without(spared[grid.vine])
+        plants = plants.without(np.bincount(grid.vine, spared, len(grid)) > 0.0)
     choose = _knapsack if sprayer.rows == 0 else _switched
     zone = choose(grid, plants, sprayer, costs)
     most = (1.0 - costs.reserve) * plants.area_m2
@@ -168,7 +171,10 @@ def whole_plot(grid: PlantGrid, chance: Floats, costs: TreatmentCosts | None = N
 
 
 class _Plants(NamedTuple):
-    """What spraying each plant gains ``(n,)``, which are counted once, and the ground of each."""
+    """What spraying each plant gains ``(n,)``, which stand for their ground, and that of each.
+
+    Of two faces the first one stands for both, and has what spraying them gains.
+    """
 
     gain: Floats
     once: NDArray[np.bool_]
@@ -178,7 +184,8 @@ class _Plants(NamedTuple):
     def of(cls, grid: PlantGrid, chance: Floats, costs: TreatmentCosts) -> _Plants:
         once = grid.vine == np.arange(len(grid))
         m2 = grid.row_spacing_m * grid.plant_spacing_m
-        gain = chance * costs.per_infested_plant - costs.per_ha * m2 / 10_000
+        infested = np.bincount(grid.vine, chance, len(grid))
+        gain = infested * costs.per_infested_plant - costs.per_ha * m2 / 10_000
         return cls(np.where(once, gain, 0.0), once, m2)
 
     @property
@@ -199,15 +206,15 @@ class _Plants(NamedTuple):
 def _zones(zone: Ints, chance: Floats, plants: _Plants, costs: TreatmentCosts) -> Zones:
     """Return zones with all that is said of them."""
     treated, n_zones = zone >= 0, int(zone.max(initial=-1)) + 1
-    sprayed = plants.once & treated
-    inside, area_m2 = float(chance[sprayed].sum()), float(sprayed.sum()) * plants.m2
+    inside = float(chance[treated].sum())
+    area_m2 = float(np.count_nonzero(plants.once & treated)) * plants.m2
     return Zones(
         treated,
         zone,
         area_m2,
         plants.area_m2,
         inside,
-        float(chance[plants.once & ~treated].sum()),
+        float(chance[~treated].sum()),
         area_m2 / 10_000 * costs.per_ha + n_zones * costs.per_zone,
         inside * costs.per_infested_plant,
         plants.area_m2 / 10_000 * costs.per_ha + costs.per_zone,

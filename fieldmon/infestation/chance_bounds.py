@@ -8,6 +8,8 @@ from fieldmon.compute.jit import inlined
 LEAST_CHANCE, MOST_CHANCE = 1e-6, 1.0 - 1e-6
 #: a plant with more was found and left where it is, or told to be infested
 KNOWN = 0.99
+#: a plant found and treated has no more than that
+AS_GOOD_AS_CLEAN = 2.0 * LEAST_CHANCE
 
 
 # round the loops of a lattice the same news arrives twice: no plant settles its neighbour more

@@ -16,7 +16,7 @@ from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.random_streams import coin
 from fieldmon.compute.wording import chance_figure, worded
 from fieldmon.errors import SettingError
-from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE
+from fieldmon.infestation.chance_bounds import AS_GOOD_AS_CLEAN, KNOWN
 from fieldmon.infestation.pairs import pairs_of
 from fieldmon.infestation.uninspected_days import of_odds
 
@@ -39,8 +39,8 @@ _GOLDEN, _SILVER = 0.6180339887498949, 0.4142135623730950
 # degrees of freedom of the tails of doubt, and the most, in sigmas (chosen on 40 seasons in each of
 # ten worlds, on no seeds that the documentation reports)
 _TAILS, _MOST_OFF = 3.0, 6.0
-# a plant found and treated has no more than that; and of so many expected among such, none is
-_AS_GOOD_AS_CLEAN, _HARDLY_ANY = 2.0 * LEAST_CHANCE, 0.001
+# of so many expected among plants that are as good as clean, none is infested
+_HARDLY_ANY = 0.001
 # a chance of none that is too small for a number is no certainty: where one is infested it is 0
 _HARDLY = float(np.finfo(np.float64).tiny)
 
@@ -167,7 +167,7 @@ def estimate_of(
     else:
         numbers, clean = _of_map(grid, (chance, belief.pair_chance), asked, doubt)
     unknown = _estimate(expected, numbers, (clean, sure), exact=doubt <= 0.0)
-    could_be = chance[asked] > _AS_GOOD_AS_CLEAN
+    could_be = chance[asked] > AS_GOOD_AS_CLEAN
     if float(chance[asked][~could_be].sum()) < _HARDLY_ANY:
         most = max(unknown.low, int(np.count_nonzero(could_be)))
         unknown = replace(unknown, high=min(unknown.high, most))

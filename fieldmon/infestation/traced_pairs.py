@@ -17,7 +17,12 @@ import numpy as np
 from fieldmon.compute.arrays import as_compiled
 from fieldmon.infestation.ancestry import MOST_PLANTS, Ancestry, ToldNight
 from fieldmon.infestation.calibration_slope import finds_noted, no_inspections
-from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE, MOST_CHANCE
+from fieldmon.infestation.chance_bounds import (
+    AS_GOOD_AS_CLEAN,
+    KNOWN,
+    LEAST_CHANCE,
+    MOST_CHANCE,
+)
 from fieldmon.infestation.clustering import (
     CLUSTERING,
     ClusterEstimate,
@@ -500,7 +505,7 @@ class TracedPairs:
     def overnight(self, spread: Spread) -> TracedPairs:
         """Return what is believed the next morning."""
         morning = self._overnight(spread, tells_apart=True)
-        morning = self._with_ancestry(morning, self._sends(spread), spread)
+        morning = self._with_ancestry(morning, spread)
         others = self.others and tuple(one.overnight(spread) for one in self.others)
         return replace(self._in_doubt(morning, spread), others=others)
 
@@ -525,17 +530,25 @@ class TracedPairs:
         """Return the same as the ancestry of finds has it by now, before the night of a `spread`.
 
         It is what to tell in the evening; the night begins without it, as it would count twice.
+        The ancestry is the one that the next morning is told by: another draw may believe twice as
+        much, and the number would jump overnight.
         """
-        waits = self.ancestry is not None and self.ancestry.waits
-        return self._with_ancestry(self, 0.0, spread) if waits else self
+        if self.ancestry is None or not self.ancestry.waits:
+            return self
+        night = self._overnight(spread, tells_apart=False)
+        morning = self._with_ancestry(night, spread)
+        # what was found and treated today can only come back in the night
+        scale = np.where(self.chance > AS_GOOD_AS_CLEAN, morning.chance / night.chance, 1.0)
+        told = self.times(scale)
+        return _levelled(replace(told, ancestry=morning.ancestry))
 
-    def _with_ancestry(self, by_origins: TracedPairs, sends: float, spread: Spread) -> TracedPairs:
-        """Return what both maps say after a night in which an infested plant sent out so many."""
+    def _with_ancestry(self, by_origins: TracedPairs, spread: Spread) -> TracedPairs:
+        """Return what both maps say after a night."""
         if self.ancestry is None:
             return by_origins
         hiding = self.latency.likely if self.latency is not None else self.ancestry.hiding
         # what goes far comes from anywhere
-        sends *= 1.0 - self.reach.anywhere
+        sends = self._sends(spread) * (1.0 - self.reach.anywhere)
         night = ToldNight(sends, self.told_from_outside(spread), wind_m_s=by_origins.wind_m_s)
         if isinstance(spread, PestSpread):
             night = night._replace(length=(spread.days, *spread.warmth))

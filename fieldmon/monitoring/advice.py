@@ -433,7 +433,16 @@ class Advice:
             said += (
                 [self._zones_said()] * above + [self._worth_said()] + [self._enough_said()] * above
             )
-        return [*said, self.asked.assumed(units)]
+        return [*said, self.assumed(units)]
+
+    def assumed(self, units: Units | None = None) -> Worded:
+        """Return in words what is assumed, and what a plant is where it has two faces."""
+        faces = worded(
+            "Each face counts as a plant: in the threshold, among the infested, and in what one "
+            "loses a day."
+        )
+        has_faces = bool((self.grid.twin >= 0).any())
+        return joined(" ", [*[faces] * has_faces, self.asked.assumed(units)])
 
     def though(self, *, above: bool = True) -> list[str]:
         """Return why there are zones, where what is said of the plot does not ask for them."""

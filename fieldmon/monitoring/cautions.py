@@ -70,12 +70,15 @@ class RulesToKeep:
         Local time at which a day's work starts.
     units
         How dates are written.
+    asked
+        Batch of a treatment that nobody did: what it would bring is asked; None: there is none.
     """
 
     labels: tuple[ProductLabel, ...]
     harvest: date | None
     starts: time
     units: Units = field(default_factory=Units)
+    asked: int | None = None
 
 
 def cautions(
@@ -270,6 +273,11 @@ def _unsaid_wait(
         said = worded(
             "How long to wait from {product} on {day} until the harvest on {harvest} was not said.",
             harvest=rules.units.day(rules.harvest), **_named(one, rules.units),
+        )  # fmt: skip
+    if one.batch == rules.asked:
+        said = worded(
+            "If {product} is sprayed here, how long to wait until harvest is not known: no label "
+            "in the season says it.", product=one.application.product,
         )  # fmt: skip
     todo = worded("Look at its label, and say it as it stands there.")
     if not one.application.product:

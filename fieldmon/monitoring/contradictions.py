@@ -10,6 +10,7 @@ import numpy as np
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
+from fieldmon.io.writers.day_file import with_face
 from fieldmon.monitoring.inspection_table import time_text
 from fieldmon.plot.grid import plant_numbers
 
@@ -58,12 +59,13 @@ class Contradictions:
     def sentences(self, grid: PlantGrid) -> list[str]:
         """Return one sentence for each, with rows as the plot's file names them."""
         numbered = plant_numbers(grid, self.plant)
-        told = (*numbered, self.date, self.recorded, self.brought, self.together)
+        told = (self.plant, *numbered, self.date, self.recorded, self.brought, self.together)
         sentences: list[str] = []
-        for line, number, date, was, now, together in zip(*(v.tolist() for v in told), strict=True):
+        columns = (values.tolist() for values in told)
+        for plant, line, number, date, was, now, together in zip(*columns, strict=True):
             values = {
                 "line": grid.line_signs[line],
-                "number": number,
+                "number": with_face(grid, plant, number),
                 "date": date,
                 "result_names": worded(RESULT_NAMES[was]),
                 "result_names_2": worded(RESULT_NAMES[now]),
@@ -222,19 +224,22 @@ def said_otherwise(
     `named` writes a name for where it is read.
     """
     said = contradicting(held)
-    of: dict[tuple[int, int], list[Worded]] = {}
-    told = zip(*plant_numbers(grid, said.plant), said.result, said.who, strict=True)
-    for line, number, result, who in told:
+    of: dict[int, list[Worded]] = {}
+    for plant, result, who in zip(said.plant.tolist(), said.result, said.who, strict=True):
         each = worded(RESULT_NAMES[int(result)])
         if who:
             each = worded("{result} ({who})", result=each, who=named(str(who)))
-        of.setdefault((int(line), int(number)), []).append(each)
+        of.setdefault(plant, []).append(each)
+    numbered = plant_numbers(grid, np.array([*of], dtype=np.int64))
     return tuple(
         worded(
             "Row {row}, plant {plant}: {said}",
-            row=grid.line_signs[line], plant=number, said=joined(", ", each),
+            row=grid.line_signs[line], plant=with_face(grid, plant, number),
+            said=joined(", ", each),
         )
-        for (line, number), each in of.items()
+        for (plant, each), line, number in zip(
+            of.items(), numbered.line.tolist(), numbered.number.tolist(), strict=True
+        )
     )  # fmt: skip
 
 

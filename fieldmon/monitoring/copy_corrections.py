@@ -63,7 +63,7 @@ def take(
     batches.count_inspections(db)
     batches.end(db, batch, len(changes))
     touch(db, INSPECTIONS.name)
-    return tuple(outside_changes.in_words(db, one) for one in taken)
+    return tuple(outside_changes.in_words(db, one, plot[0]) for one in taken)
 
 
 def _as_here(db: sqlite3.Connection, one: OutsideChange) -> OutsideChange:

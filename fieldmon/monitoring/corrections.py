@@ -79,7 +79,7 @@ def take(
     batches.count_inspections(db)
     batches.end(db, batch, len(inspections))
     touch(db, INSPECTIONS.name)
-    return tuple(outside_changes.in_words(db, one) for one in taken)
+    return tuple(outside_changes.in_words(db, one, plot[0]) for one in taken)
 
 
 def made(db: sqlite3.Connection, row: int) -> tuple[date, time | None]:
@@ -110,7 +110,7 @@ def retime(
     change = _changed(db, (row, was), says, plot, (settings, batch))
     batches.end(db, batch, 1)
     touch(db, INSPECTIONS.name)
-    return (outside_changes.in_words(db, change),)
+    return (outside_changes.in_words(db, change, plot[0]),)
 
 
 def contradicting(db: sqlite3.Connection) -> Contradictions:

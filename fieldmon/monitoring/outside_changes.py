@@ -5,6 +5,7 @@ The file notes it by itself (`fieldmon.monitoring.schema.watch`), whoever the ot
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
@@ -25,6 +26,7 @@ from fieldmon.infestation.inspections import (
     Inspections,
 )
 from fieldmon.io.parse.result_words import GONE, begins_gone, gone_note
+from fieldmon.io.writers.day_file import with_face
 from fieldmon.monitoring import (
     batches,
     drafts,
@@ -45,6 +47,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
 _MOST_NAMED = 5
+# the number in the row, where `INSPECTED` has it
+_NUMBER = re.compile(r", plant (\d+) on ")
 _DONE = {
     "update": worded("was changed"),
     "delete": worded("was deleted"),
@@ -218,7 +222,7 @@ def correct(
         if is_kept(change):
             keep_before(db, change, plot[0])
             kept += [(now, *db.execute(first, (change.layer, change.row)).fetchone())]
-        said.append(in_words(db, change))
+        said.append(in_words(db, change, plot[0]))
     # of a row changed several times, what it was first is what comes back
     spare = f"fid NOT IN ({', '.join('?' * len(kept))})"
     db.execute(
@@ -280,28 +284,37 @@ def keep_before(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) 
     )
 
 
-def in_words(db: sqlite3.Connection, change: OutsideChange) -> str:
+def in_words(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> str:
     """Return what a correction made of a row, for the log."""
-    if change.what == "delete":
-        return f"{change.was} was deleted"
     names = f"{INSPECTED}, line, number, {', '.join(SEEN)}"
     row = db.execute(f"SELECT {names} FROM inspections AS old WHERE fid = ?", (change.row,))  # noqa: S608 - ours
-    says, line, number, *values = row.fetchone()
+    says, line, number, *values = row.fetchone() or (None,) * (3 + len(SEEN))
+    now = dict(zip(SEEN, values, strict=True))
+    before = rows_that_count.as_it_was(change.before) if change.before else {}
+    was = _with_face(change.was, grid, before.get("plant", now["plant"]))
+    if change.what == "delete":
+        return f"{was} was deleted"
+    says = _with_face(str(says), grid, now["plant"])
     if change.what == "insert":
         return f"{says} was added"
-    before = rows_that_count.as_it_was(change.before) if change.before else {}
-    now = dict(zip(SEEN, values, strict=True))
     is_gone = now["result"] == RESULT_NAMES[SKIPPED] and begins_gone(now["notes"] or "")
     is_gone &= any(before.get(name) != now[name] for name in ("result", "notes"))
     parts = [now["notes"]] if is_gone else []
     parts += [
-        f"at row {line}, plant {number}" if name == "plant"
+        f"at row {line}, plant {with_face(grid, value, int(number or 0))}" if name == "plant"
         else f"{name} {value:g}" if isinstance(value, float) else f"{name} {value or 'none'}"
         for name, value in now.items()
         if name in before and before[name] != value
         and not (is_gone and name in {"result", "count", "notes"})
     ]  # fmt: skip
-    return f"{change.was} is now {', '.join(parts) or says}"
+    return f"{was} is now {', '.join(parts) or says}"
+
+
+def _with_face(said: str, grid: PlantGrid, plant: object) -> str:
+    """Return what `INSPECTED` says of an inspection, with the face where its plant has two."""
+    if not isinstance(plant, int) or not 0 <= plant < len(grid):
+        return said
+    return _NUMBER.sub(lambda of: f", plant {with_face(grid, plant, int(of[1]))} on ", said, 1)
 
 
 def take_row(

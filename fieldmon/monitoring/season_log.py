@@ -37,8 +37,6 @@ _NOTHING = "0" * 64
 Numbers = dict[int, int | None]
 #: before the number of a batch, in names of states
 _BATCH = "batch "
-#: corrections that an entry's sentence names
-_MOST_NAMED = 5
 #: what a log does not hold but is held to: by name, and how it is read
 _PLOT = ("arrays", "plots", "places", "observations")
 
@@ -75,8 +73,8 @@ class LogEntry:
     digest: str
     numbers: Numbers = field(default_factory=dict)
 
-    def sentence(self) -> str:
-        """Return what happened, in words."""
+    def sentence(self, most: int | None = None) -> str:
+        """Return what happened, in words; of corrections so many at `most`, None: each."""
         what = _Blank(self.what)
         kind = "changed back" if self.kind == "changed" and what.get("back") else self.kind
         kind = "corrected here" if kind == "corrected" and what.get("here") else kind
@@ -85,8 +83,8 @@ class LogEntry:
         if self.kind == "changed":  # earlier versions wrote the names of the parts alone
             what.setdefault("said", self.what.get("names", "?"))
         if self.kind == "corrected" and (said := what.get("said")):
-            more = ["..."] if len(said) > _MOST_NAMED else []
-            what["rows"] = "; ".join([*said[:_MOST_NAMED], *more])
+            more = [] if most is None or len(said) <= most else ["..."]
+            what["rows"] = "; ".join([*said[:most], *more])
         anew = "; batches were numbered anew" if what.get("moved") else ""
         undone = f"; undone there: {', '.join(gone)}" if (gone := what.get("undone")) else ""
         chosen = f"; taken over: {'; '.join(over)}" if (over := what.get("chosen")) else ""

@@ -272,7 +272,7 @@ class SeasonTreatments(OpenSeason):
             batch, batch, day, on, place, 0.0, Application(product.strip()),
             end_of(clock, on, None), clock,
         )  # fmt: skip
-        found = cautions.because_of([*done, wanted], batch, rules, on)
+        found = cautions.because_of([*done, wanted], batch, replace(rules, asked=batch), on)
         return tuple(one for one in found if one.kind in _BEFORE_TREATING)
 
     def _held_to(

@@ -22,7 +22,8 @@ def test_areas_and_plants_add_up_on_any_plot(grid, rows, seed):
     chance = np.random.default_rng(seed).random(len(grid)) ** 8
     zones = best_zones(grid, chance, Sprayer(rows), TreatmentCosts(per_ha=300.0))
     once = grid.vine == np.arange(len(grid))
-    assert zones.inside + zones.outside == pytest.approx(chance[once].sum())
+    assert zones.inside + zones.outside == pytest.approx(chance.sum())
+    assert zones.inside == pytest.approx(chance[zones.treated].sum())
     assert zones.plot_m2 == pytest.approx(once.sum() * grid.row_spacing_m * grid.plant_spacing_m)
     assert ((zones.zone >= 0) == zones.treated).all()
     assert (zones.treated == zones.treated[grid.vine]).all()
@@ -119,6 +120,38 @@ def test_where_switching_costs_more_than_what_lies_between_the_plot_is_one_zone(
     assert zones.cost == pytest.approx(zones.whole_cost)
     spared = TreatmentCosts(per_ha=1.0, per_zone=0.0, reserve=0.1)
     assert not best_zones(grid, chance, Sprayer(1), spared).treated.all()
+
+
+@pytest.mark.parametrize("sprayer", [Sprayer(2, 6.0, 6.0), Sprayer(0), Sprayer(0, ring=1)])
+@pytest.mark.parametrize("rule", [{}, {"reserve": 0.5}])
+def test_what_is_infested_on_the_second_face_is_treated_as_on_the_first(sprayer, rule):
+    grid = rectangle(5, 12, Planting(90.0, 4.0, 2.0, faces=2))
+    costs = TreatmentCosts(per_ha=300.0, **rule)
+    first = grid.vine == np.arange(len(grid))
+    found = np.isin(grid.vine, np.flatnonzero(first)[26:32])
+    small = np.full(len(grid), 1e-4)
+    made = [
+        best_zones(grid, np.where(found & which, 0.9, small), sprayer, costs)
+        for which in (first, ~first, first | ~first)
+    ]
+    for zones in made:
+        assert zones.treated[found].all()
+        assert (zones.treated == made[0].treated).all()
+        assert zones.m2 == made[0].m2
+    assert made[0].saved == pytest.approx(made[1].saved)
+    assert made[2].inside == pytest.approx(2 * 6 * 0.9, rel=0.01)
+    assert whole_plot(grid, np.where(found, 0.9, 0.0), costs).inside == pytest.approx(12 * 0.9)
+    bounds = [ring_bound(grid, np.where(found & one, 0.9, small), 1, costs)
+              for one in (first, ~first)]  # fmt: skip
+    assert bounds[0] == pytest.approx(bounds[1])
+    assert bounds[0] > 0.0
+
+
+def test_a_plant_is_spared_whose_second_face_is():
+    grid = rectangle(2, 4, Planting(90.0, 4.0, 2.0, faces=2))
+    spared = np.arange(len(grid)) == np.flatnonzero(grid.vine != np.arange(len(grid)))[0]
+    zones = best_zones(grid, np.full(len(grid), 0.9), Sprayer(0), CHEAP, spared)
+    assert np.array_equal(~zones.treated, grid.vine == grid.vine[spared])
 
 
 def test_where_nothing_is_worth_it_nothing_is_treated():

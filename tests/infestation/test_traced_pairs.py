@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.chance_bounds import bounded_pair_chance
+from fieldmon.infestation.chance_bounds import AS_GOOD_AS_CLEAN, bounded_pair_chance
 from fieldmon.infestation.clustering import leaning
 from fieldmon.infestation.origins import (
     ANYWHERE,
@@ -274,6 +274,22 @@ def test_in_hindsight_an_evening_says_what_the_next_morning_does_of_the_same_fin
     # with nothing new there is nothing to look back on
     for known in (belief, morning, told, replace(evening, ancestry=None)):
         assert known.in_hindsight(still) is known
+
+
+@pytest.mark.parametrize("treated", [True, False])
+def test_the_evening_and_the_next_morning_are_told_by_one_draw_a_night_apart(treated):
+    """Another draw may believe twice as much: the number would jump without a new result."""
+    plants, night = np.arange(40, dtype=np.int32), Spread(0.05)
+    found = np.isin(plants, [3, 4, 18, 31])
+    belief = replace(TracedPairs.of(GRID, FLAT), others=())
+    evening = belief.learn(plants, found, Learning(0.84, treated=treated))
+    told, morning = evening.in_hindsight(night), evening.overnight(night)
+    assert told.ancestry.infested_at_start == morning.ancestry.infested_at_start
+    by_origins = evening._overnight(night, tells_apart=True).chance.sum() / evening.chance.sum()
+    assert morning.chance.sum() / told.chance.sum() == pytest.approx(by_origins, rel=0.1)
+    # only the night brings anything back to what was found and treated
+    if treated:
+        assert (told.chance[plants[found]] <= AS_GOOD_AS_CLEAN).all()
 
 
 def test_once_it_is_told_who_infested_whom_the_number_is_in_less_doubt():

@@ -21,7 +21,7 @@ from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.monitoring.advice import Advice, AdviceSettings, _first
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.samplers.decide import Decide
-from tests.monitoring.seasons import BEGINS, a_season
+from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 CHEAP = TreatmentCosts(per_ha=20.0, per_zone=0.1)
 
@@ -50,6 +50,25 @@ def test_where_nobody_has_inspected_there_is_no_verdict(tmp_path):
         assert {one.verdict for one in advice.said.zones} <= {LOOK_ON}
     made.record(Inspections.of(np.arange(5), np.zeros(5), np.datetime64(BEGINS)), "day")
     assert made.verdict(BEGINS, 0.9).verdict == LEAVE
+
+
+def test_faces_are_counted_by_the_advice_as_by_the_status_and_that_is_said(season, tmp_path):
+    """What was found on second faces alone counts in each figure of the same answer."""
+    two = a_season(
+        tmp_path / "two.gpkg", plot=a_plot(faces=2), belief=BeliefSettings(treated=False)
+    )
+    grid = two.plot.grid
+    second = np.flatnonzero(grid.vine != np.arange(len(grid)))[:40]
+    found = (np.arange(40) < 10).astype(int)
+    two.record(Inspections.of(second, found, np.datetime64(BEGINS)), "day")
+    advice, status = two.advice(BEGINS, AdviceSettings(0.05, costs=CHEAP)), two.status(BEGINS)
+    assert advice.zones.treated[second[found == 1]].all()
+    infested = pytest.approx(status.infested.expected)
+    assert advice.zones.inside + advice.zones.outside == infested
+    assert advice.plot.share * status.plants == infested
+    said = "Each face counts as a plant"
+    assert said in advice.said_of_zones()[-1]
+    assert said not in " ".join(season.advice(BEGINS).sentences())
 
 
 def test_a_corner_is_treated_and_not_the_plot(season):

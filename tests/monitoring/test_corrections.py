@@ -3,16 +3,38 @@
 from datetime import date
 
 import numpy as np
+import pytest
 
+from fieldmon.cli.status import _contradicting
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
-from tests.monitoring.seasons import BEGINS
+from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 DAY = np.datetime64(BEGINS)
 
 
 def said(plants, results, **more):
     return Inspections.of(np.array(plants), np.array(results), DAY, **more)
+
+
+@pytest.mark.parametrize("face", [0, 1, 2])
+def test_the_log_names_each_correction_and_of_two_faces_which(tmp_path, face):
+    season = a_season(tmp_path / "s.gpkg", plot=a_plot(faces=min(face + 1, 2)))
+    grid = season.plot.grid
+    plants = (grid.twin[:7] if face == 2 else np.arange(7)).astype(np.int32)
+    season.record(said(plants, np.zeros(7, np.int8)), "day")
+    now = said(plants, np.ones(7, np.int8))
+    named = f", face {face}" if face else ""
+    (first, *_) = season.contradictions(now).sentences(grid)
+    assert first.startswith(f"Row 1, plant 1{named} on {BEGINS}: recorded as clean")
+    season.record_instead(now)
+    logged = season.log()[-1].sentence()
+    for number in range(1, 8):
+        assert f"clean at row 1, plant {number}{named} on {BEGINS} is now result found" in logged
+    assert season.log()[-1].sentence(5).count(" is now ") == 5
+    assert season.log()[-1].sentence(5).endswith("; ...")
+    season.record(said(plants[:1], [CLEAN]), "again", confirmed=True)
+    assert f"row 1, plant 1{named}: found, clean" in next(_contradicting(season, BEGINS))
 
 
 def test_one_stop_of_a_batch_is_corrected_and_the_others_stay(season: Season):

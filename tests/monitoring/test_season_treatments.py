@@ -148,6 +148,18 @@ def test_what_is_recorded_again_is_known_whatever_the_label_says_by_then(season)
     assert season.held_to_log() == ()
 
 
+def test_of_a_product_that_is_asked_about_the_wait_is_not_that_of_one_sprayed_that_day(season):
+    every = np.ones(len(season.plot.grid), bool)
+    season.treat(BEGINS, 0.9, application=Application("Acarol", waiting_days=7))
+    asked = season.cautions_if_treated(BEGINS, "Acarol", every)
+    (said,) = (one.sentence for one in asked if one.kind == "harvest")
+    assert said.startswith("If Acarol is sprayed here, how long to wait until harvest is not known")
+    assert not [one for one in season.cautions(BEGINS) if one.kind == "harvest"]
+    season.keep_labels([ProductLabel("Acarol", waiting_days=7)])
+    asked = season.cautions_if_treated(BEGINS, "Acarol", every)
+    assert "harvest" not in {one.kind for one in asked}
+
+
 def test_the_same_plants_are_the_same_area_whichever_way_they_were_named(season):
     grid = season.plot.grid
     every = np.ones(len(grid), bool)

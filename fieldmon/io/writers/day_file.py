@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from fieldmon.compute.wording import PAPER_IN_ENGLISH, PaperLanguage
+from fieldmon.compute.wording import PAPER_IN_ENGLISH, PaperLanguage, worded
 from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.local_clock import grid_clock
 
@@ -309,6 +309,12 @@ def faces(grid: PlantGrid, plants: NDArray[np.integer]) -> NDArray[np.int64]:
     """Return 1 or 2 for the face of each plant ``(k,)``, 0 where it has but one."""
     twin = grid.twin[plants]
     return np.where(twin < 0, 0, np.where(plants < twin, 1, 2)).astype(np.int64)
+
+
+def with_face(grid: PlantGrid, plant: int, number: int) -> str:
+    """Return a plant's number in its row, with the face where it has two, for a sentence."""
+    (face,) = faces(grid, np.array([plant])).tolist()
+    return worded("{number}, face {face}", number=number, face=face) if face else str(number)
 
 
 def plain_text(text: str) -> str:

@@ -561,6 +561,8 @@ def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone,
     key = scouts.let_in(season, "Cem")
     page = phone.page
     page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), language))
+    page.locator(SENT).wait_for()
+    page.goto(page.url.partition("#")[0])  # as from the home screen: the language stays
     page.locator(SENT).wait_for()  # till then, the page may draw its buttons anew
     assert page.locator("html").get_attribute("dir") == ("rtl" if language == "he" else "ltr")
     sizes = page.evaluate(

@@ -157,7 +157,7 @@ def say_otherwise(choices: Choices) -> None:
     lines = [f"- {in_words(one)}" for one in said[:_MOST_OTHERWISE]]
     if (more := len(said) - _MOST_OTHERWISE) > 0:
         lines.append(f"- {texts.AND_MORE.format(n=more)}")
-    st.warning("\n".join([texts.SAID_OTHERWISE, "", *lines]))
+    st.info("\n".join([texts.SAID_OTHERWISE, "", *lines]))
 
 
 def _is_of_nobody(choices: Choices) -> bool:

@@ -112,6 +112,7 @@ def _as_published(options: PriorOptions, choices: OpenChoices) -> None:
 
 def _on_maps(folder: Path, options: PriorOptions) -> None:
     """Run the samplers on mapped plants."""
+    from fieldmon.compute.wording import counted
     from fieldmon.plot.robot import Robot
     from fieldmon.studies.plant_maps import PUBLIC_MAPS, read_plant_maps
     from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
@@ -122,6 +123,9 @@ def _on_maps(folder: Path, options: PriorOptions) -> None:
     rules = MapRules(Robot().with_times("thesis"), CALIBRATED.spread)
     maps = read_plant_maps(folder)
     tell_not_read(folder, tuple(PUBLIC_MAPS))
+    for each in maps:
+        if unknown := int((~each.known).any(axis=0).sum()):
+            typer.echo(f"{each.name}: {counted(unknown, 'plant')} of unknown state left out")
     with counting("Inspecting") as count:
         table = run_maps(maps, rules, options.seeds, options.seed, count)
     for row in table:

@@ -229,6 +229,7 @@ def _tune() -> None:
 
 def _on_maps(folder: Path, output: Path, samplers: Sequence[str]) -> None:
     """Print and write how many infested plants an inspection finds on mapped plots."""
+    from fieldmon.compute.wording import counted
     from fieldmon.studies.samplers.contenders import added
     from fieldmon.studies.samplers.mapped_plots import (
         FILES,
@@ -253,7 +254,7 @@ def _on_maps(folder: Path, output: Path, samplers: Sequence[str]) -> None:
             typer.echo(f"{named:44} {row.who:9} {found}  {_columns(row.per_hour, '{:6.1f}')}")
         rows += of_plot
         if plot.unknown:
-            typer.echo(f"{plot.name}: {plot.unknown} plants of unknown state left out")
+            typer.echo(f"{plot.name}: {counted(plot.unknown, 'plant')} of unknown state left out")
     for sentence in sentences(rows):
         typer.echo(sentence)
     write_all(output, {"maps.csv": table_csv(rows)})

@@ -288,8 +288,8 @@ def in_words(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> 
     """Return what a correction made of a row, for the log."""
     names = f"{INSPECTED}, line, number, {', '.join(SEEN)}"
     row = db.execute(f"SELECT {names} FROM inspections AS old WHERE fid = ?", (change.row,))  # noqa: S608 - ours
-    says, line, number, *values = row.fetchone() or (None,) * (3 + len(SEEN))
-    now = dict(zip(SEEN, values, strict=True))
+    says, line, number, *values = row.fetchone() or ("", 0, 0, *(None for _ in SEEN))
+    now: dict[str, Any] = dict(zip(SEEN, values, strict=True))
     before = rows_that_count.as_it_was(change.before) if change.before else {}
     was = _with_face(change.was, grid, before.get("plant", now["plant"]))
     if change.what == "delete":

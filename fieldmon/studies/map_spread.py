@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from scipy.optimize import minimize
 
+from fieldmon.compute.wording import counted
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.dispersal import Dispersal
 from fieldmon.infestation.kernels import DistanceKernel
@@ -128,7 +129,11 @@ class MapScores:
             f"{self.no_change:.3f}, evenly {self.evenly:.3f}, the thesis's rule {self.thesis:.3f}, "
             f"kernel {self.kernel:.3f} (mean jump {self.reach[0]:g} and {self.reach[1]:g} plants), "
             f"kernels weighed {self.weighed:.3f}"
-            + (f"; {self.unknown} plants of unknown state left out" if self.unknown else "")
+            + (
+                f"; {counted(self.unknown, 'plant')} of unknown state left out"
+                if self.unknown
+                else ""
+            )
         )
 
 

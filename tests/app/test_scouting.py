@@ -558,11 +558,18 @@ def _neighbours(plot, plant):
 
 @pytest.mark.parametrize("language", ["he", "en"])
 def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone, language):
-    key = scouts.let_in(season, "Cem")
+    key, other = (scouts.let_in(season, name) for name in ("Cem", "Dan"))
+    for one, result in ((key, FOUND), (other, CLEAN)):
+        take(season, one, [a_finding(40, result, on=BEGINS)], utc_now())
     page = phone.page
     page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), language))
+    page.locator(SENT).wait_for()
+    page.goto(page.url.partition("#")[0])  # as from the home screen: the language stays
     page.locator(SENT).wait_for()  # till then, the page may draw its buttons anew
     assert page.locator("html").get_attribute("dir") == ("rtl" if language == "he" else "ltr")
+    said = page.locator(".contradiction[data-plant='40']").inner_text()
+    assert "Cem" in said
+    assert "Dan" in said
     sizes = page.evaluate(
         "[...document.querySelectorAll('button')].filter((b) => b.offsetParent)"
         ".map((b) => [b.offsetWidth, b.offsetHeight, b.scrollWidth <= b.clientWidth + 1])"

@@ -29,9 +29,11 @@ def test_sweeps_and_scenarios_can_be_combined(run, tmp_path):
 
 def test_mapped_plants_are_inspected(run, tmp_path):
     lines = ["x,y,t,i", *(f"{x},{y},1991,{int(x == y)}" for x in range(1, 9) for y in range(1, 9))]
+    lines[-2] = "8,7,1991,NA"
     (tmp_path / "citrus_ctv_IVI3and4.csv").write_text("\n".join(lines), encoding="utf-8")
     code, out, err, made = run("study", "prior", "--maps", tmp_path, "--seeds", 2)
     assert code == 0, err
+    assert "citrus_ctv_IVI3and4: 1 plant of unknown state left out" in out.splitlines()
     assert {path.name for path in made} == {"prior_maps.csv", "prior_maps.html"}
     assert "dynamic finds" in out
     assert {row["sampler"] for row in table(tmp_path / "prior_maps.csv")} == {

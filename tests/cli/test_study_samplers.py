@@ -87,3 +87,21 @@ def test_with_a_pest_every_sampler_believes_the_one_map_that_follows_it(run, tmp
     assert (tmp_path / "samplers.csv").read_bytes() == whole
     assert {row["who"] for row in rows} == {each.name for each in OF_PESTS}
     assert "nan" not in (tmp_path / "samplers.html").read_text(encoding="utf-8")
+
+
+def test_plants_of_unknown_state_are_left_out_of_a_map_and_counted(run, tmp_path):
+    cells = ["NA" if k in {3, 8} else "1" for k in range(30)]
+    lines = [f"{k // 10 + 1},{k % 10 + 1},{state},3,1.5" for k, state in enumerate(cells)]
+    table_of = tmp_path / "vines.map.csv"
+    table_of.write_text("\n".join(["row,plant,infested,row_m,plant_m", *lines]))
+    (tmp_path / "north.csv").touch()
+    code, out, err, _ = run("study", "samplers", "--maps", ".", "-o", "made")
+    assert code == 0, err
+    assert "vines: 2 plants of unknown state left out" in out.splitlines()
+    assert "vines (neighbours -)" in out
+    assert "Not read as a map: north.csv (1)." in err
+    naive = next(row for row in table(tmp_path / "made" / "maps.csv") if row["sampler"] == "naive")
+    assert (naive["neighbour_correlation"], naive["finds_per_inspection_at_40_pct"]) == (
+        "",
+        "1.0000",
+    )

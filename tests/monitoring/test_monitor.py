@@ -346,7 +346,7 @@ def test_it_tells_what_a_season_with_the_same_results_tells(tmp_path, plot, trea
     )
     assert monitor.chance == pytest.approx(season.evening(on), abs=1e-9)
     assert astuple(monitor.estimate()) == pytest.approx(astuple(season.status(on).estimate))
-    assert monitor.verdict(0.05) == season.verdict(on, 0.05)
+    assert monitor.verdict(0.05).chance_above == season.verdict(on, 0.05).chance_above
     assert monitor.verdict(0.9).verdict == "do not treat"
     assert monitor.forecast().high.tolist() == season.forecast(on).high.tolist()
     assert monitor.estimate(0.5).high < monitor.estimate().high

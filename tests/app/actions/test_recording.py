@@ -606,7 +606,7 @@ def test_what_two_people_said_otherwise_is_shown_with_who_said_it(season_app, se
     season().record(Inspections.of(plant, np.array([0]), day), "", "Ben", confirmed=True)
     for room in ("today", "record", "season"):
         go(season_app, room)
-        (shown,) = [one.value for one in season_app.warning if "Said otherwise" in one.value]
+        (shown,) = [one.value for one in season_app.info if "Said otherwise" in one.value]
         assert "Ann" in shown
         assert "Ben" in shown
         assert "plant 8" in shown

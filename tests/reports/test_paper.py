@@ -105,3 +105,10 @@ def test_a_list_of_names_runs_as_the_page_is_read_whichever_comes_first(monkeypa
     arabic = "".join(drawn(monkeypatch, Paragraph(names), language=ARABIC))
     assert spanish.index("دفيئة") < spanish.index("Olivar")
     assert arabic.index("دفيئة") > arabic.index("Olivar")
+
+
+def test_a_number_stays_in_its_name_beside_words_of_the_other_direction(monkeypatch):
+    text = Paragraph("Zona \u2068دفيئة 3\u2069, Olivar")
+    for language in (for_reports("es"), ARABIC):
+        said = "".join(drawn(monkeypatch, text, language=language))
+        assert 0 < said.index("دفيئة") - said.index("3") < len("3 \u2068\u2069")

@@ -88,7 +88,7 @@ class _PlotRecord:
 
     @property
     def name(self) -> str:
-        return self.season.plot.field.name
+        return words.isolated(self.season.plot.field.name)
 
     def harvest_from(self, first: date | None) -> str:
         """Return from when on harvest is allowed after a treatment; empty: nobody said.
@@ -152,8 +152,9 @@ def certification_report(
         sheets += [Sheet(words.CERT_SHEETS[1], page) for page in _pages(_applications(records))]
         tables = ((table,) for one in records for table in _inspections(one))
         sheets += [Sheet(words.CERT_SHEETS[2], page) for page in _pages(tables)]
-    plots = ", ".join(dict.fromkeys(one.season.plot.field.name for one in records))
-    return Report(plots, title, on, tuple(sheets))
+    plots = [*dict.fromkeys(one.season.plot.field.name for one in records)]
+    named = plots[0] if len(plots) == 1 else ", ".join(map(words.isolated, plots))
+    return Report(named, title, on, tuple(sheets))
 
 
 # -- pages

@@ -82,10 +82,10 @@ def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
                 paper=paper,
             )
         )
-    from fpdf import FPDF  # noqa: PLC0415 - a second to import
+    from fieldmon.reports.paper import Paper  # noqa: PLC0415 - a second to import
 
     fonts = FontSet.of([*report.words(), *_own_words(report.language)])
-    pdf = FPDF(format=PAPERS[paper])
+    pdf = Paper(PAPERS[paper], right_to_left=report.language.right_to_left)
     with working_folder() as folder:
         for font in fonts.fonts:
             file = Path(folder) / f"{font.family}{font.style}.ttf"
@@ -95,7 +95,7 @@ def pdf_bytes(report: Report, paper: str = "a4") -> bytes:
         pdf.set_fallback_fonts(sorted(families - {"open"}))
         pdf.set_text_shaping(use_shaping_engine=True)
         pdf.set_auto_page_break(auto=False)
-        pdf.set_title(f"{report.plot}: {report.title}")
+        pdf.set_title(f"{words.isolated(report.plot)}: {report.title}")
         pdf.set_lang(report.language.code)
         pdf.set_creation_date(datetime.combine(report.on, datetime.min.time(), UTC))
         page = _Page(pdf, fonts, PAPERS[paper], report)

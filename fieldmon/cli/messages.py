@@ -210,14 +210,15 @@ def tell_clock_change(start: datetime, hours: float, field: Field) -> None:
 
 
 def tell_past_midnight(on: date, settings: MonitoringSettings) -> None:
-    """Print that a season's work goes past midnight, if so: what is found then has another date."""
+    """Print that a season's work goes past midnight, if so: times of then have another date."""
     start = datetime.combine(on, settings.starts)
     team = (timedelta(seconds=m.starts_s, hours=m.robot.hours) for m in settings.team)
     ends = start + max(team, default=timedelta(hours=settings.robot.hours))
     if ends.date() > start.date() and ends.time() != time():
         typer.echo(
-            f"seen: The work goes past midnight, to {ends:%H:%M}: what is found after that counts "
-            f"for {ends.date()}. To plan the rest of the work then, give --date {on}.",
+            f"seen: The work goes past midnight, to {ends:%H:%M}: a result with a time after that is "
+            f"of {ends.date()}, one of a route without a time of {on}. To plan the rest of the work "
+            f"then, give --date {on}.",
             err=True,
         )
 

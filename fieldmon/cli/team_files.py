@@ -31,7 +31,7 @@ def members_of(
 ) -> tuple[tuple[TeamMember, ...], time]:
     """Return the team of ``--robots``, and the local time at which the first of it starts.
 
-    `robot` is what its robots are; None: as the options of the worker have it.
+    `robot` is what those are of whom the table says no more; None: as the worker's options say.
     """
     usual_robot = worker.robot() if robot is None else robot
     from fieldmon.io.readers.team import read_team
@@ -47,10 +47,12 @@ def members_of(
     first = min(starts)
 
     def member(one: StatedMember, start: time) -> TeamMember:
-        kind = replace(worker, scout=True).robot() if one.scout else usual_robot
+        kind = usual_robot
+        if one.who == "scout" or (one.who == "robot" and (worker.scout or kind.on_foot)):
+            kind = replace(worker, scout=one.who == "scout").robot()
         late_s = 60.0 * (60 * (start.hour - first.hour) + start.minute - first.minute)
         own = replace(kind, **one.settings)  # type: ignore[arg-type]
-        if one.scout and not own.on_foot:
+        if one.who == "scout" and not own.on_foot:
             raise SettingError(
                 "a scout's row changes, turns and stops take what scouts take: leave row_change_s, "
                 "turn_180_s and stop_s empty."
@@ -58,7 +60,7 @@ def members_of(
         return TeamMember(one.name, own, one.gate, late_s)
 
     members = [_told_at(one, member, one, start) for one, start in zip(stated, starts, strict=True)]
-    _tell_team(members, [worker.scout or one.scout for one in stated])
+    _tell_team(members)
     return tuple(members), first
 
 
@@ -89,11 +91,12 @@ def _must_differ(stated: Sequence[StatedMember]) -> None:
             )
 
 
-def _tell_team(members: list[TeamMember], on_foot: list[bool]) -> None:
+def _tell_team(members: list[TeamMember]) -> None:
     """Say what a table was taken for: lines may leave out what the options say."""
     said = "; ".join(
-        f"{one.name}, {'scout' if walks else 'robot'}, {one.robot.hours:g} h{_wide(one.robot)}"
-        for one, walks in zip(members, on_foot, strict=True)
+        f"{one.name}, {'scout' if one.robot.on_foot else 'robot'}, {one.robot.hours:g} h"
+        f"{_wide(one.robot)}"
+        for one in members
     )
     typer.echo(f"seen: The team is {said}.", err=True)
 

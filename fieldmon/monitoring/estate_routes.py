@@ -58,8 +58,8 @@ class EstateRoute:
 
     @property
     def ends(self) -> datetime:
-        """Return when the route ends."""
-        return grid_clock(self.route.aisles.grid).after(self.begins, float(self.route.end_s))
+        """Return when the route ends, to the second that its file says."""
+        return grid_clock(self.route.aisles.grid).after(self.begins, round(self.route.end_s))
 
     @property
     def notes(self) -> RouteNotes:

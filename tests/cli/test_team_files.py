@@ -13,7 +13,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
 from fieldmon.planning.members import TeamMember
-from fieldmon.plot.robot import Robot
+from fieldmon.plot.robot import Robot, scout
 from tests.cli.estate import BEGINS, MITES, ZIP, filled_in
 
 
@@ -93,6 +93,15 @@ def test_each_of_a_table_has_its_own_width_and_the_rest_is_usual(tmp_path, capsy
     assert (wide.robot.width_m, wide.robot.length_m) == (1.4, 2.0)
     assert usual.robot == Robot()
     assert "wide, robot, 12 h, 1.4 m wide; usual, robot, 12 h." in capsys.readouterr().err
+
+
+def test_a_robot_of_a_table_is_one_though_the_seasons_work_with_scouts(tmp_path, capsys):
+    (tmp_path / "team.csv").write_text("name,who,hours\nR,robot,12\nS,scout,\nU,,\n")
+    told = str(tmp_path / "team.csv"), time(6)
+    for worker, usual in ((WorkerOptions(), scout()), (WorkerOptions(scout=True), None)):
+        made, _ = members_of(*told, worker, usual)
+        assert [one.robot for one in made] == [Robot(hours=12), scout(), scout()]
+        assert "R, robot, 12 h; S, scout, 4 h; U, scout, 4 h." in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

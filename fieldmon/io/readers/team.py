@@ -27,8 +27,8 @@ class StatedMember(NamedTuple):
     ----------
     name
         What the member is called.
-    scout
-        Whether it is a person on foot.
+    who
+        ``"scout"`` (a person on foot) or ``"robot"``; empty: as those of the season are.
     settings
         Settings of `Robot` that were stated.
     start
@@ -40,7 +40,7 @@ class StatedMember(NamedTuple):
     """
 
     name: str
-    scout: bool
+    who: str
     settings: dict[str, float]
     start: str | None
     gate: tuple[float, float] | None
@@ -91,8 +91,8 @@ def read_team(path: Path) -> tuple[StatedMember, ...]:
 
 
 def _member(values: dict[str, str], where: str) -> StatedMember:
-    who = values.get("who", "").casefold() or "robot"
-    if who not in {"robot", "scout"}:
+    who = values.get("who", "").casefold()
+    if who not in {"robot", "scout", ""}:
         raise FileProblem(
             worded(
                 "{where}: who must be robot or scout, but it is {who!r}.",
@@ -114,7 +114,7 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
     }
     gate, settings = _gate(numbers, where), _settings(numbers, where)
     start = values.get("start") or None
-    return StatedMember(values["name"], who == "scout", settings, start, gate, where)
+    return StatedMember(values["name"], who, settings, start, gate, where)
 
 
 def _gate(numbers: dict[str, float], where: str) -> tuple[float, float] | None:

@@ -6,10 +6,10 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.readers.team import read_team
 
 
-def test_a_name_alone_is_a_robot(tmp_path):
+def test_a_name_alone_is_as_those_of_the_season_are(tmp_path):
     (tmp_path / "t.csv").write_text("name\nr1\n\n#2\n", encoding="utf-8-sig")
     first, second = read_team(tmp_path / "t.csv")
-    assert first == ("r1", False, {}, None, None, f"{tmp_path / 't.csv'}, line 2")
+    assert first == ("r1", "", {}, None, None, f"{tmp_path / 't.csv'}, line 2")
     assert second.name == "#2"
 
 
@@ -18,7 +18,7 @@ def test_what_is_stated_is_said_in_the_words_of_a_robot(tmp_path):
         "Name;Who;speed_km_h;detection;start;lat;lon\nAnn;Scout;3,6;0,9;07:30;30.3;35.1\n"
     )
     (ann,) = read_team(tmp_path / "t.csv")
-    assert ann.scout
+    assert ann.who == "scout"
     assert ann.settings == pytest.approx({"speed_m_s": 1.0, "detection": 0.9})
     assert (ann.start, ann.gate) == ("07:30", (35.1, 30.3))
 

@@ -30,7 +30,7 @@ SETTINGS = {
 }
 COLUMNS = ("name", "who", *SETTINGS, "start", "lon", "lat")
 #: columns that hold no thousands
-_MOST = {
+MOST = {
     "hours": 24.0, "lon": 180.0, "lat": 90.0,
     "width_m": 10.0, "length_m": 10.0, "turning_radius_m": 20.0,
 }  # fmt: skip
@@ -168,7 +168,7 @@ def _settings(numbers: dict[str, float], where: str) -> dict[str, float]:
 
 def _number(text: str, name: str, where: str) -> float:
     try:
-        return told_number(text, name, _MOST.get(name, math.inf))
+        return told_number(text, name, MOST.get(name, math.inf))
     except SettingError as error:
         raise FileProblem(
             worded("{where}: {problem}", where=where, problem=error.args[0])

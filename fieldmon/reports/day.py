@@ -341,7 +341,7 @@ def _stops(facts: DayFacts) -> Table:
     lines, first = np.unique(label.line, return_index=True)
     rows, flow = [], 2 if len(lines) <= _MOST_WIDE else 3
     for line, k in sorted(zip(lines.tolist(), first.tolist(), strict=True), key=lambda one: one[1]):
-        own = label.number[label.line == line].tolist()
+        own = np.unique(label.number[label.line == line]).tolist()  # one come to twice is one
         rows.append(
             (
                 grid.row_signs[line] if grid.in_rows else NO_ROW,

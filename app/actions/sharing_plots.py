@@ -48,7 +48,7 @@ def show_button(plots: list[PlotState]) -> None:
 
 def show(plots: list[PlotState]) -> SharedPlots:
     """Show who works and what comes of it; return the plan."""
-    crew = _crew()
+    crew = _crew(shared_plots.usual_crew(plots))
     also = widget_memory.show(st.checkbox, texts.PLAN_ALL_ALSO, key="crew_also", default=False)
     wanted = plots if also else shared_plots.due(plots)
     if not wanted:
@@ -67,8 +67,7 @@ def show(plots: list[PlotState]) -> SharedPlots:
     return made
 
 
-def _crew() -> EstateCrew:
-    usual = EstateCrew()
+def _crew(usual: EstateCrew) -> EstateCrew:
     chosen, columns = dict[str, Any](), list[DeltaGenerator]()
     for k, (name, (least, most, step)) in enumerate(_LIMITS.items()):
         # each row has columns of its own: on a phone, how many and their hours stay together

@@ -53,8 +53,8 @@ def said(plot: PlotState) -> str:
     name = texts.isolated(plot.name)
     if plot.expected is None:
         return texts.PLOTS_TIP_NEW.format(name=name)
-    days = plot.days_since
-    seen = texts.PLOTS_SEEN[days] if days in (0, None) else texts.PLOTS_SEEN["n"].format(n=days)
+    days = "begun" if plot.days_since is None and plot.is_begun else plot.days_since
+    seen = texts.PLOTS_SEEN.get(days) or texts.PLOTS_SEEN["n"].format(n=days)
     return texts.PLOTS_TIP.format(name=name, expected=about(plot.expected), seen=seen)
 
 

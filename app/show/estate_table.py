@@ -30,9 +30,10 @@ if TYPE_CHECKING:
 
 # as wide together as the panel of a narrow phone: a number that is cut is another number
 _PX = {"name": 100, "area": 60, "days_since": 56, "expected": 80}
-_PLANNED_PX = {"name": 88, "who": 62, "when": 92, "finds": 58}
+_PLANNED_PX = {"name": 84, "who": 66, "when": 92, "finds": 56}
 # letters of a name that have room: files number the plots of one name at its end
 _LETTERS = 13
+_LETTERS_OF_WHO = 8
 
 
 def of(
@@ -52,7 +53,7 @@ def _planned(plots: list[PlotState], turns: tuple[PlannedTurn, ...]) -> Columns:
     names, column = texts.PLAN_ALL_COLUMNS, st.column_config
     own = [next((one for one in turns if one.state is plot), None) for plot in plots]
     columns: dict[str, Column] = {
-        names["who"]: [None if one is None else one.who for one in own],
+        names["who"]: [None if one is None else _who(one.who) for one in own],
         names["when"]: [None if one is None else _hours(one) for one in own],
         names["finds"]: [
             None if one is None else _rounded(one.route.expected_found) for one in own
@@ -61,6 +62,12 @@ def _planned(plots: list[PlotState], turns: tuple[PlannedTurn, ...]) -> Columns:
     how = {names[k]: column.TextColumn(width=_PLANNED_PX[k]) for k in ("who", "when")}
     finds = column.NumberColumn(format="localized", width=_PLANNED_PX["finds"])
     return columns, how | {names["finds"]: finds}
+
+
+def _who(name: str) -> str:
+    """Return who works, with the number that tells them apart: "inspector 1" is "insp. 1"."""
+    word, _, n = name.rpartition(" ")
+    return name if len(name) <= _LETTERS_OF_WHO or not n.isdecimal() else f"{word[:4]}. {n}"
 
 
 def _hours(turn: PlannedTurn) -> str:

@@ -48,10 +48,12 @@ class PlotState:
     number
         Which plot of its file it is; None: a season has one only.
     days_since
-        Days since a plant of it was inspected; None: never.
+        Days since it was seen, half of its plan at least; None: never.
     expected
         Plants still infested, as expected, with those found and only flagged; None: nobody asked
         yet.
+    is_begun
+        Whether a plant of it was inspected.
     """
 
     name: str
@@ -60,6 +62,7 @@ class PlotState:
     number: int | None = None
     days_since: int | None = None
     expected: float | None = None
+    is_begun: bool = False
 
 
 @dataclass(frozen=True)
@@ -125,7 +128,8 @@ def _of_season(name: str, season: Season) -> PlotState:
     of = season.key, season.revision, str(on), season
     expected = cached.still_infested(*of).expected
     seen = days_since(season, today)
-    return PlotState(name, name, season.plot.field.boundary, None, seen, expected)
+    begun = bool(len(season.inspections))
+    return PlotState(name, name, season.plot.field.boundary, None, seen, expected, begun)
 
 
 def open_plot(plot: PlotState) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import count
 from typing import TYPE_CHECKING
@@ -104,6 +105,27 @@ class _Ready:
         """Return it as it is called here."""
         units = chosen_units.units().in_sentences(self.known.on)
         return NamedPlot(self.plot.name, self.sampler, self.known, units)
+
+
+def usual_crew(plots: Iterable[PlotState]) -> EstateCrew:
+    """Return who works where nobody is told: one of those, with the hours, of all seasons.
+
+    Where they work with both, or there is none, it is a robot; where they have several hours, those
+    of `EstateCrew`.
+    """
+    robots: list[Robot] = []
+    for one in plots:
+        if one.number is None:
+            with suppress(FieldmonError):  # the plan says of it what is wrong
+                season = cached.season(seasons_folder.path_of(one.source))
+                robots += estate_day.robots_of(season)
+    hours = {one.hours for one in robots}
+    if robots and all(one.on_foot for one in robots):
+        usual = EstateCrew(robots=0, scouts=1)
+        return replace(usual, scout_hours=hours.pop()) if len(hours) == 1 else usual
+    if len(hours) == 1 and not any(one.on_foot for one in robots):
+        return EstateCrew(robot_hours=hours.pop())
+    return EstateCrew()
 
 
 def due(plots: Iterable[PlotState]) -> list[PlotState]:

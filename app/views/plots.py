@@ -35,12 +35,13 @@ def show() -> None:
     planned = {id(turn.state) for turn in turns}
     plots = sorted(plots, key=lambda one: id(one) not in planned) if planned else plots
     field_map.want(estate_map.content(plots, turns), MapAnswers(tapped=partial(_tapped, plots)))
-    st.caption(texts.PLOTS_PICK)
     table, config = estate_table.of(plots, turns)
     st.dataframe(
         table, hide_index=True, key="plots_table", selection_mode="single-row",
         on_select=partial(_picked, plots), column_config=config, placeholder="",
     )  # fmt: skip
+    # below: the table's own tools lie on what stands above it
+    st.caption(texts.PLOTS_PICK)
 
 
 def _watch(held: list[str]) -> None:

@@ -419,11 +419,13 @@ PLOTS_ALT = Plural("Map of {n} plot: {names}.", "Map of {n} plots: {names}.")
 PLOTS_COLUMNS = {"name": "plot", "days_since": "days", "expected": "infested"}
 PLOTS_HELP = {"days_since": "days since seen",
               "expected": "expected infested, found and only flagged ones too"}  # fmt: skip
-PLOTS_STATES = {"fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
-                "late": "a week ago or never", "new": "no season yet"}  # fmt: skip
+PLOTS_STATES = {
+    "fresh": "seen in the last 2 days", "due": "3 to 6 days ago",
+    "late": "a week ago or longer, or hardly begun", "new": "no season yet",
+}  # fmt: skip
 PLOTS_TIP = "{name}: {expected} infested expected, {seen}"
 PLOTS_TIP_NEW = "{name}: no season yet"
-PLOTS_SEEN = {0: "seen today", None: "never seen",
+PLOTS_SEEN = {0: "seen today", None: "never seen", "begun": "begun, less than half of a plan done",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
 PLAN_ALL = "Plan all that are due"

@@ -216,9 +216,9 @@ def tell_past_midnight(on: date, settings: MonitoringSettings) -> None:
     ends = start + max(team, default=timedelta(hours=settings.robot.hours))
     if ends.date() > start.date() and ends.time() != time():
         typer.echo(
-            f"seen: The work goes past midnight, to {ends:%H:%M}: a result with a time after that is "
-            f"of {ends.date()}, one of a route without a time of {on}. To plan the rest of the work "
-            f"then, give --date {on}.",
+            f"seen: The work goes past midnight, to {ends:%H:%M}: a result with a time after that "
+            f"is of {ends.date()}, one of a route without a time of {on}. To plan the rest of the "
+            f"work then, give --date {on}.",
             err=True,
         )
 

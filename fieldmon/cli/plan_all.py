@@ -117,7 +117,7 @@ def _tasks(plots: Estate, orders: Orders) -> dict[str, Task]:
         stated["speed_m_s"] = None if crew.speed_km_h is None else crew.speed_km_h / 3.6
         known = {name: value for name, value in stated.items() if value is not None}
         tasks[f"{number:0{digits}d}-{plain_name(plot.name)}.geojson"] = Task(
-            plot, crew.who, known, orders, crew.wrong or {}, crew.left_aside or ()
+            plot, crew.who, known, orders, crew.wrong or {}, crew.left_aside or {}
         )
     return tasks
 
@@ -253,6 +253,7 @@ def _work(name: str, task: Task) -> Row:
         "hours": round(route.end_s / 3600, 3),
         "drive_km": round(route.drive_m / 1000, 3),
         "infested_expected": round(float(route.believed.sum()), 3),
+        "sentence": " ".join(filter(None, task.left_aside.values())),
         "assumed": assumed_in_words(assumed),
     }
 

@@ -92,7 +92,7 @@ class Task:
     wrong
         Of what its file says, what no robot can be set to: a sentence by its setting.
     left_aside
-        Settings of `Robot` of which its file says what is no number.
+        Settings of `Robot` of which its file says no number, with what is wrong there, if anything.
     """
 
     plot: Field
@@ -100,10 +100,10 @@ class Task:
     stated: dict[str, float]
     orders: Orders
     wrong: dict[str, str] = field(default_factory=dict)
-    left_aside: tuple[str, ...] = ()
+    left_aside: dict[str, str] = field(default_factory=dict)
 
     def assumed(self, robot: Robot) -> list[Assumed]:
-        """Return what was taken of the robot where the file says what is no number."""
+        """Return what was taken of the robot where the file says no number."""
         return [
             Assumed(name, getattr(robot, name))
             for name in self.left_aside
@@ -121,7 +121,9 @@ class Task:
                 del ordered[name]
         if is_own(self.orders.sampler):  # another text is another sampler
             ordered["own"] = own_text(self.orders.sampler)
-        parts = (*self.plot.content, self.who, self.stated, *ordered.values())
+        # what was left aside stands in the summary
+        aside = [self.left_aside] * bool(self.left_aside)
+        parts = (*self.plot.content, self.who, self.stated, *ordered.values(), *aside)
         return digest(*parts, *vars(observations).values(), length=16)
 
 

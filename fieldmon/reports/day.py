@@ -355,7 +355,7 @@ def _stops(facts: DayFacts) -> Table:
     lines, first = np.unique(numbered.line, return_index=True)
     rows, flow = [], 2 if len(lines) <= _MOST_WIDE else 3
     for line, k in sorted(zip(lines.tolist(), first.tolist(), strict=True), key=lambda one: one[1]):
-        own = numbered.number[numbered.line == line].tolist()
+        own = np.unique(numbered.number[numbered.line == line]).tolist()  # come to twice is one
         rows.append(
             (
                 grid.line_signs[line] if grid.in_rows else NO_ROW,

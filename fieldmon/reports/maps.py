@@ -445,7 +445,7 @@ def _states(y: float) -> tuple[float, list[Part]]:
     for colour, name in zip(colours.STATES[:2], words.LEGEND_STATES, strict=True):
         parts.append(Areas((_box(x, y, 8.0),), fill=colour))
         parts.append(Lettering(x + 9.5, y, name, 7.0))
-        x += 34.0
+        x += 40.0  # "nunca inspeccionada" is the longest
     return x, parts
 
 

@@ -370,7 +370,8 @@ def _batches(facts: _Facts) -> Block:
         at = clock.at(datetime.fromisoformat(one.at))
         when = f"{facts.units.day(at.date())} {at:%H:%M}"
         who = one.by(contents.get(one.number))
-        rows.append((when, said, one.source, who, figure(one.rows)))
+        source = words.SOURCES.get(one.source, one.source)
+        rows.append((when, said, source, who, figure(one.rows)))
     if brought:
         begins = facts.units.day(facts.season.settings.begins)
         rows.append((begins, words.BATCH_BROUGHT, "", "", figure(brought)))

@@ -54,7 +54,7 @@ DAY_OF = "The route is that of {who}; the others of the team have their own."
 DAY_OF_NOBODY = "The route shown is that of one who works alone; those who are out have their own."
 TIME, FROM_TO = "Hours", "{start} to {end}"
 DRIVE, FINDS, OF_INFESTED = "Drive", "Expected finds", "of {n} infested on the route"
-OF_HIDDEN = "of {n} infested on the route, {seen} so that it can be seen"
+OF_HIDDEN = "of {n} infested, {seen} of them visible"
 FOUND_TODAY, OF_INSPECTED = "Found that day", "of {n} inspected"
 STOPS, STOPS_COLUMNS = "Stops by row, in order", ("row", "from", "plants", "which")
 WHICH_MANY = "{n} between {low} and {high}"
@@ -84,7 +84,7 @@ STANDS_HOT = "Finds cluster in {n}."
 STILL, INTERVAL = "Still infested", "{low} to {high} (90 %)"
 FOUND_SO_FAR, FOUND_TWICE = "Plants found", "in {n:,} finds"
 SHARE_FOUND, INSPECTED = "Share found", "Plants inspected"
-NOTHING_INSPECTED = "not known: nothing was inspected yet"
+NOTHING_INSPECTED = "nothing was inspected yet"
 CLEAN, CLEAN_NOTE = "Chance it is clean", "as believed"
 HOT_SPOTS, HOT_NOTE = "Hot spots", "see below"
 ROWS_UNSEEN = "Never inspected: {rows}."
@@ -125,6 +125,11 @@ BATCH_UNDONE = "{kind}, taken back"
 BATCH_ELSEWHERE = "{kind}, counts in another recording"
 BATCH_PART = "{kind}, of which {n:,} {n:counts|count}"
 BATCHES_NONE = "Nothing was recorded yet."
+#: where records come from that no file brought, as the season's file calls it
+SOURCES = {
+    "phone": "phone", "scout mode": "scout mode",
+    "added by another program": "added by another program",
+}  # fmt: skip
 BATCHES_REST = "... and {n} earlier; fieldmon status --batches lists all."
 TREATMENTS = "Treatments"
 TREATMENT_COLUMNS = ("day", "product", "plants", "works on", "harvest from")

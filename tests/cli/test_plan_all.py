@@ -49,7 +49,7 @@ def parcels(tmp_path):
     write_geojson(
         tmp_path / "parcels.geojson",
         shapes,
-        hours=[None, 1.5, "abc", None, 3.0, 3.0],
+        hours=[None, "1,5", "abc", None, "3.0", 3.0],
         robot=["robot", None, "scout", "donkey", None, None],
     )
     return tmp_path / "parcels.geojson"
@@ -76,6 +76,9 @@ def test_every_plot_is_planned_and_those_that_cannot_be_are_named(run, parcels, 
     assert "speed 2.5 km/h (3 plots: Plot 1, Plot 2, Plot 5)" in err
     assert "row spacing 4 m; plant" in rows["Plot 1"]["assumed"]
     assert "working day 4 h" in rows["Plot 3"]["assumed"]
+    assert rows["Plot 3"]["sentence"] == "Column 'hours' was left aside: it says 'abc'."
+    assert "working day 12 h" in rows["Plot 1"]["assumed"]
+    assert "working day" not in rows["Plot 2"]["assumed"]
     assert {rows[name]["file"] for name in refused} == {""}
     assert "4 of 6 plots planned" in out
     folder = parcels.parent / "routes"

@@ -141,7 +141,7 @@ def test_where_it_hides_a_day_tells_how_many_of_the_infested_can_be_seen(worked,
     chance = worked.evening(last + timedelta(days=1))
     assert ahead.infested == pytest.approx(chance[ahead.route.plant].sum())
     seen = estimate(ahead.route.expected_finds)
-    assert note(500.0) == f"of 500 infested on the route, {seen} so that it can be seen"
+    assert note(500.0) == f"of 500 infested, {seen} of them visible"
     assert note(None) == note(ahead.route.expected_finds) == f"of {seen} infested on the route"
 
 
@@ -365,6 +365,7 @@ def test_a_day_of_several_without_a_team_is_nobodys_drive_and_counts_a_plant_onc
     assert not {"Hours", "Drive"} & {*said}
     assert said["Plants inspected"].value == "6"
     assert "6 plants inspected" in paragraphs(report)[0]
+    assert sum(int(row[2]) for row in table(report, words.STOPS).rows) == 6
     assert facts.held.done == 6
 
 

@@ -6,8 +6,12 @@ from datetime import date
 
 import numpy as np
 import pytest
+from fpdf import FPDF
 
+from app.words.language import for_reports
+from fieldmon.compute.wording import LANGUAGES, worded
 from fieldmon.errors import SettingError
+from fieldmon.reports import maps, words
 from fieldmon.reports.content import (
     Illustration,
     KeyFigure,
@@ -20,7 +24,7 @@ from fieldmon.reports.content import (
     Table,
     TickList,
 )
-from fieldmon.reports.drawing import Drawing, Lettering, Strokes
+from fieldmon.reports.drawing import Areas, Drawing, Lettering, Strokes
 from fieldmon.reports.pdf import PAPERS, pdf_bytes
 from tests.reports.reading import opened, plain, sizes_mm, texts
 
@@ -183,3 +187,34 @@ def test_what_must_be_whole_takes_its_room_from_longer_tables():
                     rows=tuple((f"s{k}", f"v{k}") for k in range(24)))  # fmt: skip
     (page,) = texts(pdf_bytes(made(rows(500), whole)))
     assert all(f"v{k}" in page for k in range(24))
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+def test_what_stands_in_tables_and_figures_is_not_cut_in_any_language(code):
+    learnt = words.DETECTS_LEARNT, "62 %", words.FROM_LEARNT
+    found = words.TREATED, words.TREATED_VALUES[True], words.FROM_NOBODY
+    settings = Table(
+        words.SETTINGS, words.SETTING_COLUMNS, (learnt, found) * 2, (0.46, 0.2, 0.34), flow=2,
+        left=(0, 1, 2), whole=True,
+    )  # fmt: skip
+    hidden = worded(words.OF_HIDDEN, n="1,178", seen="1,176")
+    of_day = KeyFigures(4 * (KeyFigure(words.FINDS, "1", hidden),))
+    of_season = KeyFigures(6 * (KeyFigure(words.SHARE_FOUND, "–", words.NOTHING_INSPECTED),))
+    report = made(settings, of_day, of_season)
+    (page,) = texts(pdf_bytes(report.said_in(for_reports(code))))
+    assert "..." not in page
+
+
+def test_signs_of_a_legend_do_not_touch_the_words_before_them():
+    pdf = FPDF()
+    pdf.set_font("helvetica", "", 7)
+    legend = maps.legend(186.0, by_state=True)
+    said = [one for one in legend.parts if isinstance(one, Lettering)][:2]
+    boxes = [one.rings[0][:, 0].min() for one in legend.parts if isinstance(one, Areas)]
+    text = for_reports("es").say(said[0].text)
+    # Open Sans is a tenth wider
+    assert said[0].x + 1.1 * pdf.get_string_width(text) + 1.0 < boxes[1]
+
+
+def test_whence_records_come_is_said_in_the_language():
+    assert for_reports("es").say(words.SOURCES["phone"]) == "teléfono"

@@ -6,9 +6,9 @@ import * as store from "./store.js";
 
 export class Frames {
   // `changed` is called when another day is to be drawn; `shot` returns the map as a canvas, with a title;
-  // `save` takes a file's bytes and name; `gone` is called when the server has let go of a day
-  constructor(place, { changed, shot, save, gone }) {
-    Object.assign(this, { changed, shot, save, gone });
+  // `save` takes a file's bytes and name, `called` says what is shown; `gone` is called when the server has let go of a day
+  constructor(place, { changed, shot, save, gone, called = () => "" }) {
+    Object.assign(this, { changed, shot, save, gone, called });
     this.root = place.appendChild(element("div", { class: "play", hidden: true }));
     this.data = null;
     this.made = null;
@@ -111,7 +111,7 @@ export class Frames {
     for (const one of tools) one.disabled = true;
     try {
       const made = kind === "gif" ? await film.gif(this.pictures()) : await film.webm(this.canvases());
-      if (made && same()) this.save(kind === "gif" ? new Blob([made], { type: "image/gif" }) : made, `${words.film_name}.${kind}`);
+      if (made && same()) this.save(kind === "gif" ? new Blob([made], { type: "image/gif" }) : made, `${fileName(this.called()) || words.film_name}.${kind}`);
     } finally {
       this.filming = false;
       for (const one of tools) one.disabled = false;
@@ -135,4 +135,9 @@ export class Frames {
       yield { width, height, data: canvas.getContext("2d").getImageData(0, 0, width, height).data };
     }
   }
+}
+
+// Return what something is called in letters that a file's name may have anywhere.
+function fileName(name) {
+  return name.replace(/[\u2066-\u2069]/g, "").replace(/[\\/:*?"<>|\u0000-\u001f]/g, "_").trim();
 }

@@ -75,7 +75,7 @@ class MapPage {
     this.playback = new Playback(this.foot, () => this.drawLayers());
     this.frames = new Frames(this.foot, { changed: () => this.drawLayers(), save: (blob, name) => saved(blob, name),
       shot: async (day) => { await this.rendered(); return this.shot(day, FILM_PX); },
-      gone: () => this.tell("missing", this.turn) });
+      gone: () => this.tell("missing", this.turn), called: () => this.data.title ?? "" });
     this.drive = new Drive(this.foot, () => this.drawLayers());
     this.foot.append(this.credit);
     this.drawing = new Drawing(() => this.drawLayers(), (mode, points) => this.drawn(mode, points));
@@ -492,7 +492,7 @@ class MapPage {
       canvas: this.canvasPlace.querySelector("canvas"), size, part, most,
       colours: { ground: colour("--ground", "#e9ece4"), surface: colour("--surface", "#fff"), ink: colour("--ink", "#1b2a22"),
         route: colour("--route", "#0c3eaa"), onRoute: this.data.dark ? "#06202c" : "#fff" },
-      title: [this.data.title, said].filter(Boolean).join(" · "), credit: this.credit.hidden ? "" : this.credit.textContent,
+      title: [this.data.title, said].filter(Boolean).map((one) => `\u2068${one}\u2069`).join(" · "), credit: this.credit.hidden ? "" : this.credit.textContent,
       legend: this.legendShown(), signs: (kind, c) => this.signs.get(`${kind} ${c}`), bar: this.scale.length,
       labels: this.labels.placed, onPicture: this.root.classList.contains("over-picture"), rtl: this.data.direction === "rtl",
     });

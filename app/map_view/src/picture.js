@@ -1,6 +1,8 @@
 // The map as a picture of its own, for a report: what the panel leaves free, with what lies on it.
 
-const PAD = 12, LINE = 18, FONT = "system-ui, sans-serif";
+const PAD = 12, LINE = 18, TITLE_PX = 20, FONT = "system-ui, sans-serif";
+// on what is narrower the legend would lie over the plot
+const NARROW_PX = 600;
 
 // Return the part of the map that is taken: what panels leave free, in CSS pixels.
 export function freePart({ width, height }, { left, right, bottom }) {
@@ -16,11 +18,12 @@ export function composed(shot) {
   const ratio = Math.min(canvas.width / size.width, (shot.most ?? 4000) / part.width);
   const made = document.createElement("canvas");
   made.width = Math.round(part.width * ratio);
-  made.height = Math.round(part.height * ratio);
-  const pen = made.getContext("2d");
+  const pen = made.getContext("2d"), lines = linesOf(shot.legend ?? []), wide = lineWidth(pen, lines);
+  const place = legendPlace(part, lines.length, wide), high = part.height + place.below;
+  made.height = Math.round(high * ratio);
   pen.scale(ratio, ratio);
   pen.fillStyle = colours.ground;
-  pen.fillRect(0, 0, part.width, part.height);
+  pen.fillRect(0, 0, part.width, high);
   const own = canvas.width / size.width;
   pen.drawImage(canvas, part.x * own, part.y * own, part.width * own, part.height * own, 0, 0, part.width, part.height);
   pen.textBaseline = "middle";
@@ -28,7 +31,7 @@ export function composed(shot) {
     word(pen, { ...label, x: label.x - part.x, y: label.y - part.y }, colours, shot.onPicture);
   }
   if (shot.title) title(pen, shot, part);
-  legend(pen, shot, part);
+  legend(pen, shot, { width: part.width, height: high }, { ...place, wide });
   foot(pen, shot, part);
   return made;
 }
@@ -50,13 +53,19 @@ function word(pen, { x, y, t, k }, { surface, ink, route, onRoute }, onPicture) 
 }
 
 function title(pen, { title: said, colours, rtl }, part) {
-  pen.font = `600 20px ${FONT}`;
+  pen.font = `600 ${TITLE_PX}px ${FONT}`;
   pen.direction = rtl ? "rtl" : "ltr";
+  pen.font = `600 ${titleSize(pen.measureText(said).width, part.width)}px ${FONT}`;
   const wide = pen.measureText(said).width + 2 * PAD, x = rtl ? part.width - PAD - wide : PAD;
   box(pen, x, PAD, wide, 36, colours.surface);
   pen.fillStyle = colours.ink;
   pen.textAlign = "center";
   pen.fillText(said, x + wide / 2, PAD + 19);
+}
+
+// Return the size of letters in which a title has room that is so wide in the usual one.
+export function titleSize(wide, room) {
+  return Math.max(6, Math.min(TITLE_PX, Math.floor(10 * TITLE_PX * (room - 4 * PAD) / wide) / 10));
 }
 
 // Return the lines of a legend: a sign and its words each; a scale is one line a class.
@@ -67,19 +76,34 @@ export function linesOf(parts) {
   ]);
 }
 
-function legend(pen, { legend: parts, signs, colours, rtl }, part) {
+function lineWidth(pen, lines) {
+  pen.font = `12px ${FONT}`;
+  return Math.max(0, ...lines.map((line) => pen.measureText(line.title ?? line.text).width + (line.title ? 8 : 26)));
+}
+
+// Return how a legend of so many lines, so wide, lies in a picture: in how many columns and rows, how high it
+// is, and how much of it stands below the map: all of it where it would lie over the plot.
+export function legendPlace(part, n, wide) {
+  const narrow = part.width < NARROW_PX && n > 0;
+  const columns = narrow && 2 * wide + 3 * PAD <= part.width ? 2 : 1, rows = Math.ceil(n / columns);
+  const high = n ? rows * LINE + 2 * PAD - 6 : 0;
+  return { columns, rows, high, below: narrow ? high : 0 };
+}
+
+function legend(pen, { legend: parts, signs, colours, rtl }, { width, height }, { columns, rows, high, below, wide }) {
   const lines = linesOf(parts ?? []);
   if (!lines.length) return;
   pen.direction = rtl ? "rtl" : "ltr";
   pen.textAlign = rtl ? "right" : "left";
-  pen.font = `12px ${FONT}`;
-  const wide = Math.max(...lines.map((line) => pen.measureText(line.title ?? line.text).width + (line.title ? 8 : 26))) + 2 * PAD;
-  const high = lines.length * LINE + 2 * PAD - 6;
-  const left = rtl ? PAD : part.width - PAD - wide, top = part.height - PAD - high;
-  box(pen, left, top, wide, high, colours.surface);
-  const from = rtl ? left + wide - PAD : left + PAD, way = rtl ? -1 : 1;
+  const all = below ? width : wide + 2 * PAD, left = below ? 0 : rtl ? PAD : width - PAD - all;
+  const top = below ? height - high : height - PAD - high;
+  if (below) {
+    pen.fillStyle = colours.surface;
+    pen.fillRect(left, top, all, high);
+  } else box(pen, left, top, all, high, colours.surface);
+  const way = rtl ? -1 : 1, begins = rtl ? left + all - PAD : left + PAD, each = (all - PAD) / columns;
   lines.forEach((line, k) => {
-    const y = top + PAD + (k + 0.5) * LINE - 3;
+    const from = begins + way * each * Math.floor(k / rows), y = top + PAD + ((k % rows) + 0.5) * LINE - 3;
     pen.fillStyle = colours.ink;
     pen.font = `${line.title ? "600 " : ""}12px ${FONT}`;
     if (line.title) pen.fillText(line.title, from, y);

@@ -12,12 +12,12 @@ const NAMES = ["1 May", "2 May", "3 May"];
 
 globalThis.fetch = async (url) => ({ ok: true, json: async () => ({ id: "plants", day: url }) });
 
-function framed(more = {}) {
+function framed(more = {}, called = "") {
   const seen = [], saved = [];
   const frames = new Frames(place(), {
     changed: () => seen.push(frames.of([{ id: "plan" }, { id: "plants", day: "now" }, { id: "route" }]).map((one) => one.day ?? one.id)),
     shot: async (name) => ({ width: 4, height: 3, name, getContext: () => ({ getImageData: () => ({ data: new Uint8ClampedArray(48).fill(9) }) }) }),
-    save: (blob, name) => saved.push([blob, name]),
+    save: (blob, name) => saved.push([blob, name]), called: () => called,
   });
   const layers = NAMES.map((_, k) => [{ id: "plants", url: `day${k}` }]);
   frames.show({ key: "k", names: NAMES, layers, now: 2, ...more }, WORDS);
@@ -95,6 +95,12 @@ test("a film is a GIF of every day in order, and the map then shows the day it s
   assert.equal(new TextDecoder().decode(bytes.slice(0, 6)), "GIF89a");
   assert.equal(frames.day, "2 May");
   assert.equal(frames.films.every((one) => !one.disabled), true);
+});
+
+test("a film is called as what it shows, in letters that a file's name may have", async () => {
+  const { frames, saved } = framed({}, "\u2068Olivar / Sur\u2069 «B»: دفيئة 3");
+  await frames.record("gif", WORDS);
+  assert.equal(saved[0][1], "Olivar _ Sur «B»_ دفيئة 3.gif");
 });
 
 test("a map without days shows no slider, and the same days sent again stay where they are", async () => {

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { foot, freePart, linesOf } from "../src/picture.js";
+import { foot, freePart, legendPlace, linesOf, titleSize } from "../src/picture.js";
 
 test("what panels leave free is taken, and never nothing", () => {
   const size = { width: 1440, height: 840 };
@@ -27,4 +27,19 @@ test("the scale bar's number and unit stand in the order of the language", () =>
     foot(pen, { bar: { px: 80, text: "10 m" }, credit: "", colours: {}, rtl }, { width: 800, height: 400 });
     assert.equal(said.get("10 m"), rtl ? "rtl" : "ltr");
   }
+});
+
+test("a picture as narrow as a phone has its legend below the map, a wide one on it", () => {
+  const wide = legendPlace({ width: 1040, height: 840 }, 8, 200);
+  assert.deepEqual([wide.below, wide.columns], [0, 1]);
+  const phone = legendPlace({ width: 390, height: 430 }, 8, 150);
+  assert.ok(phone.below > 0 && phone.high <= phone.below, "none of it lies on the plot");
+  assert.deepEqual([phone.columns, phone.rows], [2, 4]);
+  assert.equal(legendPlace({ width: 390, height: 430 }, 8, 300).columns, 1);
+  assert.equal(legendPlace({ width: 390, height: 430 }, 0, 0).below, 0);
+});
+
+test("a title too long for a picture is set smaller", () => {
+  assert.equal(titleSize(300, 390), 20);
+  assert.ok(titleSize(700, 390) * 700 / 20 + 48 <= 390);
 });

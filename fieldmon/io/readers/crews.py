@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from fieldmon.compute.wording import worded
+from fieldmon.errors import SettingError
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import Imported, ImportMessage
 from fieldmon.io.parse.columns import plain
-from fieldmon.io.parse.values import is_missing, numbers
+from fieldmon.io.parse.values import is_missing, numbers, told_number
 from fieldmon.io.readers.known_rows import left_aside
-from fieldmon.io.readers.team import SETTINGS
+from fieldmon.io.readers.team import MOST, SETTINGS
 from fieldmon.plot.robot import broken_rule
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.io.formats.layer import Layer
 
 _WHO = ("robot", "crew", "who", "worker", "inspector")
@@ -40,7 +44,8 @@ class Crew(NamedTuple):
     wrong
         What no robot can be set to, a sentence by its setting of `Robot`; None where nothing is.
     left_aside
-        Settings of `Robot` of which a column says what is no number; None where none does.
+        Settings of `Robot` of which a column says no number, with what is wrong there; empty: it is
+        left open. None where each says one.
     """
 
     who: str | None = None
@@ -48,7 +53,7 @@ class Crew(NamedTuple):
     speed_km_h: float | None = None
     look_s: float | None = None
     wrong: dict[str, str] | None = None
-    left_aside: tuple[str, ...] | None = None
+    left_aside: dict[str, str] | None = None
 
 
 def crews_of(layer: Layer, names: list[str]) -> Imported[dict[str, Crew]]:
@@ -57,19 +62,20 @@ def crews_of(layer: Layer, names: list[str]) -> Imported[dict[str, Crew]]:
     called = {plain(column): column for column in layer.columns}
     columns: dict[str, list[Any]] = {"who": [None] * len(names)}
     broken: list[dict[str, str]] = [{} for _ in names]
-    aside: list[list[str]] = [[] for _ in names]
+    aside: list[dict[str, str]] = [{} for _ in names]
     who = next((called[name] for name in _WHO if name in called), None)
     if who is not None:
         columns["who"] = [text(value) or None for value in layer.column(who)]
     for setting, synonyms in _NUMBERS.items():
         column = next((called[plain(s)] for s in synonyms if plain(s) in called), None)
-        stated = np.full(len(names), np.nan) if column is None else numbers(layer.column(column))
+        stated = np.full(len(names), np.nan)
         if column is not None:
+            stated = _stated(layer.column(column), setting)
             wrong += left_aside(column, layer.column(column), ~np.isnan(stated), names)
             of_robot = SETTINGS[setting]
             for k, value in enumerate(stated.tolist()):
                 if np.isnan(value):
-                    aside[k] += [] if is_missing(layer.column(column)[k]) else [of_robot]
+                    aside[k][of_robot] = _unused(column, layer.column(column)[k])
                 elif rule := broken_rule(of_robot, value, with_unit=True):
                     broken[k][of_robot] = worded(
                         "Column {column!r} must be {rule}, but it is {value:g}.",
@@ -79,7 +85,26 @@ def crews_of(layer: Layer, names: list[str]) -> Imported[dict[str, Crew]]:
                     )
         columns[setting] = [None if np.isnan(value) else float(value) for value in stated]
     columns["wrong"] = [each or None for each in broken]
-    columns["left_aside"] = [tuple(each) or None for each in aside]
+    columns["left_aside"] = [each or None for each in aside]
     rows = zip(*columns.values(), strict=True)
     crews = {name: Crew(*row) for name, row in zip(names, rows, strict=True)}
     return Imported(crews, tuple(wrong))
+
+
+def _stated(cells: NDArray[np.object_], setting: str) -> NDArray[np.float64]:
+    """Return a column's numbers; where one has another decimal mark than the rest, its own."""
+    read = numbers(cells)
+    for k in np.flatnonzero(np.isnan(read)).tolist():
+        if not is_missing(cells[k]):
+            with suppress(SettingError):
+                read[k] = told_number(text(cells[k]), setting, MOST[setting])
+    return read
+
+
+def _unused(column: str, cell: object) -> str:
+    """Return what of a cell was left aside, in a sentence; empty: it holds nothing."""
+    if is_missing(cell):
+        return ""
+    return worded(
+        "Column {column!r} was left aside: it says {cell!r}.", column=column, cell=text(cell)
+    )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 SETTINGS = {said.column: name for name, said in SAID_IN.items()}
 COLUMNS = ("name", "who", *SETTINGS, "start", "lon", "lat")
 #: what is more as thousands is none
-_MOST = {"lon": 180.0, "lat": 90.0} | {said.column: said.most for said in SAID_IN.values()}
+MOST = {"lon": 180.0, "lat": 90.0} | {said.column: said.most for said in SAID_IN.values()}
 
 
 class StatedMember(NamedTuple):
@@ -152,7 +152,7 @@ def _settings(numbers: dict[str, float], where: str) -> dict[str, float]:
 
 def _number(text: str, name: str, where: str) -> float:
     try:
-        return told_number(text, name, _MOST[name])
+        return told_number(text, name, MOST[name])
     except SettingError as error:
         raise FileProblem(
             worded("{where}: {problem}", where=where, problem=error.args[0])

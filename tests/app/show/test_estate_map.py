@@ -100,3 +100,9 @@ def test_a_plot_says_what_is_expected_and_when_it_was_seen_unless_nobody_asked()
     assert texts.PLOTS_SEEN[None] in never
     assert texts.PLOTS_SEEN[0] in today
     assert "7" in late
+
+
+def test_a_plot_whose_plan_was_hardly_begun_is_late_but_not_never_seen():
+    begun = a_plot("begun", 35.0, expected=1.0, is_begun=True)
+    assert texts.PLOTS_SEEN["begun"] in estate_map.said(begun)
+    assert estate_map.state_of(begun) == "late"

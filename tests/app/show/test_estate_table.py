@@ -9,6 +9,7 @@ import shapely
 from app.show import estate_table
 from app.state.estate import PlotState
 from app.words import texts
+from fieldmon.compute.wording import LANGUAGES
 
 OUTLINE = shapely.MultiPolygon([shapely.box(0, 0, 1, 1)])
 PLOTS = [PlotState("b", "b", OUTLINE, days_since=4, expected=2.5), PlotState("a", "a", OUTLINE, 0)]
@@ -34,6 +35,20 @@ def test_plots_stand_in_their_order_with_their_area_and_state():
     assert table["ha"].iloc[0] == pytest.approx(1.23e6)
     assert table[names["expected"]].iloc[0] == 2.5
     assert list(estate_table.of(PLOTS[1:])[0]) == [names["name"], "ha"], "no more is known of it"
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+def test_who_works_is_said_with_its_number_in_every_language(code, speaking):
+    speaking(code)
+    for name in (texts.ROBOT_NAMED, texts.SCOUT_NAMED):
+        one = turn(PLOTS[0])
+        one.who = str(name).format(n=10)
+        table, how = estate_table.of(PLOTS, (one,))
+        column = str(texts.PLAN_ALL_COLUMNS["who"])
+        said = table[column].iloc[0]
+        assert said.endswith(" 10")
+        # letters of a table are some six pixels wide, and eight lie on each side
+        assert 6.2 * len(said) + 16 <= how[column]["width"]
 
 
 def test_a_plan_says_who_works_where_and_leaves_the_others_empty():

@@ -44,6 +44,7 @@ def test_a_season_says_when_it_was_seen_and_what_is_expected(season_app, season)
     assert (f"seen {days} days ago" if days else "seen today") in area["t"]
     left, _ = estate.plots()
     assert left[0].expected > 0
+    assert left[0].is_begun
 
 
 @pytest.mark.usefixtures("session")

@@ -16,7 +16,7 @@ from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.estate_day import EstatePlot, share_estate
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot.local_clock import local_clock
-from fieldmon.plot.robot import Robot
+from fieldmon.plot.robot import Robot, scout
 from fieldmon.samplers import sampler
 
 OUTLINE = shapely.MultiPolygon([shapely.box(0, 0, 1, 1)])
@@ -89,6 +89,23 @@ def test_a_season_is_planned_by_what_it_knows_and_one_that_is_gone_is_said(
     assert len(by_itself) > 10
     assert len(made.problems) == 1
     assert "gone" in made.problems[0]
+
+
+@pytest.mark.usefixtures("session")
+def test_where_all_seasons_are_scouts_a_scout_of_their_hours_is_usual(
+    begun_file, seasons_folder, season
+):
+    plots, _ = estate.plots()
+    assert shared_plots.usual_crew(plots) == EstateCrew(), "plots of the sample say nobody"
+    shutil.copy(begun_file, seasons_folder)
+    for robot, usual in (
+        (Robot(hours=5), EstateCrew(robot_hours=5)),
+        (scout(), EstateCrew(robots=0, scouts=1, scout_hours=4)),
+    ):
+        settings = season().settings
+        season().change(replace(settings, robot=robot), settings)
+        plots, _ = estate.plots()
+        assert shared_plots.usual_crew([*plots, plot("gone", None)]) == usual
 
 
 @pytest.mark.usefixtures("session")

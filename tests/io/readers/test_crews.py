@@ -5,11 +5,13 @@ import pytest
 from fieldmon.io.readers.crews import Crew, crews_of
 from tests.io.tables_of_cells import table
 
+B_ASIDE = {"hours": "", "speed_m_s": "Column 'speed_km_h' was left aside: it says 'x'."}
+
 
 def test_each_plot_has_its_own_crew_and_what_is_not_said_is_none():
     layer = table(name=["a", "b"], crew=["Ann", ""], hours=["3,5", None], speed_km_h=[2.5, "x"])
     read = crews_of(layer, ["a", "b"])
-    assert read.value == {"a": Crew("Ann", 3.5, 2.5), "b": Crew(left_aside=("speed_m_s",))}
+    assert read.value == {"a": Crew("Ann", 3.5, 2.5), "b": Crew(left_aside=B_ASIDE)}
     (doubt,) = read.messages
     assert "'speed_km_h' says" in doubt.sentence
     assert "1 plot: b ('x')" in doubt.sentence

@@ -168,7 +168,9 @@ def test_a_decimal_mark_told_by_hand_is_taken():
 @pytest.mark.parametrize(
     ("cells", "more", "first", "said"),
     [
-        (["1.250", "2.000"], {}, 1.25, "1.250 were read as decimals"),
+        (["1.250", "2.000"], {}, 1250.0, "1.250 were read as thousands"),
+        (["1.250", "7"], {"lat": ["30.35", "30.36"]}, 1250.0, "1.250 were read as thou"),
+        (["1.250", "2,000"], {}, 1.25, "1.250 were read as decimals"),
         (["1,250", "7"], {}, 1250.0, "1,250 were read as thousands"),
         (["1.250", "2,5"], {}, 1250.0, None),
         (["1.250", "7"], {"lat": ["30,35", "30,36"]}, 1250.0, "1.250 were read as thou"),

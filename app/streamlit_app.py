@@ -76,7 +76,7 @@ def load(*, map_sent: bool = False) -> None:
     FILES.enter_context(kept_open())
 
 
-def page(run: Callable[[], None], **settings: Any) -> st.Page:  # noqa: ANN401 - those of a page
+def shown_page(run: Callable[[], None], **settings: Any) -> st.Page:  # noqa: ANN401 - those of a page
     """Return a page that this script shows, see below."""
     made = st.Page(run, **settings)
     SHOWN_BY[made.url_path] = run
@@ -103,7 +103,7 @@ def page_of(name: str) -> st.Page:
             else:
                 in_panel(name)
 
-    return page(
+    return shown_page(
         run, title=texts.MENU[name], icon=f":material/{menu.MENU[name].icon}:",
         url_path=name, default=name == "today",
     )  # fmt: skip
@@ -187,8 +187,8 @@ turned = st.navigation(
     {
         "": [*MENU_PAGES.values()],
         texts.RESEARCH: [
-            page(page_study, title=texts.STUDY, icon=":material/science:", url_path="study"),
-            page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
+            shown_page(page_study, title=texts.STUDY, icon=":material/science:", url_path="study"),
+            shown_page(page_prior, title=texts.PRIOR, icon=":material/science:", url_path="prior"),
         ],
     },
     position="top",

@@ -101,7 +101,8 @@ class Threshold:
         if not self.is_for_another(pest):
             return ""
         return worded(
-            "The action threshold {name!r} is for {pests}, but the season's pest is {pest}.",
+            "The action threshold {name!r} is for {pests}, but the season's pest is {pest}: take "
+            "one for it, or a share of the plants.",
             name=self.name,
             pests=", ".join(self.pests),
             pest=pest,

@@ -215,8 +215,7 @@ class MonitoringSettings:
         return (
             worded(
                 "This season was begun before seasons took what their pest says: {told}. To go by "
-                "the pest, take it out and name it again, with its weather: fieldmon change "
-                "--pest.",
+                "the pest: fieldmon change --pest none, then fieldmon change --pest with its name.",
                 told=joined("; ", dict.fromkeys(told)),
             ),
         )

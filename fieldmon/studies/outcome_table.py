@@ -9,6 +9,7 @@ from math import isfinite
 from time import monotonic
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar
 
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.atomic_write import others_waiting, write_whole
 
@@ -115,10 +116,20 @@ class OutcomeTable(Generic[Row]):
             self.save()
 
     def save(self) -> None:
-        """Write the file, into a folder that is made where it is not there."""
+        """Write the file, into a folder that is made where it is not there.
+
+        Raise `FileProblem` where it cannot be read any more, once a file beside it has all chunks.
+        """
         self.file.parent.mkdir(parents=True, exist_ok=True)
         with others_waiting(self.file.parent):
-            self._take_in()
+            try:
+                self._take_in()
+            except FileProblem as problem:
+                beside = self.file.with_suffix(f".kept{self.file.suffix}")
+                rows = [row for each in self._by_key.values() for row in each]
+                write_whole(beside, csv_text(rows, self._kind).encode())
+                said = worded("What was simulated is in {name}.", name=beside.name)
+                raise FileProblem(joined(" ", (problem.args[0], said))) from problem
             asked = set(self._order)
             others = [key for key in self._by_key if key not in asked]
             rows = [row for key in (*others, *self._order) for row in self._by_key.get(key, [])]

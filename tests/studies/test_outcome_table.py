@@ -119,11 +119,26 @@ def test_of_two_studies_in_one_table_at_once_both_are_kept(tmp_path):
     assert one.asked() == outcomes("A", 0)
 
 
+def test_what_was_simulated_is_kept_beside_a_table_that_can_no_longer_be_read(tmp_path):
+    file = tmp_path / "samplers.csv"
+    table = OutcomeTable(file, [("A", 0)], SeasonOutcome)
+    table.keep(("A", 0), outcomes("A", 0))
+    file.write_text("cell;seed\n")
+    with pytest.raises(FileProblem, match=r"What was simulated is in samplers\.kept\.csv\.$"):
+        table.save()
+    assert outcomes_from((tmp_path / "samplers.kept.csv").read_text(), "", SeasonOutcome) == (
+        outcomes("A", 0)
+    )
+
+
 def test_while_a_table_is_written_others_wait_with_reading_it(tmp_path, monkeypatch):
     fcntl = pytest.importorskip("fcntl")
     table = OutcomeTable(tmp_path / "samplers.csv", [("A", 0)], SeasonOutcome)
 
+    tried = []
+
     def written(*_):
+        tried.append(True)
         holding = os.open(tmp_path, os.O_RDONLY)
         try:
             with pytest.raises(BlockingIOError):
@@ -133,6 +148,7 @@ def test_while_a_table_is_written_others_wait_with_reading_it(tmp_path, monkeypa
 
     monkeypatch.setattr(outcome_table, "write_whole", written)
     table.save()
+    assert tried
 
 
 def test_the_command_writes_table_and_report_and_goes_on_where_it_stopped(tmp_path):

@@ -1,5 +1,5 @@
 // What a person does is one step back: the page writes its words into the address one after the other, and
-// each was a step. Back led from a room to the same room.
+// each was a step. Back led from a page to the same page.
 
 let heard = false, acted = false;
 

@@ -98,7 +98,7 @@ class MapPage {
     const turn = (this.turn = (this.turn ?? 0) + 1);
     this.speak(data);
     this.restore();
-    this.shape.again(); // another room's panel may be wider, and now there are words
+    this.shape.again(); // another page's panel may be wider, and now there are words
     this.root.classList.toggle("dark", data.dark);
     this.root.classList.toggle("selects", Boolean(data.select));
     this.canvasPlace.setAttribute("aria-label", data.words.keys);

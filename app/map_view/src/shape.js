@@ -53,7 +53,7 @@ export function listed() {
 }
 
 // Set the panel's handle up; return what fits it to the page again, and what takes it away. Who asks is told
-// when the panel covers more or less: another room's may be wider.
+// when the panel covers more or less: another page's may be wider.
 export function keepShape(words, told = () => {}) {
   const shape = shapeOf();
   const host = document.body.appendChild(element("div", { class: "fieldmon-shape" }));

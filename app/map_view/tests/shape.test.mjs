@@ -45,7 +45,7 @@ test("who asks is told when the panel covers more or less of the sides, and not 
   told = 0;
   shape.again();
   assert.equal(told, 0);
-  made.panel = { left: 0, top: 60, width: 560, right: 560 }; // another room's
+  made.panel = { left: 0, top: 60, width: 560, right: 560 }; // another page's
   shape.again();
   assert.equal(told, 1);
   shape.again();

@@ -34,7 +34,7 @@ _NAMES = {
     "dateofobservation recorddate fechamuestreo fechademuestreo datederelevé datereleve "
     "erfassungsdatum aufnahmedatum תאריך תאריךבדיקה תאריךניטור תאריךדיגום inspectiondate inspdate "
     "dateinspected inspectedon scoutingdate scoutdate monitoringdate datesampled sampledon "
-    "dateofsampling dateofinspection when",
+    "dateofsampling dateofinspection creationdate when",
     "year": "year jahr año ano annee année anno שנה yr yyyy",
     "month": "month monat mes mês mois mese חודש mon mm",
     "day": "day tag dia día jour giorno יום dd dayofmonth",
@@ -125,11 +125,19 @@ _SPLIT = re.compile(r"[\W_]+|(?<=[a-z])(?=[A-Z])")
 
 def is_of_rows(name: str) -> bool:
     """Return whether one of the words of a column's name is a word for rows: Vine Row Label."""
-    words = {plain(word) for word in _SPLIT.split(name) if word}
-    return not words.isdisjoint(_ROW_WORDS) and not words & _OF_SPACINGS
+    words = _words(name)
+    return not words.isdisjoint(_ROW_WORDS) and not words & _OF_NO_NUMBER
 
 
-_OF_SPACINGS = frozenset({"spacing", "space", "width", "dist", "distance", "bearing", "m", "count"})
+def _words(name: str) -> frozenset[str]:
+    return frozenset(plain(word) for word in (name, *_SPLIT.split(name)) if word)
+
+
+_BESIDE_ROWS = """
+spacing space width dist distance bearing azimuth orientation direction length m count end start
+side status type
+"""
+_OF_NO_NUMBER = frozenset(_BESIDE_ROWS.split())
 _ROW_WORDS = frozenset(_PLAIN["row"]) - {"line", "linha", "rang"} | {"rows"}
 _ALL = frozenset(name for names in _PLAIN.values() for name in names)
 
@@ -193,15 +201,26 @@ def is_time(name: str) -> bool:
     return plain(name) in _TIMES or plain(name).endswith(("time", "date", "stamp"))
 
 
-_WRITTEN = re.compile(
-    r"creat|edit|updat|modif|uploaded|export|submi|synced|published|received|reported|entered"
-    r"|lastchange|processed|due|planned|next"
-)
+_WRITTEN_OR_SENT = """
+creation created create creationdate createdate createddate editdate lastediteddate edit edited
+editor update updated modified uploaded upload exported export submitted submission synced sync
+published received reported entered processed
+"""
+_WRITTEN = frozenset(_WRITTEN_OR_SENT.split())
+_WORK = re.compile(r"insp|sampl|scout|survey|visit|monitor|observ|collect|check|assess")
 
 
 def is_of_writing(name: str) -> bool:
-    """Return whether a column says by its name when a record was written, sent or is due."""
-    return bool(_WRITTEN.search(plain(name)))
+    """Return whether a column says by its name when a record was written or sent."""
+    return not _WRITTEN.isdisjoint(_words(name))
+
+
+def is_of_work(name: str) -> bool:
+    """Return whether a column says by its name the day of the work: of an inspection, a sample."""
+    if is_of_writing(name):
+        return False
+    own = plain(name)
+    return own in _TIMES or ("date" in own and _WORK.search(own) is not None)
 
 
 _HEIGHTS = frozenset({"z", "ele", "elevation", "alt", "altitude", "hdop", "vdop", "pdop"})

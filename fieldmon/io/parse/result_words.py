@@ -185,6 +185,21 @@ def meaning(cell: str) -> int | None:
     return FOUND.get(word, CLEAN.get(word))
 
 
+# what no other column of yes and no says
+_INFESTATION = re.compile(
+    r"infest|infect|infett|infizi|infiz|befall|diseas|healthy|pest|mite|milb|acar|\u00e1car|plaga"
+    r"|attack|ataca|attaq|attacc|krank|gesund|sano$|sana$|\bsain|malad|malat|enferm|besmet|aangetast"
+    r"|\u05e0\u05d2\u05d5\u05e2|\u0645\u0635\u0627\u0628|\u0633\u0644\u064a\u0645"
+)
+_OURS = frozenset({"found", "clean"})
+
+
+def tells_infestation(cells: Iterable[str]) -> bool:
+    """Return whether the words of a column are of infested plants, and not of any yes and no."""
+    words = {plain_word(cell) for cell in cells}
+    return words >= _OURS or any(_INFESTATION.search(word) for word in words)
+
+
 class ResultWords:
     """What the cells of one column of results mean.
 

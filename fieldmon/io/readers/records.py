@@ -30,7 +30,14 @@ from fieldmon.io.parse.clock import (
     without_midnights,
     zone_of,
 )
-from fieldmon.io.parse.columns import find, is_confidence, is_id, is_position, recognised
+from fieldmon.io.parse.columns import (
+    find,
+    is_confidence,
+    is_id,
+    is_of_writing,
+    is_position,
+    recognised,
+)
 from fieldmon.io.parse.lengths import accuracies
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.result_words import (
@@ -254,7 +261,9 @@ def _days(table: _Table, lonlat: NDArray[np.float64]) -> _Days:
         of_midnights = midnights_left_out(n_midnights_left_out(cells, days), name)
         day, zoned = _as_local(read.day, days, lonlat)
         read = read._replace(day=day)
-    of_dates = seen(worded("Dates were read from {where}.", where=quoted))
+    is_guess = name is not None and by_hand is None and is_of_writing(name)
+    said = worded("Dates were read from {where}.", where=quoted)
+    of_dates = guessed(said) if is_guess else seen(said)
     about = (*_about_dates(read, where), *of_midnights, *broken_times(unread))
     return _Days(read.day, at_s, [of_dates, *zoned, *about])
 

@@ -14,6 +14,7 @@ from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, 
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.result_words import meaning
 from fieldmon.io.parse.values import counted, dates, is_missing, number
+from fieldmon.io.readers.inspection_file.columns import own_column
 from fieldmon.io.sandbox import limits
 
 if TYPE_CHECKING:
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 _FEWEST = 2
 # columns called by numbers that are plants of a row
 _FEWEST_PLANTS = 3
+# what says of which plant a line is, or what was found
+_TELLING = ("plant", "count", "present", "position", "lon", "lat", "x", "y")
 
 
 def by_day(layer: Layer, options: RecordOptions) -> Layer:
@@ -56,11 +59,14 @@ def by_plant(layer: Layer, options: RecordOptions) -> Layer:
 
     Only where nothing else says which plant or what was found; any other table stays as it is.
     """
-    row = options.column("row") or find("row", layer.columns)
+    row = options.column("row")
+    row = find("row", layer.columns) if row is None else row or None
     numbered = [name for name in layer.columns if name.strip().isdecimal()]
     counts_on = [int(name) for name in numbered] == list(range(1, len(numbered) + 1))
     others = [name for name in layer.columns if name not in {row, *numbered}]
-    said = any(options.column(role) or find(role, others) for role in ("plant", "count", "present"))
+    said = any(options.column(role) or find(role, others) for role in _TELLING)
+    said |= layer.geometry is not None
+    said |= any(own_column(role, layer, numbered) for role in ("number", "ordinal", "id"))
     if row is None or row in numbered or not counts_on or len(numbered) < _FEWEST_PLANTS or said:
         return layer
     limits.check("records", len(layer) * len(numbered), limits.RECORDS, layer.name)
@@ -73,25 +79,23 @@ def by_plant(layer: Layer, options: RecordOptions) -> Layer:
 
 
 def _unfolded(
-    layer: Layer, days: dict[str, str], messages: list[ImportMessage], what_they_are: str
+    layer: Layer, named: dict[str, str], messages: list[ImportMessage], what_they_are: str
 ) -> Layer:
-    """Return one record a cell of the columns whose ``days``, or plants, are known."""
-    cells = np.stack([layer.columns[name] for name in days], axis=1)
+    """Return one record a cell of the columns that are ``named`` by days or plants."""
+    cells = np.stack([layer.columns[name] for name in named], axis=1)
     filled = np.array([[bool(text(cell)) for cell in row] for row in cells], dtype=bool)
     row, column = np.nonzero(filled)
     values = cells[row, column]
     long = layer.take(row)
-    columns = {name: cell for name, cell in long.columns.items() if name not in days}
+    columns = {name: cell for name, cell in long.columns.items() if name not in named}
     passed = [name for role in ("count", "present") if (name := find(role, columns)) is not None]
     for name in passed:
         del columns[name]
     if passed:
         messages.append(
-            seen(
-                worded("Beside the days, these were passed over: {names}.", names=", ".join(passed))
-            )
+            seen(worded("Beside them, these were passed over: {names}.", names=", ".join(passed)))
         )
-    day = np.array(list(days.values()), dtype=object)[column]
+    of = np.array(list(named.values()), dtype=object)[column]
     what = "count" if _are_counts(values) else "result"
     blank = filled.size - len(row)
     if blank:
@@ -105,7 +109,7 @@ def _unfolded(
         )
     return replace(
         long,
-        columns=columns | {what_they_are: day, what: values},
+        columns=columns | {what_they_are: of, what: values},
         messages=(*layer.messages, *messages),
     )
 

@@ -69,10 +69,13 @@ def test_finds_and_counts_are_called_by_their_names_in_many_languages(role, name
     assert find(role, ["crop", name]) == name
 
 
-@pytest.mark.parametrize("name", ["created_date", "CreationDate", "last_edited_date", "uploaded"])
+@pytest.mark.parametrize(
+    "name", ["created_date", "CreationDate", "last_edited_date", "Uploaded on"]
+)
 def test_when_a_record_was_written_is_no_day_of_the_work(name):
     assert is_of_writing(name)
-    assert not is_of_writing("Inspection date")
+    for other in ("Inspection date", "Expedition date", "Residue date", "Date next to gate"):
+        assert not is_of_writing(other)
 
 
 def test_rows_are_numbered_under_many_names():

@@ -46,11 +46,15 @@ def test_numbers_above_columns_are_plants_only_where_nothing_else_says_which():
         numbers,
         {"row": [1], "tree": [4], **numbers},
         {"row": [1], "found": [1], **numbers},
+        {"row": [1], "number": [5], **numbers},
+        {"row": [1], "lon": [35.1], "lat": [30.3], **numbers},
         {"row": [1], "1": [0], "2": [1]},
         {"row": [1], "1": [0], "2": [1], "4": [1]},
     ):
         layer = table(**columns)
         assert by_plant(layer, RecordOptions()) is layer
+    grid = table(row=[1], **numbers)
+    assert by_plant(grid, RecordOptions().naming(row="")) is grid
 
 
 def test_a_table_with_a_date_or_with_one_day_stays_as_it_is():

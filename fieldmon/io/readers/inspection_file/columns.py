@@ -13,7 +13,7 @@ from fieldmon.errors import ChoiceNeeded, ObservationError, SettingError
 from fieldmon.infestation.observations import ABSENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find, is_confidence, is_id, is_of_rows, plain, recognised
-from fieldmon.io.parse.result_words import ResultWords
+from fieldmon.io.parse.result_words import tells_infestation
 from fieldmon.io.parse.values import is_missing, presence, told_number
 
 if TYPE_CHECKING:
@@ -81,7 +81,6 @@ def is_own(role: str, name: str) -> bool:
 def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     """Return the columns that matter; raise `ChoiceNeeded` where nothing says what was found."""
     names = list(layer.columns)
-    _must_be_apart(options)
     line = _line(layer, options)
     number = own_column("number", layer, {line})
     plant = options.column("plant") or own_column("id", layer)
@@ -106,11 +105,14 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
                 "columns",
                 tuple(f"{role}={n}" for role in ("present", "count") for n in _open(layer)),
             )
-    if plant is not None and plant == line:
-        raise SettingError(_one_column(worded("row"), worded("plant"), plant))
-    if (told := options.column("present")) is not None and told in {line, plant}:
-        which = worded("plant") if told == plant else worded("row")
-        raise SettingError(_one_column(which, worded("result"), told))
+    _must_be_apart(
+        {
+            worded("row"): line,
+            worded("plant"): plant,
+            worded("result"): result,
+            worded("count"): count,
+        }
+    )
     if plant is not None and line is not None and number is None:
         plant, number = None, plant
     arrive = next((n for n in names if plain(n) == "arrive"), None)
@@ -133,7 +135,7 @@ def _line(layer: Layer, options: InspectionOptions) -> str | None:
     if (told := options.column("row")) is not None:
         return told or None  # empty: none is of rows
     named = find("row", layer.columns)
-    known = recognised(layer.columns)
+    known = recognised(layer.columns) | set(dict(options.columns).values())
     alike = [name for name in layer.columns if name not in known and is_of_rows(name)]
     alike = [name for name in alike if any(texts_in(layer, name))]
     by_number = options.column("plant") or find("plant", layer.columns)
@@ -154,31 +156,36 @@ def _line(layer: Layer, options: InspectionOptions) -> str | None:
 
 
 def by_its_words(layer: Layer, options: InspectionOptions) -> str | None:
-    """Return the one column of unknown name whose cells all say what is found; None: no such."""
+    """Return the one column of unknown name whose words say what is infested; None: no such.
+
+    Yes and no, marks and figures alone may be of anything.
+    """
+    told = set(dict(options.columns).values())
     known = recognised(layer.columns)
-    alike = []
-    for name in layer.columns:
-        if name in known or any(is_own(role, name) for role in _PLAIN):
-            continue
-        cells = [cell for cell in texts_in(layer, name).tolist() if cell]
-        words = ResultWords(cells, options)
-        if cells and all(words[cell] is not None and not _is_figure(cell) for cell in set(cells)):
-            alike.append(name)
+    alike = [
+        name
+        for name in layer.columns
+        if name not in known | told
+        and not any(is_own(role, name) for role in _PLAIN)
+        and tells_infestation(texts_in(layer, name).tolist())
+        and UNKNOWN not in _meanings(layer, name)
+    ]
     return alike[0] if len(alike) == 1 else None
 
 
-def _is_figure(cell: str) -> bool:
-    return cell.replace(".", "", 1).isdecimal()
+def _meanings(layer: Layer, name: str) -> set[int]:
+    """Return what the filled cells of a column say of an infestation."""
+    cells = {text(v) for v in layer.columns[name]}
+    return {presence(cell) for cell in cells if not is_missing(cell)}
 
 
-def _must_be_apart(options: InspectionOptions) -> None:
-    """Raise `SettingError` if two of row, plant, result and count are told to be one column."""
-    called = {"row": worded("row"), "plant": worded("plant"), "present": worded("result")}
-    roles = [(role, name) for role in called if (name := options.column(role))]
-    for k, (role, name) in enumerate(roles):
-        for other, same in roles[:k]:
+def _must_be_apart(roles: dict[str, str | None]) -> None:
+    """Raise `SettingError` if two of row, plant, result and count are one column."""
+    called = [(role, name) for role, name in roles.items() if name is not None]
+    for k, (role, name) in enumerate(called):
+        for other, same in called[:k]:
             if same == name:
-                raise SettingError(_one_column(called[other], called[role], name))
+                raise SettingError(_one_column(other, role, name))
 
 
 def _one_column(one: str, other: str, name: str) -> str:
@@ -222,9 +229,8 @@ def _open(layer: Layer) -> list[str]:
 
 def _looks_like_results(layer: Layer, name: str) -> bool:
     """Return whether every cell says found or clean, and one says clean: no plant's number does."""
-    cells = {text(v) for v in layer.columns[name]}
-    read = {presence(cell) for cell in cells if not is_missing(cell)}
-    return ABSENT in read and UNKNOWN not in read
+    said = _meanings(layer, name)
+    return ABSENT in said and UNKNOWN not in said
 
 
 def _result_name(layer: Layer, count: str | None) -> str | None:

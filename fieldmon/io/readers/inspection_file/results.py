@@ -105,7 +105,9 @@ def _by_result(
     known |= {cell: _NOT_INSPECTED for cell in known if is_gone(cell, options.gone)}
     numbers = (counted(cell, mark).number for cell in known)
     return [known[cell] for cell in cells], [
-        seen(worded("Results are in column {result!r}.", result=column)),
+        (seen if _is_named(column, options) else guessed)(
+            worded("Results are in column {result!r}.", result=column)
+        ),
         *guess,
         *_unread(cells, known, options),
         *about_minus(cells, words),
@@ -136,6 +138,11 @@ def results_in_names(layer: Layer, name: str, options: RecordOptions) -> list[Ce
     """Return what the names of waypoints in a column say."""
     words = ResultWords(["+"], options)
     return [_of_mark(text(v), words) for v in layer.column(name)]
+
+
+def _is_named(column: str, options: InspectionOptions) -> bool:
+    """Return whether a column is that of results by its name, or was told to be."""
+    return options.column("present") == column or bool(recognised([column]))
 
 
 def _mark(

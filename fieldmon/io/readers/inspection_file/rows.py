@@ -21,7 +21,6 @@ from fieldmon.io.options import source_name
 from fieldmon.io.parse.columns import is_position, plain
 from fieldmon.io.parse.result_words import gone_note
 from fieldmon.io.readers.inspection_file.columns import (
-    by_its_words,
     columns_of,
     detects_in,
     is_own,
@@ -126,7 +125,6 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
     )
     kept = whole.take(said)
     _of_one_pest(columns.species, texts_in(layer, columns.species)[said])
-    messages += _by_words(layer, columns, options)
     every = (*layer.messages, *messages, *results.messages, *more, *times.messages)
     return Imported(kept, every)
 
@@ -182,19 +180,13 @@ def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) 
     return np.array(cells or [""] * len(layer), dtype=np.str_)
 
 
-def _by_words(
-    layer: Layer, columns: InspectionColumns, options: InspectionOptions
-) -> list[ImportMessage]:
-    """Return a guess where the column of results was known by its words, not by its name."""
-    told = options.column("present"), options.column("count")
-    if any(told) or columns.result is None or columns.result != by_its_words(layer, options):
-        return []
-    return [guessed(worded("What was found is taken from column {name!r}.", name=columns.result))]
-
-
 def _of_one_pest(name: str | None, species: NDArray[np.str_]) -> None:
     """Ask for one pest where a column names several: a season is of one."""
     kinds = species_in(species.tolist()) if name else []
+    kinds = [
+        kind for kind in kinds if not kind.replace(".", "", 1).isdecimal()
+    ]  # a name is no number
+    kinds = [*{" ".join(kind.casefold().split()): kind for kind in reversed(kinds)}.values()][::-1]
     if len(kinds) < 2:
         return
     raise ChoiceNeeded(

@@ -19,7 +19,7 @@ from fieldmon.io.parse.clock import (
     without_midnights,
     zone_of,
 )
-from fieldmon.io.parse.columns import find, is_of_writing, is_time, plain
+from fieldmon.io.parse.columns import find, is_of_work, is_of_writing, plain
 from fieldmon.io.parse.values import dates, is_missing, is_written_as_day, numbers
 from fieldmon.io.readers.date_doubts import (
     broken_times,
@@ -27,7 +27,7 @@ from fieldmon.io.readers.date_doubts import (
     midnights_left_out,
     mixed_dates,
 )
-from fieldmon.io.readers.inspection_file.columns import arrivals_in, is_own, own_column, texts_in
+from fieldmon.io.readers.inspection_file.columns import arrivals_in, own_column, texts_in
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -173,14 +173,12 @@ def _columns(
     if told := options.column("date"):
         return told, time
     named = find("date", layer.columns, away)
-    alike = [
+    of_work = [
         name
         for name in layer.columns
-        if name not in away and (name == named or (is_time(name) and not is_own("time", name)))
+        if name not in away and is_of_work(name) and _has_days(layer, name, options)
     ]
-    of_work = [name for name in alike if not is_of_writing(name)]
-    of_work = [name for name in of_work if name == named or (~np.isnat(_days(layer, name))).any()]
-    if len(of_work) > 1 and (n := _n_apart([_days(layer, name) for name in of_work])):
+    if len(of_work) > 1 and (n := _n_apart([_days(layer, name, options) for name in of_work])):
         raise ChoiceNeeded(
             worded(
                 "A result must be of one day, but columns {names} say different days of {n} of "
@@ -192,12 +190,21 @@ def _columns(
             "columns",
             tuple(f"date={name}" for name in of_work),
         )
-    date = named if named in of_work else next(iter(of_work), None)
-    return date or (None if time else next(iter(alike), None)), time
+    if of_work:
+        return (named if named in of_work else of_work[0]), time
+    written = (name for name in layer.columns if name not in away and is_of_writing(name))
+    tells = time is not None and _has_days(layer, time, options)
+    sent = None if tells else next((n for n in written if _has_days(layer, n, options)), None)
+    return sent or (None if named and is_of_writing(named) else named), time
 
 
-def _days(layer: Layer, name: str) -> NDArray[np.datetime64]:
-    return dates(_object(texts_in(layer, name).tolist())).day
+def _has_days(layer: Layer, name: str, options: InspectionOptions) -> bool:
+    return bool((~np.isnat(_days(layer, name, options))).any())
+
+
+def _days(layer: Layer, name: str, options: InspectionOptions) -> NDArray[np.datetime64]:
+    cells = [cell if is_written_as_day(cell) else "" for cell in texts_in(layer, name).tolist()]
+    return dates(_object(cells), options.date_order).day
 
 
 def _n_apart(days: list[NDArray[np.datetime64]]) -> int:

@@ -130,7 +130,9 @@ def test_a_column_that_may_be_of_rows_beside_plants_alone_is_a_question(name):
     assert found(name, "plant", "found", row=name).number == "plant"
     whole_plot = found(name, "plant", "found", row="")
     assert (whole_plot.line, whole_plot.plant) == (None, "plant")
-    assert found("row spacing", "plant", "found").line is None
+    for other in ("row spacing", "Row orientation", "row_length"):
+        assert found(other, "plant", "found").line is None
+    assert found(name, "plant", present=name).line is None
 
 
 @pytest.mark.parametrize(
@@ -138,13 +140,18 @@ def test_a_column_that_may_be_of_rows_beside_plants_alone_is_a_question(name):
     [
         (["infested", "healthy"], "class"),
         (["infested", ""], "class"),
+        (["found", "clean"], "class"),
         (["1", "0"], None),
+        (["yes", "no"], None),
+        (["ok", "x"], None),
         (["infested", "Arachnida"], None),
     ],
 )
 def test_one_column_of_words_for_results_is_taken_whatever_its_name(cells, result):
     columns = table(**{"name": ["img 1", "img 2"], "class": cells})
     assert columns_of(columns, InspectionOptions()).result == result
+    told = InspectionOptions().naming(plot="class")
+    assert columns_of(columns, told).result is None
     two = table(**{"plant": ["1", "2"], "class": cells, "as before": cells})
     with pytest.raises(ChoiceNeeded, match="says what was found"):
         columns_of(two, InspectionOptions())

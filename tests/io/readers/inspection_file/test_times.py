@@ -173,6 +173,7 @@ def test_days_that_could_be_months_are_told():
         ({"Date received": "2026-10-05", "Date sampled": "2026-09-28"}, "2026-09-28"),
         ({"Scouting date (2026)": "2026-09-28", "EditDate": "2026-10-05"}, "2026-09-28"),
         ({"date": "2026-09-28", "survey date": ""}, "2026-09-28"),
+        ({"date": "2026-09-28", "planting_date": "2019-03-01", "end_time": "46294"}, "2026-09-28"),
         ({"date": "2026-09-28", "survey date": "28.9.2026"}, "2026-09-28"),
     ],
 )
@@ -186,8 +187,15 @@ def test_a_day_known_only_from_when_a_record_was_written_is_a_guess():
     assert str(times.when[0]) == "2026-10-05T11:00:00"
     (said,) = times.messages
     assert (said.severity, "column 'CreationDate'" in said.sentence) == (Severity.GUESSED, True)
+    beside_a_clock = read(time=["08:30"], CreationDate=["2026-10-05"])
+    assert str(beside_a_clock.when[0]) == "2026-10-05T08:30:00"
+    assert len(beside_a_clock.messages) == 1
     told = InspectionOptions().naming(date="EditDate")
     assert read(told, CreationDate=["2026-10-05"], EditDate=["2026-10-06"]).messages == []
+
+
+def test_no_other_day_is_taken_for_that_of_the_work():
+    assert np.isnat(read(planting_date=["2019-03-01"]).day[0])
 
 
 def test_two_columns_that_say_different_days_are_a_question():
@@ -197,3 +205,6 @@ def test_two_columns_that_say_different_days_are_a_question():
     assert set(asked.value.choices) == {"date=Date", "date=Sampling date"}
     chosen = InspectionOptions().choose(asked.value.option, "date=Sampling date")
     assert str(read(chosen, **cells).day[0]) == "2026-09-28"
+    months_first = InspectionOptions(date_order="mdy")
+    same = read(months_first, date=["04/03/2026"], sampling_date=["2026-04-03"])
+    assert str(same.day[0]) == "2026-04-03"

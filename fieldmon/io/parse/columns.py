@@ -101,7 +101,7 @@ def find(role: str, names: Iterable[str], taken: frozenset[str] = frozenset()) -
         return exact
     if role in _NUMBERED:
         bare = {_NUMBERING.sub("", name): own for name, own in known.items()}
-        if numbered := next((bare[name] for name in _PLAIN[role] if name in bare), None):
+        if numbered := next((bare[name] for name in _numbered(role) if name in bare), None):
             return numbered
     # a shapefile cuts names to ten characters: decimalLon, individual, coordinate
     cut = {name for name, own in known.items() if len(own) == _CUT}
@@ -117,28 +117,36 @@ def _is_numbered(name: str) -> bool:
     """Return whether a column numbers rows or plants by its name."""
     own = plain(name)
     bare = _NUMBERING.sub("", own)
-    return bare != own and any(bare in _PLAIN[role] for role in _NUMBERED)
+    return bare != own and any(bare in _numbered(role) for role in _NUMBERED)
+
+
+def _numbered(role: str) -> list[str]:
+    """Return the words of a role that a number makes no other thing: a line no. is of a table."""
+    return [name for name in _PLAIN[role] if name not in _OF_TABLES]
 
 
 _SPLIT = re.compile(r"[\W_]+|(?<=[a-z])(?=[A-Z])")
 
 
 def is_of_rows(name: str) -> bool:
-    """Return whether one of the words of a column's name is a word for rows: Vine Row Label."""
-    words = _words(name)
-    return not words.isdisjoint(_ROW_WORDS) and not words & _OF_NO_NUMBER
+    """Return whether a column may name rows: a word for them, and none that is not of a name."""
+    words = [plain(word) for word in _SPLIT.split(name) if word]
+    others = [word for word in words if word not in _ROW_WORDS]
+    named = all(word in _OF_NAMES or not word.isascii() for word in others)
+    return len(others) < len(words) and named
 
 
 def _words(name: str) -> frozenset[str]:
     return frozenset(plain(word) for word in (name, *_SPLIT.split(name)) if word)
 
 
-_BESIDE_ROWS = """
-spacing space width dist distance bearing azimuth orientation direction length m count end start
-side status type
+_OF_TABLES = frozenset({"line", "linha", "ligne", "rang", "file", "zeile"})
+_SAID_OF_ROWS = """
+label labels name code tag sign mark title vine vineyard tree orchard plot block field in of the id
+no nr num number
 """
-_OF_NO_NUMBER = frozenset(_BESIDE_ROWS.split())
-_ROW_WORDS = frozenset(_PLAIN["row"]) - {"line", "linha", "rang"} | {"rows"}
+_OF_NAMES = frozenset(_SAID_OF_ROWS.split())
+_ROW_WORDS = frozenset(_PLAIN["row"]) - _OF_TABLES | {"rows"}
 _ALL = frozenset(name for names in _PLAIN.values() for name in names)
 
 

@@ -114,6 +114,7 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
         }
     )
     if plant is not None and line is not None and number is None:
+        _must_count_in_rows(plant, options)
         plant, number = None, plant
     arrive = next((n for n in names if plain(n) == "arrive"), None)
     if arrive is None and any(plain(n) == plain("arrive_s") for n in names):
@@ -140,7 +141,9 @@ def _line(layer: Layer, options: InspectionOptions) -> str | None:
     alike = [name for name in alike if any(texts_in(layer, name))]
     by_number = options.column("plant") or find("plant", layer.columns)
     by_number = by_number or own_column("id", layer) or own_column("number", layer)
-    if named is not None or not alike or by_number is None:
+    placed = any(find(role, layer.columns) for role in ("position", "lon", "x"))
+    placed |= layer.geometry is not None
+    if named is not None or not alike or by_number is None or placed:
         return named
     raise ChoiceNeeded(
         worded(
@@ -177,6 +180,22 @@ def _meanings(layer: Layer, name: str) -> set[int]:
     """Return what the filled cells of a column say of an infestation."""
     cells = {text(v) for v in layer.columns[name]}
     return {presence(cell) for cell in cells if not is_missing(cell)}
+
+
+def _must_count_in_rows(plant: str, options: InspectionOptions) -> None:
+    """Ask whether numbers of plants beside rows are those in the row, where their name is an id."""
+    if plain(plant) not in _PLAIN["id"] or options.column("plant") is not None:
+        return
+    raise ChoiceNeeded(
+        worded(
+            "A plant must be known by one number, but {name!r} beside a row may be its number in "
+            "the row or on the whole plot. Name it as the plant's for the first, or no column of "
+            "rows (columns=row=) for the second.",
+            name=plant,
+        ),
+        "columns",
+        (f"plant={plant}", "row="),
+    )
 
 
 def _must_be_apart(roles: dict[str, str | None]) -> None:
@@ -224,7 +243,8 @@ def _open(layer: Layer) -> list[str]:
         and not is_confidence(name)
         and not is_id(name, [text(v) for v in layer.columns[name][:_LOOKED_AT]])
     ] or list(layer.columns)
-    return sorted(open_yet, key=lambda name: not _looks_like_results(layer, name))
+    told = {name: tells_infestation([name, *texts_in(layer, name).tolist()]) for name in open_yet}
+    return sorted(open_yet, key=lambda name: (not told[name], not _looks_like_results(layer, name)))
 
 
 def _looks_like_results(layer: Layer, name: str) -> bool:

@@ -30,10 +30,10 @@ def found(*names, **chosen):
         (("stop", "row", "number", "plant", "found"), "row", "number", "plant"),
         (("row", "nr", "found"), "row", "nr", None),
         (("No", "row", "plant", "found"), "row", "plant", None),
-        (("row", "plant_id", "found"), "row", "plant_id", None),
         (("ROW_NUM", "PLANT_NO", "found"), "ROW_NUM", "PLANT_NO", None),
         (("ROWNUM", "PLANTNUM", "found"), "ROWNUM", "PLANTNUM", None),
         (("plant_id", "found"), None, None, "plant_id"),
+        (("Line No", "plant", "found"), None, None, "plant"),
     ],
 )
 def test_plants_are_named_by_number_or_by_row_and_number_in_it(names, line, number, plant):
@@ -57,6 +57,16 @@ def test_what_was_found_is_a_result_a_count_or_the_name_of_a_waypoint(
 ):
     columns = found(*names)
     assert (columns.result, columns.number_found, columns.marks) == (result, number_found, marks)
+
+
+def test_ids_of_plants_beside_rows_are_a_question():
+    with pytest.raises(ChoiceNeeded, match="may be its number in the row or on") as asked:
+        found("Row No", "Plant ID", "found")
+    assert asked.value.choices == ("plant=Plant ID", "row=")
+    in_row = found("Row No", "Plant ID", "found", plant="Plant ID")
+    assert (in_row.line, in_row.number, in_row.plant) == ("Row No", "Plant ID", None)
+    whole_plot = found("Row No", "Plant ID", "found", row="")
+    assert (whole_plot.line, whole_plot.number, whole_plot.plant) == (None, None, "Plant ID")
 
 
 def test_columns_named_by_hand_go_before_all_others():
@@ -130,7 +140,7 @@ def test_a_column_that_may_be_of_rows_beside_plants_alone_is_a_question(name):
     assert found(name, "plant", "found", row=name).number == "plant"
     whole_plot = found(name, "plant", "found", row="")
     assert (whole_plot.line, whole_plot.plant) == (None, "plant")
-    for other in ("row spacing", "Row orientation", "row_length"):
+    for other in ("row spacing", "Row orientation", "row_length", "Row side", "row_hash"):
         assert found(other, "plant", "found").line is None
     assert found(name, "plant", present=name).line is None
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fieldmon.reports.content import Report
 
 
-class Paper(StrEnum):
+class PaperSize(StrEnum):
     """Paper to print on."""
 
     a4 = "a4"
@@ -51,7 +51,7 @@ class ReportOptions:
             "--until", help="Report the season up to this day; else its last, today at most."
         ),
     ] = None
-    paper: Annotated[Paper, typer.Option("--paper", help="Paper of a PDF.")] = Paper.a4
+    paper: Annotated[PaperSize, typer.Option("--paper", help="Paper of a PDF.")] = PaperSize.a4
     certification: Annotated[
         bool,
         typer.Option(

@@ -76,8 +76,8 @@ class AdviceSettings:
     >>> asked = fm.AdviceSettings(level=0.08, sure=0.95)
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
     >>> season = fm.Season.create("of_advice.gpkg", plot, begins="2026-11-18")
-    >>> season.advice("2026-11-18", asked).verdict
-    'do not treat'
+    >>> season.advice("2026-11-18", asked).verdict  # nobody has inspected yet
+    'look on'
     """
 
     level: float = 0.05

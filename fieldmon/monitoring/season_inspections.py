@@ -100,7 +100,7 @@ class SeasonInspections(OpenSeason):
         return contradicting(self.history.inspections.on(on))
 
     def said_otherwise(self, on: date, named: Callable[[str], str] = str) -> tuple[Worded, ...]:
-        """Return of each such plant who says what, a line each; `named` writes a name."""
+        """Return a line for each such plant `on` a day: who says what; `named` writes a name."""
         return said_otherwise(self.history.inspections.on(on), self.plot.grid, named)
 
     def record(

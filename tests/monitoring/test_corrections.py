@@ -34,7 +34,7 @@ def test_the_log_names_each_correction_and_of_two_faces_which(tmp_path, face):
     assert season.log()[-1].sentence(5).count(" is now ") == 5
     assert season.log()[-1].sentence(5).endswith("; ...")
     season.record(said(plants[:1], [CLEAN]), "again", confirmed=True)
-    assert f"row 1, plant 1{named}: found, clean" in next(_contradicting(season, BEGINS))
+    assert f"Row 1, plant 1{named}: found, clean" in next(_contradicting(season, BEGINS))
 
 
 def test_one_stop_of_a_batch_is_corrected_and_the_others_stay(season: Season):

@@ -52,7 +52,7 @@ PLOT = a_plot()
 GRID = PLOT.grid
 LABEL = plant_numbers(GRID)
 SETTINGS = MonitoringSettings(BEGINS)
-SEASON = SimpleNamespace(plot=PLOT, label=LABEL)
+SEASON = SimpleNamespace(plot=PLOT, plant_numbers=LABEL)
 WHO = "Ann", "Ben"
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import streamlit as st
+from streamlit.runtime.scriptrunner import get_script_run_ctx
 
 _HERE = Path(__file__).resolve().parent
 _TOP = next(folder for folder in _HERE.parents if not (folder / "__init__.py").is_file())
@@ -35,9 +36,11 @@ if TYPE_CHECKING:
 
     from streamlit.delta_generator import DeltaGenerator
 
-#: what shows a page, by the page's address
+#: what shows a page, by the page's title
 SHOWN_BY: dict[str, Callable[[], None]] = {}
 _IN_PLACE = "page in its place"
+# a process that a page starts runs this script, too, where there is nothing to show
+IS_SHOWN = get_script_run_ctx(suppress_warning=True) is not None
 
 chosen_language.begin()
 st.set_page_config(page_title=texts.TITLE, page_icon="🌱", layout="wide")
@@ -79,7 +82,7 @@ def load(*, map_sent: bool = False) -> None:
 def shown_page(run: Callable[[], None], **settings: Any) -> st.Page:  # noqa: ANN401 - those of a page
     """Return a page that this script shows, see below."""
     made = st.Page(run, **settings)
-    SHOWN_BY[made.url_path] = run
+    SHOWN_BY[settings["title"]] = run
     return made
 
 
@@ -199,7 +202,8 @@ if (item := menu.turned_to()) is not None:
 with ExitStack() as FILES:
     # as a part of this script: of what stands on a page of its own Streamlit sends nothing with the
     # turn to another, and drops what was sent of it a moment before
-    SHOWN_BY[turned.url_path]()
+    if IS_SHOWN:
+        SHOWN_BY[turned.title]()
     with map_place:
         field_map.draw()
     button_presses.forget()

@@ -58,6 +58,7 @@ FILES = {
     "rows_file": [("r.geojson", b"{}"), ("r.csv", b"\xff")],
     "blocks_file": [("b.geojson", b"[]"), ("b.kml", b"<kml/>")],
     "findings_file": [("f.csv", b"row,plant,found\n1,1,yes\n"), ("f.geojson", b"[1]")],
+    "treat": [("z.geojson", b"{}"), ("z.zip", b"no")],
     "thresholds_file": [("t.csv", b"pest,crop,threshold\nmites,dates,0.1\n"), ("t.csv", b"\xff")],
     "labels_file": [("l.csv", b"product,pest\nOil,mites\n"), ("l.csv", b"\xff")],
     "pest_file": [("p.toml", b"name = 'x'"), ("p.toml", b"\xff")],

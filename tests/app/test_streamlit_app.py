@@ -1,9 +1,12 @@
 """The frame: every page opens, whatever is chosen."""
 
 import re
+import subprocess
+import sys
 
 from app.words import texts
 from tests.app.driving import PAGES, go, map_of, opened, texts_of
+from tests.paths import ROOT
 
 
 def idle_digits(app):
@@ -52,3 +55,13 @@ def test_a_box_for_files_speaks_the_language_of_the_page():
         assert ("--upload:" in styles) == (code != "en")
         assert upload is None or f'--upload:"{upload}"' in styles
         assert upload is None or "200 MB" in styles
+
+
+def test_a_process_that_a_page_starts_runs_the_script_without_a_page():
+    """As `multiprocessing` does, and Dask's workers."""
+    start = "import multiprocessing.spawn as s; s._fixup_main_from_path({!r})"
+    script = str(ROOT / "app" / "streamlit_app.py")
+    done = subprocess.run(
+        [sys.executable, "-c", start.format(script)], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr

@@ -141,9 +141,11 @@ def test_what_finds_become_is_told_of_all_that_are_infested_before_and_after(run
     kept.record(Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(on)), "x")
     before = kept.still_infested(on)
     assert before.low >= 20
+    assert kept.flagged(on) > 19
     out = run("change", kept.path, "--treat-finds")[1]
     after = kept.still_infested(on)
-    assert after.expected < before.expected - 19
+    # of the rest the number may go either way, as who infested whom is drawn anew
+    assert kept.flagged(on) == 0
     assert f"after {on} {estimate(after.expected)} ({after.low:,} to {after.high:,})" in out
     assert f"it was {estimate(before.expected)} ({before.low:,} to {before.high:,})." in out
 

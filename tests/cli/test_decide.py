@@ -112,7 +112,7 @@ def test_a_threshold_for_another_pest_than_the_season_s_is_warned_of(run, season
         assert run("change", season, "--pest", pest)[0] == 0
         code, _, said, *_ = run(*words)
         assert code == 0
-        assert (f"but the season's pest is {pest}." in said) == doubted
+        assert (f"but the season's pest is {pest}: take one for it" in said) == doubted
 
 
 @pytest.mark.parametrize(

@@ -106,7 +106,7 @@ def test_a_day_that_was_filled_in_is_not_written_over_before_it_is_recorded(run,
     (tmp_path / "day.csv").write_text(held + '"1,1,1,clean\n')
     code, _, err, made = run(*words)
     assert (code, made) == (2, set())
-    assert "cannot be read. day, line" in err
+    assert "cannot be read. day.csv, line" in err
     (tmp_path / "day.csv").write_text(held)
     run("record", season, "day.csv")
     run("undo", season)  # what was taken back was recorded

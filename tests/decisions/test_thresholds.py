@@ -39,7 +39,7 @@ def test_the_published_ones_name_pests_of_fieldmon_and_those_of_the_season_s_com
     almond = threshold_of("almond")
     assert almond.doubt("whitefly") == (
         "The action threshold 'almond' is for spider-mite, thesis, but the season's pest is "
-        "whitefly."
+        "whitefly: take one for it, or a share of the plants."
     )
     assert almond.doubt("thesis") == almond.doubt("") == anyones.doubt("whitefly") == ""
 

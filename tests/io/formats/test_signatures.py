@@ -7,7 +7,7 @@ from fieldmon.io.formats.signatures import (
     CALLED,
     READABLE,
     TABULAR,
-    USUAL,
+    USUAL_FILES,
     VECTOR,
     FileKind,
     kind_of,
@@ -124,4 +124,4 @@ def test_every_kind_that_is_read_is_named_where_none_of_them_was_found():
     for names in (*CALLED.values(), *((word,) for word in IN_WORDS.values())):
         assert all(name in READABLE for name in names)
     assert READABLE.count("MapInfo") == 1
-    assert USUAL == ("GeoPackage", "GeoJSON", "KML")
+    assert USUAL_FILES == ("GeoPackage", "GeoJSON", "KML")

@@ -209,6 +209,11 @@ class ReadOptions:
         """Return the column named by hand for a role, or None."""
         return dict(self.columns).get(role)
 
+    @property
+    def named_columns(self) -> frozenset[str]:
+        """The columns named by hand for any role; one that is empty stands for none."""
+        return frozenset(dict(self.columns).values())
+
     def naming(self, **columns: str) -> Self:
         """Return these options with columns named by hand: ``naming(date="Datum")``."""
         return replace(self, columns=(*self.columns, *columns.items()))

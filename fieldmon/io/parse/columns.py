@@ -78,7 +78,6 @@ _NAMES = {
 }
 # what may stand behind the word for a row or a plant: ROW_NUM, Plant index
 _NUMBERING = re.compile(r"(?<=\w)(?:number|num|nr|no|nbr|index|idx|id)$")
-_NUMBERED = ("row", "plant")
 _CUT = 10
 _SYNONYMS = {role: tuple(names.split()) for role, names in _NAMES.items()}
 
@@ -99,10 +98,9 @@ def find(role: str, names: Iterable[str], taken: frozenset[str] = frozenset()) -
     exact = next((known[name] for name in _PLAIN[role] if name in known), None)
     if exact is not None:
         return exact
-    if role in _NUMBERED:
-        bare = {_NUMBERING.sub("", name): own for name, own in known.items()}
-        if numbered := next((bare[name] for name in _numbered(role) if name in bare), None):
-            return numbered
+    bare = {_NUMBERING.sub("", name): own for name, own in known.items()}
+    if numbered := next((bare[name] for name in _NUMBERED.get(role, ()) if name in bare), None):
+        return numbered
     # a shapefile cuts names to ten characters: decimalLon, individual, coordinate
     cut = {name for name, own in known.items() if len(own) == _CUT}
     return next((known[name[:_CUT]] for name in _PLAIN[role] if name[:_CUT] in cut), None)
@@ -117,12 +115,7 @@ def _is_numbered(name: str) -> bool:
     """Return whether a column numbers rows or plants by its name."""
     own = plain(name)
     bare = _NUMBERING.sub("", own)
-    return bare != own and any(bare in _numbered(role) for role in _NUMBERED)
-
-
-def _numbered(role: str) -> list[str]:
-    """Return the words of a role that a number makes no other thing: a line no. is of a table."""
-    return [name for name in _PLAIN[role] if name not in _OF_TABLES]
+    return bare != own and any(bare in words for words in _NUMBERED.values())
 
 
 _SPLIT = re.compile(r"[\W_]+|(?<=[a-z])(?=[A-Z])")
@@ -130,17 +123,22 @@ _SPLIT = re.compile(r"[\W_]+|(?<=[a-z])(?=[A-Z])")
 
 def is_of_rows(name: str) -> bool:
     """Return whether a column may name rows: a word for them, and none that is not of a name."""
-    words = [plain(word) for word in _SPLIT.split(name) if word]
+    words = _split(name)
     others = [word for word in words if word not in _ROW_WORDS]
     named = all(word in _OF_NAMES or not word.isascii() for word in others)
     return len(others) < len(words) and named
 
 
-def _words(name: str) -> frozenset[str]:
-    return frozenset(plain(word) for word in (name, *_SPLIT.split(name)) if word)
+def _split(name: str) -> list[str]:
+    return [plain(word) for word in _SPLIT.split(name) if word]
 
 
 _OF_TABLES = frozenset({"line", "linha", "ligne", "rang", "file", "zeile"})
+# the words of a role that a number makes no other thing: a line no. is of a table
+_NUMBERED = {
+    role: tuple(name for name in _PLAIN[role] if name not in _OF_TABLES)
+    for role in ("row", "plant")
+}
 _SAID_OF_ROWS = """
 label labels name code tag sign mark title vine vineyard tree orchard plot block field in of the id
 no nr num number
@@ -220,7 +218,7 @@ _WORK = re.compile(r"insp|sampl|scout|survey|visit|monitor|observ|collect|check|
 
 def is_of_writing(name: str) -> bool:
     """Return whether a column says by its name when a record was written or sent."""
-    return not _WRITTEN.isdisjoint(_words(name))
+    return not _WRITTEN.isdisjoint((plain(name), *_split(name)))
 
 
 def is_of_work(name: str) -> bool:

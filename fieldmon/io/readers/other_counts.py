@@ -150,7 +150,7 @@ def _others(
     layer: Layer, options: RecordOptions, used: set[str | None]
 ) -> dict[str, NDArray[np.float64]]:
     """Return the counts ``(n,)`` of the columns that count pests, are not read and hold any."""
-    named = set(dict(options.columns).values())
+    named = options.named_columns
     names = [n for n in layer.columns if n not in used | named and counts_pests(n)]
     numbers = {name: _numbers(layer, name, options.decimal) for name in names}
     return {name: number for name, number in numbers.items() if (number > 0).any()}

@@ -136,7 +136,7 @@ def _line(layer: Layer, options: InspectionOptions) -> str | None:
     if (told := options.column("row")) is not None:
         return told or None  # empty: none is of rows
     named = find("row", layer.columns)
-    known = recognised(layer.columns) | set(dict(options.columns).values())
+    known = recognised(layer.columns) | options.named_columns
     alike = [name for name in layer.columns if name not in known and is_of_rows(name)]
     alike = [name for name in alike if any(texts_in(layer, name))]
     by_number = options.column("plant") or find("plant", layer.columns)
@@ -163,12 +163,11 @@ def by_its_words(layer: Layer, options: InspectionOptions) -> str | None:
 
     Yes and no, marks and figures alone may be of anything.
     """
-    told = set(dict(options.columns).values())
-    known = recognised(layer.columns)
+    known = recognised(layer.columns) | options.named_columns
     alike = [
         name
         for name in layer.columns
-        if name not in known | told
+        if name not in known
         and not any(is_own(role, name) for role in _PLAIN)
         and tells_infestation(texts_in(layer, name).tolist())
         and UNKNOWN not in _meanings(layer, name)
@@ -220,7 +219,7 @@ def plot_column(layer: Layer, columns: InspectionColumns, options: InspectionOpt
     told = options.column("plot")
     if told is not None:
         return told or None
-    others = {*columns, *dict(options.columns).values()} - {None, columns.block}
+    others = {*columns, *options.named_columns} - {None, columns.block}
     named = find("plot", layer.columns, frozenset(name for name in others if name))
     return None if options.column("block") and named == columns.block else named
 

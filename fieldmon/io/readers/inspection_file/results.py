@@ -79,7 +79,7 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
         return _put_together(said, [_SILENT] * len(said), [])
     by_result, of_results = _by_result(layer, columns.result, options)
     by_count, of_counts = _by_count(layer, columns.number_found, options)
-    taken = (columns.result, columns.number_found, *dict(options.columns).values())
+    taken = (columns.result, columns.number_found, *options.named_columns)
     messages = [*of_results, *of_counts, *about_confidences(layer.columns, taken)]
     seen_so = _put_together(by_result, by_count, messages)
     others = about_other_counts(layer, options, columns.number_found, columns, seen_so.result)

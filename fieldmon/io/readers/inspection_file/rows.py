@@ -174,7 +174,7 @@ def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) 
     said = [one.name for one in BESIDE if one.role != "noted"]  # of notes `telling` knows
     read = {name for name in layer.columns
             if is_position(name) or any(is_own(role, name) for role in said)}  # fmt: skip
-    read |= {name for name in columns if name} | set(dict(options.columns).values())
+    read |= {name for name in columns if name} | options.named_columns
     told = telling(layer, np.arange(len(layer)), read)
     cells = ["\0".join(row) for row in zip(*told.values(), strict=True)]
     return np.array(cells or [""] * len(layer), dtype=np.str_)
@@ -183,9 +183,8 @@ def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) 
 def _of_one_pest(name: str | None, species: NDArray[np.str_]) -> None:
     """Ask for one pest where a column names several: a season is of one."""
     kinds = species_in(species.tolist()) if name else []
-    kinds = [
-        kind for kind in kinds if not kind.replace(".", "", 1).isdecimal()
-    ]  # a name is no number
+    # a figure is no pest's name
+    kinds = [kind for kind in kinds if not kind.replace(".", "", 1).isdecimal()]
     kinds = [*{" ".join(kind.casefold().split()): kind for kind in reversed(kinds)}.values()][::-1]
     if len(kinds) < 2:
         return

@@ -173,12 +173,13 @@ def _columns(
     if told := options.column("date"):
         return told, time
     named = find("date", layer.columns, away)
-    of_work = [
-        name
+    days = {
+        name: _days(layer, name, options)
         for name in layer.columns
-        if name not in away and is_of_work(name) and _has_days(layer, name, options)
-    ]
-    if len(of_work) > 1 and (n := _n_apart([_days(layer, name, options) for name in of_work])):
+        if name not in away and is_of_work(name)
+    }
+    of_work = [name for name, each in days.items() if not np.isnat(each).all()]
+    if len(of_work) > 1 and (n := _n_apart([days[name] for name in of_work])):
         raise ChoiceNeeded(
             worded(
                 "A result must be of one day, but columns {names} say different days of {n} of "

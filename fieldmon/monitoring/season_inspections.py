@@ -22,7 +22,6 @@ from fieldmon.monitoring import (
     inspection_lots,
     inspection_table,
     label_table,
-    merging,
     numbered_inspections,
     outside_changes,
     phone_tables,
@@ -41,7 +40,8 @@ from fieldmon.monitoring.contradictions import (
     said_before,
     said_otherwise,
 )
-from fieldmon.monitoring.merging import Merged
+from fieldmon.monitoring.merging import same_season
+from fieldmon.monitoring.merging.merge import Merged, merge_copies
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
 from fieldmon.monitoring.people import as_written, names_written, written_in
 from fieldmon.monitoring.settings import seconds
@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.batches import Batch, BatchContents
-    from fieldmon.monitoring.merging import MergedCopy
+    from fieldmon.monitoring.merging.merge import MergedCopy
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.monitoring.treatments import KeptTreatment
@@ -546,26 +546,26 @@ class SeasonInspections(OpenSeason):
             return True
         with self.store.reading() as db, Store(file).reading() as theirs:
             try:
-                merging.refuse_strangers(db, theirs)
+                same_season.refuse_strangers(db, theirs)
             except FileProblem:
                 return False
-            apart = merging.are_of_two_pests(db, theirs)
-            return not apart or merging.hold_in_common(db, theirs)
+            apart = same_season.are_of_two_pests(db, theirs)
+            return not apart or same_season.hold_in_common(db, theirs)
 
     def is_of_another_pest(self, file: Path) -> bool:
         """Return whether this and the season in a file name pests that differ."""
         with self.store.reading() as db, Store(file).reading() as theirs:
-            return merging.are_of_two_pests(db, theirs)
+            return same_season.are_of_two_pests(db, theirs)
 
     def refuse_another_pest(self, file: Path) -> None:
         """Raise `FileProblem` where the season in a file looks for another pest than this one."""
         with self.store.reading() as db, Store(file).reading() as theirs:
-            merging.refuse_another_pest(db, theirs)
+            same_season.refuse_another_pest(db, theirs)
 
     def is_of_one_plot(self, file: Path) -> bool:
         """Return whether the season in a file has the same rows and plants as this one."""
         with self.store.reading() as db, Store(file).reading() as theirs:
-            return merging.are_of_one_plot(db, theirs)
+            return same_season.are_of_one_plot(db, theirs)
 
     def treatments_alone_in(self, file: Path) -> list[tuple[str, str]]:
         """Return product and day of the treatments that count in another season's file alone."""
@@ -643,7 +643,7 @@ class SeasonInspections(OpenSeason):
                 contradict = contradictions(other.inspections, held)
                 clock = local_clock(self.plot.field)
                 here, there = (treatments.kept(one, self._inside, clock) for one in (db, theirs))
-                taken = merging.merge(db, theirs)
+                taken = merge_copies(db, theirs)
             self._refresh(db)
             # what either copy took back or corrected contradicts nothing
             contradict = contradict.still(self._inspections(db))

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be, must_be_shaped
+from fieldmon.compute.arguments import must_be
+from fieldmon.compute.array_arguments import must_be_shaped
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded

@@ -12,8 +12,8 @@ from fieldmon.infestation.inspections import FOUND, RESULT_NAMES
 from fieldmon.monitoring import season_log
 from fieldmon.monitoring.day_ahead import DayAhead, WorkPart
 from fieldmon.monitoring.findings import CLOCK_IS_WRONG
-from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.scouts import overlapping, scouts_on
+from fieldmon.monitoring.shift_work import made_by
 from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import local_clock
 

@@ -14,10 +14,10 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import kept_routes, scouts, season_log
 from fieldmon.monitoring.day_figures import PlannedAndDone
-from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
 from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.shift_work import Besides
 from fieldmon.planning.members import person_key
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of

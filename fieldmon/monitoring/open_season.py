@@ -21,6 +21,7 @@ from fieldmon.monitoring import (
     first_morning,
     inspection_lots,
     label_table,
+    logged_days,
     outside_changes,
     qgis_project,
     schema,
@@ -193,7 +194,7 @@ class OpenSeason:
         """Return what counts, with who worked on a day, from when, and who chose, as it was then.
 
         As when the day was planned before its work or, if it never was, first recorded: whatever is
-        planned of it later changes nothing, see `season_log.worked_by`. What is believed is of
+        planned of it later changes nothing, see `logged_days.worked_by`. What is believed is of
         now, for all days (but see `fieldmon.monitoring.told_detection`).
         """
         return self._counted_on(on)
@@ -213,7 +214,7 @@ class OpenSeason:
     def _chosen_on(self, db: sqlite3.Connection, *days: date) -> settings_log.Marks:
         """Return by which settings the first of some days was worked; else those of now."""
         clock = local_clock(self.plot.field)
-        worked = (season_log.worked_by(db, day, clock) for day in days)
+        worked = (logged_days.worked_by(db, day, clock) for day in days)
         return next((one for one in worked if one is not None), None) or settings_log.marks(db)
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fieldmon.monitoring import schema, season_log
+from fieldmon.monitoring import logged_days, schema
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merged_rows import key_of
 from fieldmon.planning.members import person_key
@@ -54,7 +54,7 @@ def _given_out(both: Iterable[sqlite3.Connection]) -> dict[Hashable, list[str]]:
     """Return when each route was kept, by day, person and digest, as the logs of both say."""
     told: dict[Hashable, set[str]] = {}
     for db in both:
-        for one in season_log.given_out(db):
+        for one in logged_days.given_out(db):
             told.setdefault((one.date, person_key(one.who), one.digest), set()).add(one.at)
     return {key: sorted(at) for key, at in told.items()}
 

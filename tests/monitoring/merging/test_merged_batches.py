@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.inspections import FOUND, Inspections
-from fieldmon.monitoring import Season, season_log
+from fieldmon.monitoring import Season, logged_days, season_log
 from fieldmon.monitoring.merging import merged_batches
 from fieldmon.plot import local_clock
 from tests.monitoring.merging.copies import (
@@ -122,7 +122,7 @@ def test_a_batch_is_undone_by_the_number_that_the_log_shows(path, other):
     assert undone.endswith(f"; batch {old} is batch {old + 1} now")
     assert again.endswith(f"batch {new}; batch {new} is batch {new + 1} now")
     with ours.store.reading() as db:  # what was undone was not worked
-        told = season_log.planned_and_seen(db, BEGINS + timedelta(days=3))
+        told = logged_days.planned_and_seen(db, BEGINS + timedelta(days=3))
     assert [one.at for one in told] == [ours.log()[-2].at]
     ours.undo(new + 1)
     assert ours.history.inspections.plant.tolist().count(5) == 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.arguments import plants_marked
+from fieldmon.compute.array_arguments import plants_marked
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.decisions.labels import SAID_BY_HAND, label_for, plain_name, with_wait

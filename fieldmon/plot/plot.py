@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Literal
 import shapely
 from shapely import MultiPolygon
 
-from fieldmon.compute.arguments import must_be, must_be_shaped
+from fieldmon.compute.arguments import must_be
+from fieldmon.compute.array_arguments import must_be_shaped
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ImportDoubt, PlotError

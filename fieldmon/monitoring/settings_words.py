@@ -183,14 +183,21 @@ def _each_of_worker(robot: Robot) -> dict[str, str]:
         "length": robot.length_m,
         "turning radius": robot.turning_radius_m,
     }
-    seen = [f"{s:g} s {chance_figure(chance)}" for s, chance in robot.viewpoints.steps]
+    (first_s, least), (last_s, _) = robot.viewpoints.steps[0], robot.viewpoints.steps[-1]
     return {
         "hours": f"{robot.hours:g}",
         "look": f"{robot.look_s:g} s",
         "speed": f"{KM_H * robot.speed_m_s:.3g} km/h",
         "row changes, turns and stops": robot.times or times,
         "detection": str(chance_figure(robot.detects)),
-        "detection by seconds": "; ".join((*seen, f"> {chance_figure(robot.viewpoints.longer)}")),
+        # the ends of the ladder: of what lies between, the path of the setting says that it differs
+        "detection by seconds": worded(
+            "{low} in {first:g} s to {high} in over {last:g} s",
+            low=chance_figure(least),
+            first=first_s,
+            high=chance_figure(robot.viewpoints.longer),
+            last=last_s,
+        ),
         "way back": worded("yes") if robot.returns else worded("no"),
         **{name: f"{value_m:g} m" for name, value_m in size.items() if value_m is not None},
     }

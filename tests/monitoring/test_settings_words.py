@@ -31,8 +31,8 @@ ANN = TeamMember("Ann", scout())
         ({"robot": Robot(returns=False)},
          "way back to the gate within the hours no (now yes again)"),
         ({"robot": Robot(viewpoints=Viewpoints(((40.0, 0.84),), 1.0))},
-         ("detection by seconds 40 s 84 %; > 100 % "
-         "(now 20 s 50 %; 25 s 60 %; 30 s 69 %; 35 s 77 %; 40 s 84 %; > 90 % again)")),
+         ("detection by seconds 84 % in 40 s to 100 % in over 40 s "
+         "(now 50 % in 20 s to 90 % in over 40 s again)")),
         ({"robot": Robot(detection=0.84)}, "robot detection 0.84 (now none again)"),
         ({"prior": replace(FIRST.prior, edge_chance=0.1)},
          "prior edge chance 0.1 (now 0.05 again)"),

@@ -248,7 +248,11 @@ def test_a_season_s_settings_can_be_changed_by_a_command(name):
 
 @pytest.mark.parametrize(
     ("option", "setting", "value"),
-    [("contact", "contact_s", 600.0), ("least_gain", "least_gain", 0.7), ("passing", "passing_m", 5)],
+    [
+        ("contact", "contact_s", 600.0),
+        ("least_gain", "least_gain", 0.7),
+        ("passing", "passing_m", 5),
+    ],
 )
 def test_how_a_team_works_together_can_be_changed_one_by_one(option, setting, value):
     told = TeamworkOptions(**{option: value / 60 if option == "contact" else value})

@@ -94,7 +94,8 @@ class SeasonCopies(OpenSeason):
             states, labels = season_log.states(db), label_table.read(db)
             if states != was:
                 _log_merged(db, states, told, taken, ended)
-            twice = _recorded_twice(treatments.kept(db, self._inside, clock), taken)
+            kept = treatments.by_vine(treatments.kept(db, self._inside, clock), self.plot.grid)
+            twice = _recorded_twice(kept, taken)
             overlaps = scouts.overlaps(db, int(self.plant_numbers.line.max()))
         no_more = (
             cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in ended

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -404,7 +404,7 @@ class TeamworkOptions:
 
         contact_s = None if self.contact is None else 60.0 * self.contact
         told = {"contact_s": contact_s, "least_gain": self.least_gain, "passing_m": self.passing}
-        given = {name: value for name, value in told.items() if value is not None}
+        given: dict[str, Any] = {name: value for name, value in told.items() if value is not None}
         if given and not team:
             flag = next(one for one, value in vars(self).items() if value is not None)
             raise SettingError(

@@ -8,17 +8,18 @@ import pytest
 from tests.paths import ROOT
 
 
-def classes(source: str) -> list[str]:
-    """Return the classes of a module, those inside others included."""
-    return [node.name for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ClassDef)]
+def nodes(sources: dict[str, str]) -> dict[str, list[ast.AST]]:
+    """Return all that each module says, itself first."""
+    return {path: [*ast.walk(ast.parse(source))] for path, source in sources.items()}
 
 
-def defined_twice(sources: dict[str, str]) -> dict[str, list[str]]:
-    """Return where each name stands that more than one class has."""
+def defined_twice(modules: dict[str, list[ast.AST]]) -> dict[str, list[str]]:
+    """Return where each name stands that more than one class has, those inside others included."""
     places = defaultdict(list)
-    for path, source in sources.items():
-        for name in classes(source):
-            places[name].append(path)
+    for path, said in modules.items():
+        for node in said:
+            if isinstance(node, ast.ClassDef):
+                places[node.name].append(path)
     return {name: paths for name, paths in places.items() if len(paths) > 1}
 
 
@@ -37,16 +38,15 @@ def constants(tree: ast.Module) -> set[str]:
     return {name for name in names if name.isupper() and not name.startswith("_")}
 
 
-def meant_twice(sources: dict[str, str]) -> dict[str, set[str]]:
+def meant_twice(modules: dict[str, list[ast.AST]]) -> dict[str, set[str]]:
     """Return the constants that other rooms import from several modules, and these."""
-    trees = {path: ast.parse(source) for path, source in sources.items()}
     places = defaultdict(set)
-    for path, tree in trees.items():
+    for path, (tree, *_) in modules.items():
         for name in constants(tree):
             places[name].add(path)
     taken = defaultdict(set)
-    for path, tree in trees.items():
-        for node in ast.walk(tree):
+    for path, said in modules.items():
+        for node in said:
             if not isinstance(node, ast.ImportFrom) or node.level:  # relative: within the app
                 continue
             at = (node.module or "").replace(".", "/")
@@ -58,17 +58,17 @@ def meant_twice(sources: dict[str, str]) -> dict[str, set[str]]:
 
 
 @pytest.fixture(scope="module")
-def sources():
+def modules():
     files = (*(ROOT / "fieldmon").rglob("*.py"), *(ROOT / "app").rglob("*.py"))
-    return {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in files}
+    return nodes({path.relative_to(ROOT).as_posix(): path.read_text("utf-8") for path in files})
 
 
-def test_no_two_classes_have_one_name(sources):
-    assert defined_twice(sources) == {}
+def test_no_two_classes_have_one_name(modules):
+    assert defined_twice(modules) == {}
 
 
-def test_no_two_constants_that_other_rooms_import_have_one_name(sources):
-    assert meant_twice(sources) == {}
+def test_no_two_constants_that_other_rooms_import_have_one_name(modules):
+    assert meant_twice(modules) == {}
 
 
 def test_the_rule_notices_a_constant_that_is_imported_with_two_meanings():
@@ -76,15 +76,15 @@ def test_the_rule_notices_a_constant_that_is_imported_with_two_meanings():
            "fieldmon/drive/versions.py": "A, USUAL = 1, '2.1'\n",
            "fieldmon/cli/plan.py": "from fieldmon.samplers import USUAL\n",
            "app/watching.py": "from fieldmon.drive.versions import USUAL\n"}  # fmt: skip
-    assert meant_twice(one) == {
+    assert meant_twice(nodes(one)) == {
         "USUAL": {"fieldmon/samplers/registry.py", "fieldmon/drive/versions.py"}
     }
     within = one | {"app/watching.py": "", "fieldmon/drive/watcher.py": one["app/watching.py"]}
-    assert meant_twice(within) == {}, "within one room it has one meaning"
+    assert meant_twice(nodes(within)) == {}, "within one room it has one meaning"
 
 
 def test_the_rule_notices_a_name_defined_twice():
     one, other = "class Trial:\n    pass\n", "def f():\n    class Trial: ...\n"
-    assert defined_twice({"a.py": one, "b.py": other}) == {"Trial": ["a.py", "b.py"]}
-    assert defined_twice({"a.py": one + one}) == {"Trial": ["a.py", "a.py"]}
-    assert defined_twice({"a.py": one.replace("Trial", "Trials"), "b.py": other}) == {}
+    assert defined_twice(nodes({"a.py": one, "b.py": other})) == {"Trial": ["a.py", "b.py"]}
+    assert defined_twice(nodes({"a.py": one + one})) == {"Trial": ["a.py", "a.py"]}
+    assert defined_twice(nodes({"a.py": one.replace("Trial", "Trials"), "b.py": other})) == {}

@@ -157,6 +157,16 @@ def coin_limit(chance: float) -> np.uint64:
 def coin_table(key: np.uint64, n: int) -> NDArray[np.float64]:
     """Return the first `n` entries of the table that `key` names, ``(n,)``."""
     table = np.empty(n)
-    for i in range(n):
-        table[i] = coin(key, i)
+    fill_coins(table, key)
     return table
+
+
+@inlined
+def fill_coins(table: NDArray[np.float64], key: np.uint64) -> None:
+    """Fill in the first entries ``(n,)`` of the table that `key` names.
+
+    A loop does that entry by entry: for a whole array at once the compiler brings along the words
+    of its refusal, whose compiling takes longer than most loops'.
+    """
+    for i in range(table.size):
+        table[i] = coin(key, i)

@@ -206,5 +206,5 @@ def _plain(line: Float, begin: int, size: int) -> int:
         if turn > _STRAIGHT * reach or back_x * on_x + back_y * on_y < 0:
             line[k, 0], line[k, 1] = x, y
             k += 1
-    line[k] = line[size - 1]
+    line[k, 0], line[k, 1] = line[size - 1]
     return k + 1

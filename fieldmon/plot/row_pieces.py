@@ -298,7 +298,8 @@ def _blurred(tally: Float, room: Float) -> None:
         low, high = max(k - 1, 0), min(k + 1, n - 1)
         lower, upper = max(k - 2, 0), min(k + 2, n - 1)
         room[k] = (tally[lower] + tally[low] + tally[k] + tally[high] + tally[upper]) / 5.0
-    tally[:] = room
+    for k in range(n):
+        tally[k] = room[k]
 
 
 @routine

@@ -362,7 +362,8 @@ def _reach(roads: RoadNetwork, stops: NDArray[np.int64], between_m: Float) -> No
         for s in range(width):
             source = stops[first + s]
             near[source, s] = 0.0
-            stale[roads.to[roads.start[source] : roads.start[source + 1]]] = True
+            for e in range(roads.start[source], roads.start[source + 1]):
+                stale[roads.to[e]] = True
         while stale.any():
             _sweep(roads, near, stale, (0, n, 1))
             _sweep(roads, near, stale, (n - 1, -1, -1))
@@ -397,7 +398,9 @@ def _sweep(
         if not stale[node]:
             continue
         stale[node] = False
-        own[:] = near[node]
+        # one by one, as `fill_coins` does
+        for s in range(_BLOCK):
+            own[s] = near[node, s]
         for e in range(roads.start[node], roads.start[node + 1]):
             other, length_m = np.uint64(roads.to[e]), roads.length_m[e]
             for s in range(_BLOCK):

@@ -72,6 +72,13 @@ def test_a_day_is_driven_with_wheels_and_kept_as_a_bag(run, tmp_path):
     assert 0 < float(day["worst_cross_track_m"]) < 0.1
 
 
+@pytest.fixture
+def short(run, season):
+    """Return the file of a season of short days: a robot's whole day is recorded stop by stop."""
+    assert run("change", season, "--hours", "0.2")[0] == 0
+    return season
+
+
 def test_made_up_finds_are_not_recorded_unless_it_is_said(run, season):
     code, _, err, _ = run("drive", season, "--date", BEGINS)
     assert code == 2
@@ -79,20 +86,20 @@ def test_made_up_finds_are_not_recorded_unless_it_is_said(run, season):
     assert len(Season(season).history.inspections) == 0
 
 
-def test_a_day_of_a_season_is_one_batch_and_is_not_driven_twice(run, season):
-    code, _, err, _ = run("drive", season, "--date", BEGINS, "--made-up")
+def test_a_day_of_a_season_is_one_batch_and_is_not_driven_twice(run, short):
+    code, _, err, _ = run("drive", short, "--date", BEGINS, "--made-up")
     assert code == 0, err
-    (batch,) = Season(season).batches()
+    (batch,) = Season(short).batches()
     assert "made up" in batch.source
-    code, out, _, _ = run("drive", season, "--date", BEGINS, "--made-up")
+    code, out, _, _ = run("drive", short, "--date", BEGINS, "--made-up")
     assert code == 0
     assert "goes on after plant" in out
     assert f"{batch.rows} inspections of the day before that are in the season only" in out
-    assert Season(season).batches() == (batch,)
+    assert Season(short).batches() == (batch,)
 
 
 def test_a_day_that_is_stopped_says_what_is_kept_and_writes_its_table(
-    run, season, tmp_path, monkeypatch
+    run, short, tmp_path, monkeypatch
 ):
     visit, left = ChargedRobot.visit, iter([True] * 3)
 
@@ -102,17 +109,17 @@ def test_a_day_that_is_stopped_says_what_is_kept_and_writes_its_table(
         return visit(robot, errand)
 
     monkeypatch.setattr(ChargedRobot, "visit", stopped)
-    let_in(Season(season), "Ann", (1, 2))
-    code, out, err, _ = run("drive", season, "--date", BEGINS, "--made-up", "-o", "day.csv")
+    let_in(Season(short), "Ann", (1, 2))
+    code, out, err, _ = run("drive", short, "--date", BEGINS, "--made-up", "-o", "day.csv")
     assert code == 130
     assert f"3 results of {BEGINS} in the season; the same command goes on" in out
     assert "Ann is out with a route of their own; the robot leaves rows 1-2 to them." in err
     assert len(table(tmp_path / "day.stops.csv")) == 3
-    assert len(Season(season).history.inspections) == 3
-    _, _, err, _ = run("plan", season, "--date", BEGINS, "--no-bound", "-o", "r.csv")
+    assert len(Season(short).history.inspections) == 3
+    _, _, err, _ = run("plan", short, "--date", BEGINS, "--no-bound", "-o", "r.csv")
     assert "those who are out have their own" in err
     monkeypatch.setattr(ChargedRobot, "visit", visit)
-    _, out, _, _ = run("drive", season, "--date", BEGINS, "--made-up")
+    _, out, _, _ = run("drive", short, "--date", BEGINS, "--made-up")
     assert "follows what is left of the plan given out last" in out
 
 

@@ -1,6 +1,7 @@
 """Days without inspections make a number more doubtful; inspections tell it again."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -44,6 +45,14 @@ def nights(belief, number):
     return belief
 
 
+def after_each(belief, numbers):
+    """Return what is believed after so many nights and so many, from the fewest on."""
+    passed = [belief]
+    for before, number in pairwise((0, *numbers)):
+        passed.append(nights(passed[-1], number - before))
+    return passed[1:]
+
+
 def test_a_season_that_is_inspected_daily_is_in_no_more_doubt(evening):
     belief = evening
     for _ in range(3):
@@ -60,7 +69,7 @@ def test_nothing_is_learnt_from_no_inspections(evening):
 
 
 def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
-    mornings = [nights(evening, number) for number in range(1, 6)]
+    mornings = after_each(evening, range(1, 6))
     more = [one.uninspected.variance() for one in mornings]
     grown = [np.log(one.chance.sum() / mornings[0].chance.sum()) for one in mornings]
     assert more[0] == 0.0
@@ -164,7 +173,7 @@ def test_while_nobody_inspects_the_plot_becomes_no_cleaner(evening):
     few = inspected(TracedPairs.of(GRID, np.full(400, 0.002)), 0)
     for belief in (evening, few):
         each = [belief.in_hindsight(NIGHT)]
-        each += [nights(belief, number) for number in (1, 2, 3, 5, 8, 30, 90)]
+        each += after_each(belief, (1, 2, 3, 5, 8, 30, 90))
         clean, low = zip(*((one.chance_clean, one.low) for one in map(told, each)), strict=True)
         assert np.all(np.diff(clean) <= 1e-3)
         assert np.all(np.diff(low) >= -1)
@@ -220,7 +229,7 @@ def test_where_hardly_any_is_expected_it_is_hardly_likely_that_there_is_one():
 
 
 def test_a_month_without_inspections_brings_no_jump(evening):
-    each = [told(nights(evening, number)) for number in range(26, 36)]
+    each = [told(one) for one in after_each(evening, range(26, 36))]
     low, clean = zip(*((one.low, one.chance_clean) for one in each), strict=True)
     assert np.all(np.diff(low) >= 0)
     assert np.all(np.diff(clean) <= 1e-9)

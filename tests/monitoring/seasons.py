@@ -55,6 +55,11 @@ def a_plot(width=0.0008, height=0.0007, **planting):
     return Plot.of(field, Planting(**planting))
 
 
+def a_small_plot():
+    """Return a plot of some hundred plants, on which a night takes half as long."""
+    return a_plot(0.00042, 0.00042)
+
+
 def a_plot_with_named_rows():
     """Return a plot of 4 rows of 20 plants, which its file calls 1, 5A, 2 and Top."""
     row, plant = np.divmod(np.arange(80), 20)
@@ -106,8 +111,8 @@ def some_results(season, n=5, day=0, found=()):
     return Inspections.of(plants, result, np.datetime64(on, "D"))
 
 
-def three_results(on=0):
-    plants = np.arange(100, 103)
+def three_results(on=0, first=100):
+    plants = np.arange(first, first + 3)
     return Inspections.of(plants, np.zeros(3, np.int8), np.datetime64(BEGINS, "D") + on)
 
 

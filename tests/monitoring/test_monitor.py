@@ -56,7 +56,7 @@ def compiled(plot, name, robot, start):
 @pytest.mark.parametrize("returns", [True, False])
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_a_season_asked_and_told_is_the_compiled_one_stop_for_stop(plot, start, name, returns):
-    robot = Robot(hours=1.5, returns=returns)
+    robot = Robot(hours=0.8, returns=returns)
     monitor = Monitor(plot, name, robot, start.chance, BeliefSettings(spread=SPREAD), SEED)
     some_found = 0
     for simulated in compiled(plot, name, robot, start):
@@ -103,9 +103,10 @@ def test_a_plant_that_cannot_be_inspected_stays_unknown_and_is_not_asked_for_aga
 
 @pytest.mark.parametrize("name", ["adaptive", "dynamic", "naive", "decide"])
 def test_plants_that_are_gone_are_asked_for_again_ever_more_seldom(plot, name):
-    monitor = Monitor(plot, name, Robot(hours=1))
+    robot = Robot(hours=0.5)
+    monitor = Monitor(plot, name, robot)
     gone = np.zeros(plot.n_plants, np.bool_)
-    gone[Monitor(plot, name, Robot(hours=1)).plan().route.plant[::3]] = True
+    gone[Monitor(plot, name, robot).plan().route.plant[::3]] = True
     asked = {plant: [] for plant in np.flatnonzero(gone).tolist()}
     for number in range(12):
         left_out = monitor.left_out
@@ -247,7 +248,7 @@ def test_finds_that_are_only_flagged_stay_infested(plot):
 def test_a_plant_known_to_be_infested_is_not_asked_for_again(plot, name, treated):
     """It was for ever, and took a third of the day's inspections."""
     settings = BeliefSettings(treated=treated)
-    monitor = Monitor(plot, name, Robot(hours=1), belief_settings=settings)
+    monitor = Monitor(plot, name, Robot(hours=0.5), belief_settings=settings)
     found = np.zeros(len(plot.grid), np.bool_)
     for _ in range(4):
         assert (monitor.left_out == (found & (not treated))).all()

@@ -21,7 +21,7 @@ from fieldmon.monitoring.history import BeliefSettings, Treatment
 from fieldmon.monitoring.mornings import Mornings, _arrays_in, _causes, _packed, _unpacked
 from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.layout import rectangle
-from tests.monitoring.seasons import BEGINS, a_season
+from tests.monitoring.seasons import BEGINS, a_season, a_small_plot, some_results
 
 LAST = 19
 
@@ -33,13 +33,14 @@ def found_on(day, season):
 
 
 @pytest.fixture(scope="module")
-def long_season(recorded, tmp_path_factory):
+def long_season(tmp_path_factory):
     """Give a season of two stretches and a third begun, recorded day by day by one at work."""
-    path = shutil.copy(recorded, tmp_path_factory.mktemp("long") / "season.gpkg")
-    season = Season(path)
+    season = a_season(tmp_path_factory.mktemp("long") / "season.gpkg", a_small_plot())
+    season.plan(BEGINS)
+    season.record(some_results(season, n=12, found=[2, 3, 4]), "monday.csv", "Ann")
     for day in range(2, LAST + 1):
         season.record(found_on(day, season), f"day {day}")
-    return path
+    return season.path
 
 
 @pytest.fixture
@@ -343,7 +344,7 @@ def test_a_season_of_a_named_pest_keeps_its_mornings_until_its_weather_is_anothe
         for t in (20.0, 26.0)
     )
     path = tmp_path / "s.gpkg"
-    season = a_season(path, pest=shipped_pest("green-peach-aphid"), weather=warm)
+    season = a_season(path, a_small_plot(), pest=shipped_pest("green-peach-aphid"), weather=warm)
     for day in range(12):
         season.record(found_on(day, season), f"day {day}")
     assert kept(path) == [0, 8, 10, 11]
@@ -360,7 +361,7 @@ def test_a_season_of_a_named_pest_keeps_its_mornings_until_its_weather_is_anothe
 
 
 def test_an_estimate_that_the_file_keeps_tells_of_plants_found_and_left(tmp_path):
-    season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
+    season = a_season(tmp_path / "s.gpkg", a_small_plot(), belief=BeliefSettings(treated=False))
     for day in range(3):
         season.record(found_on(day, season), f"day {day}")
     on = BEGINS + timedelta(days=2)

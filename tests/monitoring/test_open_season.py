@@ -11,7 +11,10 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.history import BeliefSettings, History
 from fieldmon.plot.robot import Robot
-from tests.monitoring.seasons import BEGINS, a_season, on, some_results, three_results
+from tests.monitoring.seasons import BEGINS, a_season, a_small_plot, on, some_results, three_results
+
+#: the first of some plants of the small plot that none of its routes came to
+NOBODYS = 50
 
 
 def test_two_windows_see_each_others_work(season):
@@ -58,7 +61,7 @@ def layers(season):
 @pytest.fixture(scope="module")
 def long_season(tmp_path_factory):
     """Make a season of three weeks, once; return its file."""
-    season = a_season(tmp_path_factory.mktemp("three_weeks") / "season.gpkg")
+    season = a_season(tmp_path_factory.mktemp("three_weeks") / "season.gpkg", a_small_plot())
     for day in range(0, 21, 3):
         season.record(some_results(season, day=day, found=[day % 5]), f"day {day}")
     return season.path
@@ -111,7 +114,7 @@ def test_another_spread_changes_all_mornings(three_weeks, nights):
 
 def test_a_copy_with_results_of_the_last_day_changes_only_that_one(three_weeks, nights, tmp_path):
     copy = Season(shutil.copy(three_weeks.path, tmp_path / "copy.gpkg"))
-    copy.record(three_results(18), "the copy's")
+    copy.record(three_results(18, NOBODYS), "the copy's")
     nights.clear()
     season = Season(three_weeks.path)
     assert season.merge(copy).new == 3
@@ -122,7 +125,7 @@ def test_a_copy_with_results_of_the_last_day_changes_only_that_one(three_weeks, 
 @pytest.mark.parametrize("day", [0, 7, 16])
 def test_a_copy_with_earlier_results_changes_every_day_after_them(three_weeks, tmp_path, day):
     copy = Season(shutil.copy(three_weeks.path, tmp_path / "copy.gpkg"))
-    copy.record(three_results(day), "the copy's")
+    copy.record(three_results(day, NOBODYS), "the copy's")
     three_weeks.merge(copy)
     assert as_if_all_was_worked_out_again(three_weeks)
 
@@ -183,7 +186,7 @@ def test_inspections_alone_are_those_of_the_history_whoever_asks_first(three_wee
             assert getattr(one, name).tolist() == pytest.approx(
                 getattr(known, name).tolist(), nan_ok=True
             )
-    Season(three_weeks.path).record(three_results(18), "another window")
+    Season(three_weeks.path).record(three_results(18, NOBODYS), "another window")
     assert len(first.inspections) == len(known) + 3
 
 

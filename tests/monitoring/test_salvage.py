@@ -15,7 +15,7 @@ from fieldmon.monitoring import Season, schema
 from fieldmon.monitoring import salvage as saving
 from fieldmon.monitoring.history import History
 from fieldmon.monitoring.salvage import salvage
-from tests.monitoring.seasons import BEGINS, state
+from tests.monitoring.seasons import BEGINS, a_season, a_small_plot, some_results, state
 from tests.monitoring.test_seasons_of_old import FOLDER
 
 
@@ -133,14 +133,15 @@ def days_of(file):
 
 
 @pytest.fixture(scope="module")
-def long_season(recorded, tmp_path_factory):
+def long_season(tmp_path_factory):
     """Make a season of three weeks, once; return its file."""
-    path = shutil.copy(recorded, tmp_path_factory.mktemp("weeks") / "season.gpkg")
-    season = Season(path)
+    season = a_season(tmp_path_factory.mktemp("weeks") / "season.gpkg", a_small_plot())
+    season.plan(BEGINS)
+    season.record(some_results(season, n=12, found=[2, 3, 4]), "monday.csv", "Ann")
     for day in range(1, 20, 3):
         at = np.arange(day, day + 5)
         season.record(Inspections.of(at, at % 2, np.datetime64(BEGINS) + day), f"day {day}")
-    return path
+    return season.path
 
 
 @pytest.fixture

@@ -25,6 +25,7 @@ from tests.monitoring.seasons import (
     Insects,
     a_plot,
     a_season,
+    a_small_plot,
     on,
     some_records,
     some_results,
@@ -73,7 +74,8 @@ def test_a_new_season_never_replaces_a_file(tmp_path):
 @pytest.mark.parametrize("name", ["naive", "bouncy", "dynamic", "random"])
 def test_ten_days_on_disk_are_ten_days_of_the_simulator(tmp_path, name):
     """The same insects, the same belief and the same stops, digit for digit."""
-    season = a_season(tmp_path / "s.gpkg", sampler=name)
+    robot = ROBOT.with_hours(0.8)
+    season = a_season(tmp_path / "s.gpkg", a_small_plot(), sampler=name, robot=robot)
     settings, plot = season.settings, season.plot
     truth = Insects(season)
     start = Start(truth.infested, season.morning(BEGINS))

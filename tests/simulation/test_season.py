@@ -1,6 +1,7 @@
 """Many working days while the insects spread."""
 
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -38,9 +39,15 @@ def season(name="naive", robot=None, settings=None, seed=3, first=None):
     )
 
 
+@cache
+def usual_season(name):
+    """Return a season for tests that only look at it."""
+    return season(name)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_the_same_seed_gives_the_same_season(name):
-    for one, other in zip(season(name), season(name), strict=True):
+    for one, other in zip(usual_season(name), season(name), strict=True):
         assert (one.work.plant == other.work.plant).all()
         assert (one.infested == other.infested).all()
         assert (one.chance == other.chance).all()
@@ -73,7 +80,7 @@ def test_all_samplers_meet_the_same_insects():
 
 @pytest.mark.parametrize("name", NAMES)
 def test_only_infested_plants_are_found_and_found_insects_are_destroyed(name):
-    for today, tomorrow in zip(season(name)[:-1], season(name)[1:], strict=True):
+    for today, tomorrow in pairwise(usual_season(name)):
         finds = today.work.plant[today.work.found]
         assert today.infested[finds].all()
         cleared = np.zeros(N, bool)
@@ -85,7 +92,7 @@ def test_only_infested_plants_are_found_and_found_insects_are_destroyed(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_the_figures_of_every_day_add_up(name):
     found, before = 0, None
-    for day in season(name):
+    for day in usual_season(name):
         found += day.found
         assert day.ever_found == found
         assert day.ever_infested == found + day.left

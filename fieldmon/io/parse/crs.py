@@ -155,6 +155,8 @@ def system(text: str) -> pyproj.CRS:
         ) from None
 
 
+# PROJ looks for it longer than all else of a small file takes, and it is asked for again and again
+@lru_cache(maxsize=64)
 def transformation_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Transformation:
     """Return the best transformation on this machine to degrees, for data around a centre."""
     flat = _horizontal(crs)
@@ -162,7 +164,7 @@ def transformation_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Transfo
     if flat.equals(pyproj.CRS(WGS84), ignore_axis_order=True):
         return Transformation(code, name)
     try:
-        rough = pyproj.Transformer.from_crs(flat, WGS84, always_xy=True).transform(*centre)
+        rough = _some_way(flat).transform(*centre)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # a missing grid is a message of ours
             group = TransformerGroup(flat, WGS84, always_xy=True, area_of_interest=_around(*rough))
@@ -189,6 +191,11 @@ def transformation_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Transfo
     lost = _is_ballpark(best) and _is_unknown(flat)
     alike = _alike(flat, *rough) if lost or not _is_named(flat) else ()
     return Transformation(code, name, accuracy, best, missing, lost or bool(alike), alike)
+
+
+@lru_cache(maxsize=128)
+def _some_way(crs: pyproj.CRS) -> pyproj.Transformer:
+    return pyproj.Transformer.from_crs(crs, WGS84, always_xy=True)
 
 
 def _is_ballpark(way: pyproj.Transformer) -> bool:
@@ -307,7 +314,7 @@ def _exactly(
     rough: CrsCandidate, centre: tuple[float, float], near: tuple[float, float] | None
 ) -> CrsCandidate:
     """Return a candidate with its datum taken into account, which takes a hundred times longer."""
-    way = pyproj.Transformer.from_crs(rough.code, WGS84, always_xy=True)
+    way = _some_way(pyproj.CRS(rough.code))
     bare = centre if rough.code == "EPSG:4326" else _without_zone(_projected()[rough.code], centre)
     lon, lat = (float(v) for v in way.transform(*bare))
     return rough._replace(lon=lon, lat=lat, km_away=_km(near, lon, lat))

@@ -103,6 +103,12 @@ def test_the_height_of_a_compound_system_is_left_aside():
     assert transformation_from(system("EPSG:4326+5773"), PARAN).transformer is None
 
 
+def test_a_way_is_looked_for_once_for_the_same_data():
+    found = transformation_from(system("EPSG:2039"), ITM)
+    assert transformation_from(system("2039"), ITM) is found
+    assert transformation_from(system("EPSG:2039"), (ITM[0], 600_000.0)) is not found
+
+
 def test_candidates_near_a_place_are_sorted_by_how_near_they_bring_the_data():
     found = candidates(ITM, near=(35.1, 30.3))
     assert found[0].code == "EPSG:2039"

@@ -3,8 +3,10 @@
 import os
 import random
 import sqlite3
+from contextlib import closing
 from dataclasses import replace
 from datetime import UTC, datetime, time, timedelta
+from functools import cache
 from types import SimpleNamespace
 from unittest import mock
 
@@ -37,23 +39,11 @@ from tests.monitoring.phone import JPEG
 from tests.monitoring.seasons import BEGINS, a_plot
 
 PAIRS = int(os.environ.get("FIELDMON_MERGES", "40"))
-
-
 PLOT = a_plot()
-
-
 GRID = PLOT.grid
-
-
 LABEL = plant_numbers(GRID)
-
-
 SETTINGS = MonitoringSettings(BEGINS)
-
-
 SEASON = SimpleNamespace(plot=PLOT, plant_numbers=LABEL)
-
-
 WHO = "Ann", "Ben"
 
 
@@ -157,6 +147,17 @@ def keep_labels(db, rng):
 
 def apart(seed):
     """Return two copies of a season, in memory, in which different people went on."""
+    held, Clock.shows, shown = gone_apart(seed)
+    Clock.shown = {*shown}
+    both = tuple(sqlite3.connect(":memory:", isolation_level=None) for _ in held)
+    for db, whole in zip(both, held, strict=True):
+        db.deserialize(whole)
+    return both
+
+
+@cache
+def gone_apart(seed):
+    """Return what is in two such copies, and what the clock shows and showed then."""
     rng = random.Random(seed)
     Clock.begin()
     one, other = (sqlite3.connect(":memory:", isolation_level=None) for _ in range(2))
@@ -184,7 +185,8 @@ def apart(seed):
         one.backup(other)
         for _ in range(rng.choice((0, 4, 8, 12))):
             work(*rng.choice(((one, "Ann"), (other, "Ben"))))
-    return one, other
+    with closing(one), closing(other):
+        return (one.serialize(), other.serialize()), Clock.shows, frozenset(Clock.shown)
 
 
 def merge(db, other):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import routine
-from fieldmon.compute.random_streams import coin_table
+from fieldmon.compute.random_streams import coin_table, fill_coins
 from fieldmon.studies.thesis.chapter4.nights import ABORTED, NEIGHBOR, RANDOM_SNAKE, Night, spread
 from fieldmon.studies.thesis.chapter4.vineyard import infest
 
@@ -351,6 +351,14 @@ def most_points(walk: ListingWalk) -> int:
 
 
 @routine
+def fill(days: NDArray[np.float64], numbers: NDArray[np.float64]) -> None:
+    """Fill in the numbers of a run's days, both ``(days, 8)``, one by one as `fill_coins` does."""
+    for day in range(numbers.shape[0]):
+        for k in range(numbers.shape[1]):
+            days[day, k] = numbers[day, k]
+
+
+@routine
 def repeat(
     walk: ListingWalk, night: Night, start: float, draws: int, keys: NDArray[np.uint64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -368,9 +376,10 @@ def repeat(
     for k in range(replicates):
         infested = infest(walk.plants, walk.sides, coin_table(keys[k, 0], vines), start)
         for day in range(walk.days):
-            coins[day] = coin_table(keys[k, 2 + day], faces)
+            fill_coins(coins[day], keys[k, 2 + day])
         steps = coin_table(keys[k, 1], draws)
-        days[k], _, aborted[k] = run(walk, night, infested, coins, steps, trace)
+        numbers, _, aborted[k] = run(walk, night, infested, coins, steps, trace)
+        fill(days[k], numbers)
     return days, aborted
 
 

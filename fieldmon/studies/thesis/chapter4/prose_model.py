@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import routine
-from fieldmon.compute.random_streams import coin_table
+from fieldmon.compute.random_streams import coin_table, fill_coins
 from fieldmon.studies.thesis.chapter4.listings import (
     END,
     EVER,
@@ -21,6 +21,7 @@ from fieldmon.studies.thesis.chapter4.listings import (
     NEW_COUNTED,
     NEW_TRUE,
     VISITED,
+    fill,
 )
 from fieldmon.studies.thesis.chapter4.vineyard import infest
 
@@ -250,6 +251,6 @@ def repeat(
     for k in range(replicates):
         infested = infest(walk.plants, walk.sides, coin_table(keys[k, 0], vines), start)
         for day in range(walk.days):
-            coins[day].ravel()[:used] = coin_table(keys[k, 2 + day], used)
-        days[k] = run(walk, infested, coins, coin_table(keys[k, 1], draws))
+            fill_coins(coins[day].ravel()[:used], keys[k, 2 + day])
+        fill(days[k], run(walk, infested, coins, coin_table(keys[k, 1], draws)))
     return days

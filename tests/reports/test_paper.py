@@ -63,25 +63,19 @@ def shown(data):
 
 
 @pytest.fixture(scope="module")
-def sheets(worked, last, of_day, of_season):
-    """Return the sheets of all reports, those of a season first: one file cuts its fonts once."""
+def reports(worked, last, of_day, of_season):
     asked = AdviceSettings(0.02, costs=TreatmentCosts(per_ha=1.0, per_zone=0.0))
     advice = advice_report(worked, last, worked.advice(last, asked), Units())
-    others = of_day, advice, certification_report([worked], Units())
-    return of_season.sheets, tuple(sheet for one in others for sheet in one.sheets)
+    made = of_season, of_day, advice, certification_report([worked], Units())
+    return [replace(one, plot="دفيئة 3") for one in made]
 
 
 @pytest.mark.parametrize("code", LANGUAGES)
-def test_every_run_of_glyphs_is_shown_in_the_font_that_chose_them(
-    sheets, of_day, monkeypatch, code
-):
-    of_season, others = sheets
+def test_every_run_of_glyphs_is_shown_in_the_font_that_chose_them(reports, monkeypatch, code):
     # a season's maps take long, and are the same in each language
-    all_sheets = (*of_season, *others) if code == "ar" else others
-    report = replace(of_day, plot="دفيئة 3", sheets=all_sheets)
-    data, chosen = written(monkeypatch, report.said_in(for_reports(code)))
-    assert len(opened(data).pages) == len(all_sheets)
-    assert list(shown(data)) == chosen
+    for report in reports if code == "ar" else reports[1:]:
+        data, chosen = written(monkeypatch, report.said_in(for_reports(code)))
+        assert list(shown(data)) == chosen
 
 
 def drawn(monkeypatch, *blocks, language=None, plot="x"):

@@ -76,7 +76,7 @@ def day_plan(
     return plan_believed(_plot, known, settings, wishes)
 
 
-@st.cache_resource(max_entries=FEW)
+@st.cache_resource(max_entries=FEW, show_spinner=False)
 def first_belief(
     key: str,
     day: str,
@@ -89,7 +89,7 @@ def first_belief(
     return chance, TracedPairs.of(_plot.grid, chance)
 
 
-@st.cache_resource(max_entries=FEW)
+@st.cache_resource(max_entries=FEW, show_spinner=False)
 def chance_map(
     key: str,
     day: str,
@@ -103,13 +103,13 @@ def chance_map(
     return prior_chance(_plot.grid, _plot.field, records, on, prior, at_risk)
 
 
-@st.cache_resource(max_entries=FEW)
+@st.cache_resource(max_entries=FEW, show_spinner=False)
 def newest_records(key: str, _plot: Plot, _records: Observations) -> NewestRecords:
     """Return what records say of plants; `key` stands for the plot, its records and the day."""
     return hotspots.newest_records(_plot.grid, _records)
 
 
-@st.cache_resource(max_entries=FEW)
+@st.cache_resource(max_entries=FEW, show_spinner=False)
 def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpots:
     """Return where records cluster; `key` as above."""
     return hot_spots(_plot.grid, newest_records(key, _plot, _records).state)
@@ -129,7 +129,7 @@ def revision_on(season: Season, on: date, who: str | None = None) -> str:
     return " ".join([season.revision, *(f"{one.until}" for one in closed)])
 
 
-@st.cache_resource(max_entries=FEW)
+@st.cache_resource(max_entries=FEW, show_spinner=False)
 def import_messages(key: str, _season: Season) -> tuple[KeptMessage, ...]:
     """Return what the imports had to say when a season began."""
     return _season.messages()
@@ -169,19 +169,19 @@ def _day_of(of: tuple[str, str | None]) -> tuple[date, day_ahead.WorkPart]:
     return date.fromisoformat(day), day_ahead.WorkPart(name=who or "")
 
 
-@st.cache_resource(max_entries=FEW)
+@st.cache_resource(max_entries=FEW, show_spinner=False)
 def estate_plot(key: str, revision: str, day: str, _season: Season) -> EstatePlot:
     """Return a season's plot as its day begins, for a day shared with other plots."""
     return estate_day.EstatePlot.of(_season, date.fromisoformat(day))
 
 
-@st.cache_resource(max_entries=_DAYS)
+@st.cache_resource(max_entries=_DAYS, show_spinner=False)
 def turn_plan(key: str, robot: Robot, _turn: EstateTurn) -> DayPlan:
     """Return the day of one who has only some hours for a plot; `key` stands for the rest."""
     return _turn.plan()
 
 
-@st.cache_resource(max_entries=FEW)
+@st.cache_resource(max_entries=FEW, show_spinner=False)
 def kept_route(
     key: str,
     revision: str,
@@ -193,13 +193,13 @@ def kept_route(
     return _season.kept_route(date.fromisoformat(day), who or "")
 
 
-@st.cache_resource(max_entries=_DAYS)
+@st.cache_resource(max_entries=_DAYS, show_spinner=False)
 def planned_only(key: str, revision: str, day: str, _season: Season) -> tuple[date, ...]:
     """Return the planned days up to a day of which nothing is recorded."""
     return _season.planned_only(date.fromisoformat(day))
 
 
-@st.cache_resource(max_entries=FEW)
+@st.cache_resource(max_entries=FEW, show_spinner=False)
 def planned_and_done(
     key: str,
     revision: str,
@@ -211,7 +211,7 @@ def planned_and_done(
     return _season.planned_and_done(date.fromisoformat(day), who)
 
 
-@st.cache_resource(max_entries=FEW)
+@st.cache_resource(max_entries=FEW, show_spinner=False)
 def worked(
     key: str,
     revision: str,
@@ -223,43 +223,43 @@ def worked(
     return worked_route(_season, date.fromisoformat(day), who)
 
 
-@st.cache_resource(max_entries=FEW)
+@st.cache_resource(max_entries=FEW, show_spinner=False)
 def kept_days(key: str, revision: str, _season: Season) -> tuple[DayFigures, ...]:
     """Return the figures of a season's days on which something happened, in order."""
     return _season.days()
 
 
-@st.cache_resource(max_entries=_DAYS)
+@st.cache_resource(max_entries=_DAYS, show_spinner=False)
 def day_figures(key: str, revision: str, day: str, _season: Season) -> DayFigures:
     """Return a day of a season in figures."""
     return _season.day_figures(date.fromisoformat(day))
 
 
-@st.cache_resource(max_entries=_MAPS)
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def progress(key: str, revision: str, day: str, _season: Season) -> Progress:
     """Return how far the inspections are after a day of a season."""
     return _season.progress(date.fromisoformat(day))
 
 
-@st.cache_resource(max_entries=_DAYS)
+@st.cache_resource(max_entries=_DAYS, show_spinner=False)
 def still_infested(key: str, revision: str, day: str, _season: Season) -> PlotEstimate:
     """Return how many plants are still infested after a day of a season, flagged ones too."""
     return _season.still_infested(date.fromisoformat(day))
 
 
-@st.cache_resource(max_entries=_MAPS)
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def flagged(key: str, revision: str, day: str, _season: Season) -> float:
     """Return how many plants found are still infested after a day of a season."""
     return _season.flagged(date.fromisoformat(day))
 
 
-@st.cache_resource(max_entries=_MAPS)
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def learnt(key: str, revision: str, day: str, _season: Season) -> tuple[Learnt, ...]:
     """Return what the inspections up to a day of a season tell of the insects."""
     return _season.learnt(date.fromisoformat(day))
 
 
-@st.cache_resource(max_entries=_MAPS)
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def told_otherwise(key: str, revision: str, day: str, _season: Season) -> tuple[ToldOtherwise, ...]:
     """Return with which inspections up to a day of a season another detection rate was said."""
     return _season.told_otherwise(date.fromisoformat(day))
@@ -285,32 +285,32 @@ def advice(
     return _season.advice(date.fromisoformat(day), settings)
 
 
-@st.cache_resource(max_entries=_MAPS)
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def forecast(key: str, revision: str, day: str, _season: Season) -> Forecast:
     """Return how many plants are infested on the mornings after a day of a season."""
     return _season.forecast(date.fromisoformat(day))
 
 
-@st.cache_resource(max_entries=_MAPS)
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def season_hot_spots(key: str, revision: str, day: str, _season: Season) -> HotSpots:
     """Return where finds cluster on a day of a season."""
     number = _season.settings.day(date.fromisoformat(day))
     return hot_spots_on(_season.history, number)
 
 
-@st.cache_resource(max_entries=_MAPS)
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def evening(key: str, revision: str, day: str, _season: Season) -> Array:
     """Return the chance map of a day after what was recorded of it."""
     return _season.evening(date.fromisoformat(day))
 
 
-@st.cache_resource(max_entries=_MAPS)
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def level_range(key: str, revision: str, day: str, _season: Season) -> LevelRange:
     """Return how far that chance map may be off as a whole."""
     return _season.level_range(date.fromisoformat(day))
 
 
-@st.cache_resource(max_entries=_MAPS)
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def morning(key: str, revision: str, day: str, _season: Season) -> Array:
     """Return the chance map of a morning."""
     return _season.morning(date.fromisoformat(day))
@@ -333,12 +333,12 @@ def layers(key: str, make: Callable[[], list[Layer]]) -> list[Layer]:
     return _layers(f"{language.current()} {key}", make)
 
 
-@st.cache_resource(max_entries=_MAPS)
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def _layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:
     return _make()
 
 
-@st.cache_resource(max_entries=_FILMS)
+@st.cache_resource(max_entries=_FILMS, show_spinner=False)
 def frames(key: str, _make: Callable[[], list[list[Layer]]]) -> list[list[Layer]]:
     """Return the layers of each day of a season, kept together: they are more than maps are kept.
 

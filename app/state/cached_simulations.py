@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from .comparison import ComparisonSettings
 
 
-@st.cache_resource(max_entries=8)
+@st.cache_resource(max_entries=8, show_spinner=False)
 def comparison(
     key: str,
     settings: ComparisonSettings,
@@ -44,7 +44,7 @@ def comparison(
     return WatchedComparison(settings, _laid, robot)
 
 
-@st.cache_resource(max_entries=8)
+@st.cache_resource(max_entries=8, show_spinner=False)
 def drive_run(
     key: str,
     kind: str,
@@ -57,7 +57,7 @@ def drive_run(
     return DriveRun(kind, _plot, _scene, _sampler, made_up)
 
 
-@st.cache_resource(max_entries=8)
+@st.cache_resource(max_entries=8, show_spinner=False)
 def live_drive(key: str, broker: Broker, robot: RobotName, _scene: Scene) -> LiveDrive:
     """Return a robot's day as it is driven; `key` stands for the plot and the day."""
     return LiveDrive(broker, robot, _scene)

@@ -37,6 +37,16 @@ from tests.app.map_in_browser import dressed, picture
 from tests.paths import ROOT, SHARED
 
 SHOTS = Path(__file__).with_name("screenshots")
+#: whether a test has failed
+FAILED = pytest.StashKey[bool]()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item):
+    report = yield
+    if report.failed:
+        item.stash[FAILED] = True
+    return report
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -242,12 +252,16 @@ def new_tab(browser):
 
 @pytest.fixture
 def page(new_tab, request):
-    """Return a new tab of the asked size that remembers every request and keeps a picture."""
+    """Return a new tab of the asked size that remembers every request.
+
+    Of a test that failed it keeps a picture.
+    """
     page = new_tab(*getattr(request, "param", ()))
     yield page
-    SHOTS.mkdir(exist_ok=True)
-    dressed(page)
-    (SHOTS / f"{request.node.name.replace('/', '_')}.png").write_bytes(picture(page))
+    if FAILED in request.node.stash:
+        SHOTS.mkdir(exist_ok=True)
+        dressed(page)
+        (SHOTS / f"{request.node.name.replace('/', '_')}.png").write_bytes(picture(page))
     page.close()
 
 

@@ -80,6 +80,8 @@ def test_in_a_browser_nothing_runs_nothing_is_fetched_and_nothing_leads_out(
     page, address, served_seasons
 ):
     hostile_season(served_seasons / "Harm.gpkg")
+    complaints = []
+    page.on("console", lambda one: complaints.append(one.text) if one.type == "error" else None)
     page.goto(f"{address}/?season=Harm")
     rest(page)
     seen = 0
@@ -93,6 +95,7 @@ def test_in_a_browser_nothing_runs_nothing_is_fetched_and_nothing_leads_out(
             assert page.locator(f'[src*="{EVIL}"], [href*="{EVIL}"], [onerror]').count() == 0
             seen += page.get_by_text("onerror").count() > 0
     assert seen >= 2
+    assert complaints == []
     own = (address, address.replace("http", "ws"), "data:", "blob:", "about:")
     assert [url for url in page.requests if not url.startswith(own)] == []
     # and if a picture were there: the page fetches from its own server, and maps by https only

@@ -88,8 +88,10 @@ def shown(page, address):
 @pytest.fixture(scope="module")
 def first_screen(new_tab, address):
     """Load the app's first screen once for all who only look at it and switch what it shows."""
-    page = new_tab((1400, 1000))
+    page = new_tab(LAPTOP[0])
     shown(page, address)
+    still(page)
+    page.first_view = view(page)
     page.opaque = card(page).get_by_role("slider", name="Opacity").input_value()
     yield page
     page.close()
@@ -99,6 +101,7 @@ def first_screen(new_tab, address):
 def screen(first_screen):
     """Return the first screen as it came: all layers, every plant by its chance, the whole plot."""
     with awake(first_screen) as page:
+        page.set_viewport_size({"width": 1400, "height": 1000})
         page.mouse.move(2, 2)
         for name in (ROUTE, HOT):
             switch(page, name, on=True)
@@ -150,9 +153,9 @@ def test_plants_and_route_are_drawn_where_they_are(screen):
     assert share_near(image[::-1], on_line, colours.ROUTE, tolerance=110) < 0.8, "upside down"
 
 
-@pytest.mark.parametrize("page", [LAPTOP], indirect=True)
-def test_the_map_takes_most_of_the_window_and_the_whole_plot_is_in_its_free_part(page, address):
-    shown(page, address)
+def test_the_map_takes_most_of_the_window_and_the_whole_plot_is_in_its_free_part(screen):
+    page = screen
+    page.set_viewport_size({"width": 1440, "height": 900})
     still(page)
     box, panel = page.locator(MAP).bounding_box(), page.locator(".st-key-panel").bounding_box()
     left = panel["x"] + panel["width"]
@@ -160,11 +163,13 @@ def test_the_map_takes_most_of_the_window_and_the_whole_plot_is_in_its_free_part
     assert free_px >= 0.6 * 1440 * 900
     assert (box["x"] + box["width"], box["y"] + box["height"]) == (1440, 900)
     plot, _ = sample()
-    place = pixels(view(page), plot.grid.lonlat())
-    low, high = place.min(axis=0), place.max(axis=0)
-    assert (low > [left - box["x"], 0]).all()
-    assert (high < [box["width"], box["height"]]).all()
-    assert ((high - low) / [1440 - left, box["height"]]).max() > 0.7
+    for seen in (page.first_view, view(page)):
+        assert (seen["width"], seen["height"]) == (box["width"], box["height"])
+        place = pixels(seen, plot.grid.lonlat())
+        low, high = place.min(axis=0), place.max(axis=0)
+        assert (low > [left - box["x"], 0]).all()
+        assert (high < [box["width"], box["height"]]).all()
+        assert ((high - low) / [1440 - left, box["height"]]).max() > 0.7
     page.get_by_role("button", name=texts.MAP_WORDS["fold"]).click()
     page.locator(".st-key-panel").wait_for(state="hidden")
     page.get_by_role("button", name=texts.MAP_WORDS["unfold"]).click()
@@ -204,7 +209,10 @@ _COUNT_SENT = """() => {
 
 @pytest.fixture(scope="module")
 def walk(new_tab, address):
-    """Turn to every page of the menu; return what was asked for and complained."""
+    """Turn to every item of the menu; return what was asked for and complained.
+
+    Every page of each is turned to in a season: see `test_hostile_texts`.
+    """
     page, complaints = new_tab(), []
     page.on("console", lambda one: complaints.append(one.text) if one.type == "error" else None)
     for name in ("study", "prior", ""):
@@ -212,11 +220,8 @@ def walk(new_tab, address):
         page.wait_for_selector(IDLE, timeout=240_000)
     try:
         rest(page)  # as people do: they see the map before they turn from it
-        for name, item in menu.MENU.items():
+        for name in menu.MENU:
             open_item(page, texts.MENU[name])
-            for shown in item.pages[1:]:
-                open_page(page, texts.PAGES[shown])
-                page.wait_for_selector(IDLE, timeout=180_000)
     except PlaywrightTimeout as late:
         late.add_note(f"Its console says: {complaints}; asked last: {page.requests[-12:]}")
         raise
@@ -416,11 +421,29 @@ def only_states(page):
             box.set_checked(False)
 
 
-def test_found_clean_and_never_inspected_are_told_apart_by_pixels(page, address, served_seasons):
-    plot, found, clean, never = states_season(served_seasons, "States")
+@pytest.fixture(scope="module")
+def states_tab(new_tab, address, served_seasons):
+    """Load such a season once for all who look at its states."""
+    page = new_tab()
+    page.states = states_season(served_seasons, "States")
     page.goto(f"{address}/season?season=States")
     rest(page)
-    only_states(page)
+    yield page
+    page.close()
+
+
+@pytest.fixture
+def states(states_tab):
+    """Return that tab, with states and the whole plot on its map."""
+    with awake(states_tab) as page:
+        only_states(page)
+        page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
+        yield page
+
+
+def test_found_clean_and_never_inspected_are_told_apart_by_pixels(states):
+    page = states
+    plot, found, clean, never = page.states
     image = still(page)
     place = pixels(view(page), plot.grid.lonlat())
     for own, colour, others in (
@@ -458,11 +481,8 @@ def east_north(grid):
     return lonlat * 111_320.0 * [np.cos(np.deg2rad(lonlat[:, 1].mean())), 1.0]
 
 
-def test_the_zoom_stays_over_layers_days_and_rooms(page, address, served_seasons):
-    states_season(served_seasons, "Zoom")
-    page.goto(f"{address}/season?season=Zoom")
-    rest(page)
-    only_states(page)
+def test_the_zoom_stays_over_layers_days_and_rooms(states):
+    page = states
     far = still(page)
     near = zoomed(page)
     seen = view(page)
@@ -991,12 +1011,26 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
-def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_one(
-    page, address, served_seasons
-):
-    kept = season(served_seasons / "Typing.gpkg", sample()[0])
-    page.goto(f"{address}/?season=Typing&part=record")
+@pytest.fixture(scope="module")
+def record_tab(new_tab, address, served_seasons):
+    """Load the page of recording once, on a day, for all who type there."""
+    page = new_tab()
+    page.kept = season(served_seasons / "Typing.gpkg", sample()[0])
+    page.goto(f"{address}/?season=Typing&part=record&day=2026-11-18")
     rest(page)
+    yield page
+    page.close()
+
+
+@pytest.fixture
+def record_page(record_tab):
+    """Return that tab as the test before left it."""
+    with awake(record_tab) as page:
+        yield page
+
+
+def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_one(record_page):
+    page = record_page
     forms = page.get_by_role("tabpanel")
     row, plant = (forms.get_by_label(name, exact=True).first for name in ("Row", "Plant"))
     for typed in (row, plant):
@@ -1009,16 +1043,14 @@ def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_
     page.evaluate("document.querySelector('[class*=st-key-record_one] button').click()")
     page.get_by_text("1 recorded").wait_for(timeout=180_000)
     rest(page)
-    assert len(kept.history.inspections) == 1
+    assert len(page.kept.history.inspections) == 1
     assert plant.input_value() == ""
     page.keyboard.type("3")
     assert row.input_value() == "123"
 
 
-def test_a_day_that_is_typed_counts_by_enter_and_by_tab(page, address, served_seasons):
-    season(served_seasons / "Days.gpkg", sample()[0])
-    page.goto(f"{address}/?season=Days&part=record&day=2026-11-18")
-    rest(page)
+def test_a_day_that_is_typed_counts_by_enter_and_by_tab(record_page):
+    page = record_page
     for key, day in (("Enter", "20"), ("Tab", "22")):
         page.get_by_test_id("stDateInput").first.get_by_role("spinbutton").last.click()
         page.keyboard.type(day)
@@ -1103,9 +1135,8 @@ def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_m
     assert title.evaluate(gap) < 5, "a heading of Latin letters begins where the others do"
 
 
-@pytest.mark.parametrize("page", [((960, 600), None)], indirect=True)
-def test_in_a_low_window_or_a_zoomed_one_all_tools_of_the_map_can_be_pressed(page, address):
-    shown(page, address)
+def test_in_a_low_window_or_a_zoomed_one_all_tools_of_the_map_can_be_pressed(screen):
+    page = screen
     for width, height in ((960, 600), (720, 450)):  # 1440 x 900 at 150 and 200 %
         page.set_viewport_size({"width": width, "height": height})
         tools = page.locator(f"{MAP} .tools .tool")
@@ -1114,44 +1145,68 @@ def test_in_a_low_window_or_a_zoomed_one_all_tools_of_the_map_can_be_pressed(pag
             tools.nth(k).click(trial=True, timeout=5_000)  # nothing lies over it
 
 
-def test_no_plot_lies_behind_the_legend_of_the_map_of_all(page, address, served_seasons):
-    # the farthest away of all seasons that other tests keep: the map of all has it in its corner
-    files = [served_seasons / f"{name}.gpkg" for name in ("North-west", "South-east")]
-    for file, (lon, lat) in zip(files, ((34.0, 32.0), (37.0, 28.9)), strict=True):
+# the farthest away of all seasons that other tests keep: the map of all has it in its corner
+FAR_AWAY = {"North-west": (34.0, 32.0), "South-east": (37.0, 28.9)}
+ONE_PLOT = {"Last year": (36.0, 31.0), "This year": (36.0, 31.0)}
+
+
+@pytest.fixture(scope="module")
+def plots_tab(new_tab, address, served_seasons):
+    """Load the map of all plots once, with seasons that are far away and two of one plot."""
+    files = []
+    for name, (lon, lat) in {**FAR_AWAY, **ONE_PLOT}.items():
         area = shapely.MultiPolygon([box(lon, lat, lon + 0.0005, lat + 0.0005)])
-        Season.create(file, Plot.of(Field(file.stem, area)), begins=date(2026, 11, 16))
+        files.append(served_seasons / f"{name}.gpkg")
+        field = Field("East" if name in ONE_PLOT else name, area)
+        Season.create(files[-1], Plot.of(field), begins=date(2026, 11, 16))
+    page = new_tab()
     try:
         page.goto(f"{address}/plots")
         rest(page)
-        (place,) = pixels(view(page), [[37.0, 28.9]])
-        legend = page.locator(f"{MAP} .legend").bounding_box()
-        top = page.locator(MAP).bounding_box()["y"]
-        behind = place[0] > legend["x"] and top + place[1] > legend["y"]
-        assert not behind, f"it is at {place}, the legend at {legend}"
+        yield page
     finally:
+        page.close()
         for file in files:
             file.unlink()
 
 
-def test_plots_under_one_dot_are_counted_on_it_and_each_can_be_opened(
-    page, address, served_seasons
-):
-    area = shapely.MultiPolygon([box(36.0, 31.0, 36.0005, 31.0005)])
-    files = [served_seasons / f"{name}.gpkg" for name in ("Last year", "This year")]
-    for file in files:
-        Season.create(file, Plot.of(Field("East", area)), begins=date(2026, 11, 16))
-    try:
-        page.goto(f"{address}/plots")
-        rest(page)
-        page.locator(f"{MAP} .label.plots", has_text="2").wait_for()
-        (place,) = pixels(view(page), [[36.00025, 31.00025]])
-        click(page, place)
-        page.locator(f"{MAP} .choice button", has_text="This year").click()
-        box_of_plots = page.locator(".st-key-season input")
-        until(lambda: box_of_plots.count() and box_of_plots.input_value() == "This year", 60.0)
-    finally:
-        for file in files:
-            file.unlink()
+@pytest.fixture
+def plots(plots_tab):
+    """Return that tab, on that map."""
+    with awake(plots_tab) as page:
+        if urlsplit(page.url).path != "/plots":
+            open_item(page, texts.MENU["plots"])
+        yield page
+
+
+def test_no_plot_lies_behind_the_legend_of_the_map_of_all(plots):
+    page = plots
+    (place,) = pixels(view(page), [FAR_AWAY["South-east"]])
+    legend = page.locator(f"{MAP} .legend").bounding_box()
+    top = page.locator(MAP).bounding_box()["y"]
+    behind = place[0] > legend["x"] and top + place[1] > legend["y"]
+    assert not behind, f"it is at {place}, the legend at {legend}"
+
+
+def test_plots_under_one_dot_are_counted_on_it_and_each_can_be_opened(plots):
+    page = plots
+    (place,) = pixels(view(page), [np.add(ONE_PLOT["This year"], 0.00025)])
+    corner = page.locator(MAP).bounding_box()
+    on_screen = np.add(place, (corner["x"], corner["y"]))
+
+    def is_counted():
+        for one in page.locator(f"{MAP} .label.plots:visible", has_text=re.compile("^2$")).all():
+            on = one.bounding_box()
+            middle = on["x"] + on["width"] / 2, on["y"] + on["height"] / 2
+            if np.hypot(*(on_screen - middle)) < 30:
+                return True
+        return False
+
+    until(is_counted)
+    click(page, place)
+    page.locator(f"{MAP} .choice button", has_text="This year").click()
+    box_of_plots = page.locator(".st-key-season input")
+    until(lambda: box_of_plots.count() and box_of_plots.input_value() == "This year", 60.0)
 
 
 @pytest.fixture(scope="module")

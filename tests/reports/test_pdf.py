@@ -38,10 +38,25 @@ def rows(n):
                  (0.5, 0.5), flow=2, rest="and {n} more")  # fmt: skip
 
 
-@pytest.mark.parametrize("paper", PAPERS)
-def test_a_season_has_four_pages_and_a_day_one_of_the_paper_s_size(of_season, of_day, paper):
-    for report, pages in ((of_season, 4), (of_day, 1)):
-        assert sizes_mm(pdf_bytes(report, paper)) == [PAPERS[paper]] * pages
+@pytest.fixture(scope="module")
+def season_file(of_season):
+    """Return a season's report as a file, written once for all who only read it."""
+    return pdf_bytes(of_season)
+
+
+@pytest.fixture(scope="module")
+def day_file(of_day):
+    """Return a day's report as a file."""
+    return pdf_bytes(of_day)
+
+
+def test_a_season_has_four_pages_and_a_day_one_of_the_paper_s_size(
+    season_file, day_file, of_season, of_day
+):
+    assert sizes_mm(season_file) == [PAPERS["a4"]] * 4
+    assert sizes_mm(day_file) == [PAPERS["a4"]]
+    assert sizes_mm(pdf_bytes(of_season, "letter")) == [PAPERS["letter"]] * 4
+    assert sizes_mm(pdf_bytes(of_day, "letter")) == [PAPERS["letter"]]
 
 
 def test_a_paper_that_is_not_there_is_refused(of_day):
@@ -49,18 +64,24 @@ def test_a_paper_that_is_not_there_is_refused(of_day):
         pdf_bytes(of_day, "a5")
 
 
-def test_every_page_says_its_plot_heading_and_number(of_season):
+@pytest.fixture(scope="module")
+def season_texts(season_file):
+    """Return the text of each page of that file."""
+    return texts(season_file)
+
+
+def test_every_page_says_its_plot_heading_and_number(of_season, season_texts):
     for number, (page, sheet) in enumerate(
-        zip(texts(pdf_bytes(of_season)), of_season.sheets, strict=True), start=1
+        zip(season_texts, of_season.sheets, strict=True), start=1
     ):
         assert "Paran" in page
         assert sheet.heading in page
         assert f"{number} / 4" in page
 
 
-def test_every_sentence_and_figure_is_on_its_page(of_season, of_day):
-    for report in (of_season, of_day):
-        for page, sheet in zip(texts(pdf_bytes(report)), report.sheets, strict=True):
+def test_every_sentence_and_figure_is_on_its_page(of_season, of_day, season_texts, day_file):
+    for report, pages in ((of_season, season_texts), (of_day, texts(day_file))):
+        for page, sheet in zip(pages, report.sheets, strict=True):
             for block in sheet.blocks:
                 if isinstance(block, Paragraph):
                     assert plain(block.text) in page
@@ -70,12 +91,12 @@ def test_every_sentence_and_figure_is_on_its_page(of_season, of_day):
                     assert all(plain(said) in page for said in block.sentences)
 
 
-def test_the_same_report_is_the_same_file(of_season):
-    assert pdf_bytes(of_season) == pdf_bytes(of_season)
+def test_the_same_report_is_the_same_file(of_season, season_file):
+    assert pdf_bytes(of_season) == season_file
 
 
-def test_the_file_s_date_is_that_of_the_report(of_day):
-    about = opened(pdf_bytes(of_day)).metadata
+def test_the_file_s_date_is_that_of_the_report(of_day, day_file):
+    about = opened(day_file).metadata
     assert about.creation_date.date() == of_day.on
     assert plain(about.title) == plain(f"{of_day.plot}: {of_day.title}")
 
@@ -176,10 +197,10 @@ def test_words_of_drawings_and_notes_of_figures_are_written():
     assert "5 to 9" in page
 
 
-def test_a_report_of_a_plot_can_be_made_twice_at_once(of_day):
+def test_a_report_of_a_plot_can_be_made_twice_at_once(of_day, day_file):
     other = replace(of_day, plot="Other")
     assert "Other" in texts(pdf_bytes(other))[0]
-    assert "Other" not in texts(pdf_bytes(of_day))[0]
+    assert "Other" not in texts(day_file)[0]
 
 
 def test_what_must_be_whole_takes_its_room_from_longer_tables():

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.state import cached
+from app.state import cached, cached_files, cached_simulations
 from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.planning.plan import PlanSettings, plan_from
@@ -21,6 +21,15 @@ def test_two_windows_on_one_season_see_each_other(season_app):
     tap(season_app, "scout_found")
     go(other, "season")
     assert metric(other, "Found") == "1"
+
+
+def test_who_waits_is_told_so_in_our_words_or_not_at_all():
+    """Streamlit's own are the name of a function, and take a thread each."""
+    modules = (cached, cached_files, cached_simulations)
+    kept = {name: one for module in modules for name, one in vars(module).items()
+            if hasattr(one, "_info")}  # fmt: skip
+    assert len(kept) > 40
+    assert [name for name, one in kept.items() if one._info.show_spinner is True] == []
 
 
 def test_plots_that_differ_in_one_plant_are_kept_apart_by_their_keys():

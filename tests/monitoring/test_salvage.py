@@ -208,6 +208,7 @@ def test_what_is_no_file_or_no_season_cannot_be_saved(tmp_path):
 def test_what_a_newer_fieldmon_wrote_is_not_said_to_be_lost(path, tmp_path, change, says):
     with closing(sqlite3.connect(path)) as db:
         db.execute(change)
+        db.execute("DELETE FROM outside_changes")
         db.commit()
     try:
         said = salvage(path, tmp_path / "rescued.gpkg").why

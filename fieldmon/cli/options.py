@@ -411,7 +411,7 @@ class TeamworkOptions:
                 f"--{flag.replace('_', '-')} goes with a team, but here one works alone. Say who "
                 "works with --robots, as --robots 2."
             )
-        return replace(teamwork, **given)  # type: ignore[arg-type]
+        return replace(teamwork, **given)
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from fieldmon.cli.change import ChangeOptions, change
-from fieldmon.cli.options import OF_ROBOT, RobotOptions, WorkerOptions
+from fieldmon.cli.options import OF_ROBOT, RobotOptions, TeamworkOptions, WorkerOptions
 from fieldmon.compute.units import Units
-from fieldmon.errors import FileProblem
+from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.earlier_season import Believed, EarlierSeason
 from fieldmon.infestation.origins import N_ORIGINS
 from fieldmon.io.readers.pest_file import shipped_pest
@@ -216,6 +216,7 @@ SAID = {
     "prior": {"background": 0.05},
     "belief": {"flag_only": True},
     "team": {"robots": "2"},
+    "teamwork": {"teamwork": TeamworkOptions(contact=10.0)},
     "pest": {"pest_options": SimpleNamespace(pest="x", named=lambda: OTHER["pest"],
                                              met=lambda _: None)},
     "weather": {"pest_options": SimpleNamespace(pest=None, named=lambda: None,
@@ -226,7 +227,6 @@ SAID = {
 NOT_CHANGED = {
     "begins": "another season begins on another day",
     "seed": "of samplers that draw; nobody wants another draw",
-    "teamwork": "fieldmon init alone is told how a team works together",
 }
 
 
@@ -235,7 +235,8 @@ def test_a_season_s_settings_can_be_changed_by_a_command(name):
     assert (name in SAID) != (name in NOT_CHANGED)
     if name in NOT_CHANGED:
         return
-    before = replace(SEASON, pest=OTHER["pest"]) if name == "weather" else SEASON
+    with_pest = replace(SEASON, pest=OTHER["pest"])
+    before = {"weather": with_pest, "teamwork": TEAM}.get(name, SEASON)
     after = ChangeOptions("season.gpkg", **SAID[name]).changed(before, None)
     differ = [
         field.name
@@ -243,6 +244,22 @@ def test_a_season_s_settings_can_be_changed_by_a_command(name):
         if getattr(after, field.name) != getattr(before, field.name)
     ]
     assert differ == [name]
+
+
+@pytest.mark.parametrize(
+    ("option", "setting", "value"),
+    [
+        ("contact", "contact_s", 600.0),
+        ("least_gain", "least_gain", 0.7),
+        ("passing", "passing_m", 5),
+    ],
+)
+def test_how_a_team_works_together_can_be_changed_one_by_one(option, setting, value):
+    told = TeamworkOptions(**{option: value / 60 if option == "contact" else value})
+    after = ChangeOptions("season.gpkg", teamwork=told).changed(TEAM, None)
+    assert after == replace(TEAM, teamwork=replace(TEAM.teamwork, **{setting: value}))
+    with pytest.raises(SettingError, match="goes with a team, but here one works alone"):
+        ChangeOptions("season.gpkg", teamwork=told).changed(SEASON, None)
 
 
 NOT_IN_TABLES = {

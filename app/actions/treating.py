@@ -191,7 +191,7 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
     noted = texts.TREATED
     if plants is not None or area is not None:
         (kept,) = (one for one in season.treatments() if one.batch == done.batch)
-        n = int(np.count_nonzero(kept.place.plants))
+        n = int(np.count_nonzero(season.plot.grid.vines_of(kept.place.plants)))
         noted = texts.TREATED_PART.format(plants=texts.PLANTS_COUNTED.format(n=n))
     return "\n- ".join([noted, *beware])
 

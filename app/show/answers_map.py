@@ -34,6 +34,8 @@ GROUND: Colour = (130, 140, 135)
 _FAR_DEG = 1.0
 # what is shown about a place to see where on earth it is: west, south, east, north
 _ABOUT_DEG = np.array([-6.0, -4.0, 6.0, 4.0])
+# of a map, one side is no more than so many times as long as the other
+_STRIP = 2.0
 # outlines of countries, as exact as they are seen
 _ROUGH_DEG = 0.05
 
@@ -138,7 +140,7 @@ def ground_of(bounds: NDArray[np.float64], *, dark: bool) -> list[Layer]:
     """
     if (bounds[2:] - bounds[:2] <= _FAR_DEG).all():
         return []
-    bounds = with_room(bounds)
+    bounds = _as_a_map(with_room(bounds))
     west, south, east, north = bounds.clip([-180, -85, -180, -85], [180, 85, 180, 85]).tolist()
     view = shapely.box(*with_room(np.array([west, south, east, north])))
     rows = [
@@ -154,6 +156,13 @@ def ground_of(bounds: NDArray[np.float64], *, dark: bool) -> list[Layer]:
               get_fill_color=[40, 50, 50] if dark else [250, 250, 246],
               get_line_color=list(GROUND), line_width_min_pixels=1, get_line_width=1)
     ]  # fmt: skip
+
+
+def _as_a_map(bounds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the bounds made wide and high enough to be known on a map, no narrow strip."""
+    sides = bounds[2:] - bounds[:2]
+    missing = np.maximum(sides.max() / _STRIP - sides, 0.0) / 2.0
+    return np.concatenate([bounds[:2] - missing, bounds[2:] + missing])
 
 
 def with_room(bounds: NDArray[np.float64]) -> NDArray[np.float64]:

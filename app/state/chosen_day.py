@@ -13,7 +13,7 @@ from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.level_range import first_level_range
 from fieldmon.infestation.observations import usable
 from fieldmon.monitoring import day_was_worked, plant_states
-from fieldmon.monitoring.history import made_by
+from fieldmon.monitoring.shift_work import made_by
 from fieldmon.planning import day_bound
 from fieldmon.plot.local_clock import grid_clock
 

@@ -19,6 +19,7 @@ from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
 from fieldmon.io.parse.geometry import LARGEST_M2, SMALLEST_M2, area_m2, steps_m
 from fieldmon.io.parse.values import positions_in_cells
+from fieldmon.plot.planting import Planting
 
 from ..words import language, texts
 from . import brought_files, plot_edits, plot_files, plot_source, row_settings, widget_memory
@@ -161,7 +162,7 @@ def use(units: UnitsInLanguage) -> None:
 def bring(plot: Plot) -> None:
     """Let the plot be this one, as if it had come in files, with all that its rows were laid by.
 
-    Its headlands are not known any more.
+    How wide its headlands are is not known of a season that an earlier version began.
     """
     field = plot.field
     brought_files.keep_uploads(PLOT, (Upload(DRAWN, _outline(field)),))
@@ -222,6 +223,8 @@ def _said_of_rows(plot: Plot) -> dict[str, float | bool]:
     said: dict[str, float | bool] = {"both_faces": bool((grid.twin >= 0).any())}
     if grid.half_canopy_m is not None:
         said["half_canopy"] = grid.half_canopy_m
+    if plot.headland_m not in {None, Planting().headland_m}:
+        said["headland"] = plot.headland_m
     if field.plants is not None:
         return said | {"no_rows": not field.in_rows}
     assumed = {one.setting for one in plot.assumed}

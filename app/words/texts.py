@@ -1166,7 +1166,7 @@ STRATEGY = "Strategy"
 USE_THIS = "Use this strategy"
 VERDICT = (
     "**{best}** is best: {loss:,.0f} infested plant-days. {second} has {percent:.0f} % more "
-    "({low:,.0f} to {high:,.0f} more, 95 % interval)."
+    "({low:,.0f} to {high:,.0f} plant-days more, 95 % interval)."
 )
 VERDICT_ONE = (
     "One season so far: **{best}** is ahead of {second}. That tells little; more would tell."

@@ -14,6 +14,7 @@ from fieldmon.cli.options import (
     RobotOptions,
     Robots,
     SeasonFile,
+    TeamworkOptions,
     WorkerOptions,
     sampler_settings,
 )
@@ -44,6 +45,7 @@ class ChangeOptions:
     ] = None
     worker: RobotOptions = field(default_factory=RobotOptions)
     robots: Robots = None
+    teamwork: TeamworkOptions = field(default_factory=TeamworkOptions)
     start: Annotated[str | None, typer.Option(help="Local time at which work starts, HH:MM.")] = (
         None
     )
@@ -84,6 +86,7 @@ class ChangeOptions:
         from dataclasses import replace
 
         new = self._of_who_inspects(settings)
+        new = replace(new, teamwork=self.teamwork.said_of(new.teamwork, new.team))
         if self.sampler is not None:
             new = new.with_sampler(self.sampler)
         if self.every is not None:

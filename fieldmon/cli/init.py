@@ -15,16 +15,14 @@ from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import (
     Background,
-    Contact,
     Every,
     Feature,
-    LeastGain,
     MaybePlotFile,
-    Passing,
     PlotFiles,
     Records,
     Robots,
     StartTime,
+    TeamworkOptions,
     WorkerOptions,
     sampler_settings,
 )
@@ -81,9 +79,7 @@ class InitOptions:
         int, typer.Option(help="Seed for samplers that draw at random.", callback=within(SEED))
     ] = 1
     robots: Robots = None
-    contact: Contact = 0.0
-    least_gain: LeastGain = 0.5
-    passing: Passing = None
+    teamwork: TeamworkOptions = field(default_factory=TeamworkOptions)
     earlier: Annotated[
         Path | None,
         typer.Option(
@@ -127,11 +123,7 @@ class InitOptions:
             pest=None if pest_in_weather is None else pest_in_weather.pest,
             weather=None if pest_in_weather is None else pest_in_weather.weather,
             team=team,
-            teamwork=Teamwork(
-                contact_s=60.0 * self.contact,
-                least_gain=self.least_gain,
-                passing_m=self.passing or 0.0,
-            ),
+            teamwork=self.teamwork.said_of(Teamwork(), team),
             language="" if self.language is None else checked_language(self.language),
         )
 

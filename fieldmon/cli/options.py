@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.io.options import PlotOptions
     from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources
     from fieldmon.io.rasters.values import RasterOptions
+    from fieldmon.planning.members import TeamMember, Teamwork
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
 
@@ -182,25 +183,43 @@ Robots = Annotated[
         "look_s, detection, width_m and more: docs, teams). Each has a route file of its own."
     ),
 ]
+_contact_within = within(0, 24 * 60, unit=" minutes")
+_gain_within = within(TEAMWORK["least_gain"])
 Contact = Annotated[
     float,
     typer.Option(
         help="Minutes between contacts; 0: the team learns of finds at once.",
-        callback=within(0, 24 * 60, unit=" minutes"),
+        callback=_contact_within,
     ),
 ]
 LeastGain = Annotated[
     float,
     typer.Option(
-        help="Least gain, in finds, for which somebody is sent elsewhere.",
-        callback=within(TEAMWORK["least_gain"]),
+        help="Least gain, in finds, for which somebody is sent elsewhere.", callback=_gain_within
+    ),
+]
+# of a season's team, which may be told anew
+_SeasonContact = Annotated[
+    float | None,
+    typer.Option(
+        "--contact",
+        help="Minutes between contacts of a team; 0, the usual: it learns of finds at once.",
+        callback=_contact_within,
+    ),
+]
+_SeasonLeastGain = Annotated[
+    float | None,
+    typer.Option(
+        "--least-gain",
+        help="Least gain, in finds, for which somebody of a team is sent elsewhere; usual: 0.5.",
+        callback=_gain_within,
     ),
 ]
 Passing = Annotated[
     float | None,
     typer.Option(
         help="With --robots: metres of headland that two need to pass each other; nobody meets "
-        "head-on where it is narrower. Without it they may pass each other anywhere.",
+        "head-on where it is narrower. 0, the usual: they may pass each other anywhere.",
         callback=within(TEAMWORK["passing_m"]),
     ),
 ]
@@ -369,6 +388,30 @@ class WorkerOptions(RobotOptions):
             raise SettingError("A scout is no rover: give one of --scout and --rover.")
         base = robot.scout() if self.scout else robot.rover() if self.rover else robot.Robot()
         return self.said_of(base)
+
+
+@dataclass(frozen=True)
+class TeamworkOptions:
+    """How a season's team works together, as it may be said anew."""
+
+    contact: _SeasonContact = None
+    least_gain: _SeasonLeastGain = None
+    passing: Passing = None
+
+    def said_of(self, teamwork: Teamwork, team: Sequence[TeamMember]) -> Teamwork:
+        """Return how a team works together, with what was said; refuse it where nobody does."""
+        from dataclasses import replace
+
+        contact_s = None if self.contact is None else 60.0 * self.contact
+        told = {"contact_s": contact_s, "least_gain": self.least_gain, "passing_m": self.passing}
+        given: dict[str, Any] = {name: value for name, value in told.items() if value is not None}
+        if given and not team:
+            flag = next(one for one, value in vars(self).items() if value is not None)
+            raise SettingError(
+                f"--{flag.replace('_', '-')} goes with a team, but here one works alone. Say who "
+                "works with --robots, as --robots 2."
+            )
+        return replace(teamwork, **given)
 
 
 @dataclass(frozen=True)

@@ -286,7 +286,7 @@ def _tell_routes(
     season: Season, options: PlanOptions, on: date, named: Sequence[tuple[str, DayPlan]]
 ) -> None:
     """Print what was done of a day, when each of a team begins, and the bound if it is asked."""
-    from fieldmon.monitoring.history import Besides
+    from fieldmon.monitoring.shift_work import Besides
     from fieldmon.planning.team import bound_of_days
 
     names = tuple(name for name, _ in named)

@@ -181,7 +181,7 @@ def _of(who: str, read: Inspections, file: str) -> Inspections:
     import numpy as np
 
     from fieldmon.compute.wording import counted
-    from fieldmon.monitoring.history import made_by
+    from fieldmon.monitoring.shift_work import made_by
 
     if not (who := who.strip()):
         return read

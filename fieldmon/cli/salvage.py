@@ -30,6 +30,7 @@ def salvage(
         typer.echo(f"{output} is a season again. Compare it with: fieldmon status {again}")
     else:
         typer.echo(
-            f"{output} holds what could be read, but the plot or its settings are lost: begin a "
-            "new season with fieldmon init, and record the layer inspections into it."
+            f"{output} holds what could be read, but it is no season: {done.why} If the plot or "
+            "its settings are lost, begin a new season with fieldmon init, and record the layer "
+            "inspections into it."
         )

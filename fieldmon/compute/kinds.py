@@ -15,7 +15,8 @@ from math import isnan
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from fieldmon.compute.arguments import day_in, shown, with_article
+from fieldmon.compute.arguments import shown, with_article
+from fieldmon.compute.day_arguments import day_in
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:

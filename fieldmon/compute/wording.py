@@ -91,7 +91,7 @@ def written(value: Any, form: str) -> str:  # noqa: ANN401 - whatever can be wri
     ('record lies', 'records lie')
     """
     if "|" in form:  # what is said of one, and of any other number
-        return str(form.split("|")[value != 1])
+        return str(form.split("|")[int(value != 1)])  # of a number of numpy, too
     said = format(value, form)
     return f"{said[:-1]} %" if form.endswith("%") else said
 

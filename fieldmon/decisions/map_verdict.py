@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csc_array
 
-from fieldmon.compute.arguments import plants_marked
+from fieldmon.compute.array_arguments import plants_marked
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.wording import chance_figure, counted, joined, worded
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict

@@ -118,13 +118,13 @@ def _paying(
 
 
 def around(grid: PlantGrid, plant: int, ring: int) -> NDArray[np.intp]:
-    """Return a plant and those up to so many steps from it, by neighbours; two faces are one."""
-    start, other = grid.adjacent
-    reached = np.array([plant])
+    """Return a plant and those up to so many steps from it, two faces as one."""
+    start, other = grid.vines_beside
+    reached = grid.vine[[plant]]
     for _ in range(ring):
         beside = [other[start[i] : start[i + 1]] for i in reached.tolist()]
         reached = np.unique(np.concatenate([reached, *beside]))
-    return np.unique(grid.vine[reached])
+    return reached
 
 
 def _sparse(one: _Entries, other: _Entries, shape: tuple[int, int]) -> csr_array:

@@ -301,7 +301,7 @@ def ring_bound(
 
 def _touching(grid: PlantGrid, treated: NDArray[np.bool_]) -> Ints:
     """Return the number of the piece that each treated plant is in ``(n,)``, -1: not treated."""
-    start, other = grid.adjacent
+    start, other = grid.vines_beside
     own = np.repeat(np.arange(len(grid)), np.diff(start))
     both = treated[own] & treated[other]
     # the two faces of a plant are one
@@ -321,7 +321,7 @@ def ground_m2(grid: PlantGrid, plants: NDArray[np.bool_]) -> float:
     That is what is sprayed, however the plants were named. Two faces of a plant are one.
     """
     each_m2 = grid.row_spacing_m * grid.plant_spacing_m
-    return len(np.unique(grid.vine[plants])) * each_m2
+    return int(np.count_nonzero(grid.vines_of(plants))) * each_m2
 
 
 def outlines(grid: PlantGrid, zones: Zones) -> list[shapely.MultiPolygon]:

@@ -10,9 +10,9 @@ import numpy as np
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.day_ahead import DayAhead, through
-from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspect
 from fieldmon.monitoring.scouts import inside
+from fieldmon.monitoring.shift_work import Besides
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
 from fieldmon.planning.wishes import Wishes

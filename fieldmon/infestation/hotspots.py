@@ -21,7 +21,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from fieldmon.compute.arguments import array_of, must_be, must_be_in, must_hold_shapes
+from fieldmon.compute.arguments import must_be, must_be_in
+from fieldmon.compute.array_arguments import array_of, must_hold_shapes
 from fieldmon.compute.jit import routine
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.ranges import AllowedRange

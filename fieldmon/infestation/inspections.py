@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import days_of, entries_of, must_be_known, seconds_of, shown
+from fieldmon.compute.arguments import must_be_known, shown
+from fieldmon.compute.array_arguments import entries_of
+from fieldmon.compute.day_arguments import days_of, seconds_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError

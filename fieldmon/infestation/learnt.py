@@ -21,6 +21,7 @@ from fieldmon.infestation.origins import (
 from fieldmon.infestation.pest_in_weather import PestSpread
 from fieldmon.infestation.plot_estimate import estimate_plot
 from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.traced_night import said_from_outside, told_from_outside
 from fieldmon.infestation.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
@@ -205,7 +206,7 @@ def _told_to_arrive(belief: TracedPairs, night: Spread) -> float | None:
     """Return how many plants a night the file of the pest says; None: no pest was named."""
     if not isinstance(night, PestSpread):
         return None
-    return len(belief.chance) * sum(belief.said_from_outside(night))
+    return len(belief.chance) * sum(said_from_outside(belief.reach, night))
 
 
 def _come_from_none(belief: TracedPairs, night: Spread) -> tuple[Estimate, Estimate]:
@@ -220,7 +221,7 @@ def _come_from_none(belief: TracedPairs, night: Spread) -> tuple[Estimate, Estim
         if at_start is not None:
             return at_start, belief.ancestry.arrivals
     n, estimate = len(belief.chance), belief.counts.estimate
-    anywhere, by_edge = belief.told_from_outside(night)
+    anywhere, by_edge = told_from_outside(belief.reach, night)
     suspected, elsewhere = map(float, belief.at_start)
     # an earlier season tells of other origins, but never of those at the start
     if belief.counts.expected[[AT_START, AT_START_ELSEWHERE]].any():

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import array_of, days_of, entries_of, must_be, must_be_known, shown
+from fieldmon.compute.arguments import must_be, must_be_known, shown
+from fieldmon.compute.array_arguments import array_of, entries_of
+from fieldmon.compute.day_arguments import days_of
 from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, worded

@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 from scipy.special import expit, logit
 
-from fieldmon.compute.arguments import array_of
+from fieldmon.compute.array_arguments import array_of
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.chance_bounds import MOST_CHANCE

@@ -46,8 +46,6 @@ from fieldmon.infestation.jump_reach import pest_reach_of, reach_of
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import (
     ANYWHERE,
-    ARRIVE,
-    ARRIVE_BY_EDGE,
     AT_START,
     AT_START_ELSEWHERE,
     BY_ADJACENT,
@@ -56,13 +54,13 @@ from fieldmon.infestation.origins import (
     N_ORIGINS,
     OriginCounts,
 )
-from fieldmon.infestation.pair_changes import pairs_after_arrivals, pairs_scaled
-from fieldmon.infestation.pair_nights import night_of_pairs
+from fieldmon.infestation.pair_changes import pairs_scaled
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, pairs_left
 from fieldmon.infestation.pest_in_weather import PestSpread, kernel_of
 from fieldmon.infestation.plot_estimate import drawn_numbers
 from fieldmon.infestation.prior import odds_ratio
 from fieldmon.infestation.traced_day import KernelRoom, TracedDay, learn_day
+from fieldmon.infestation.traced_night import TracedNight, told_from_outside
 from fieldmon.infestation.tracing import Raised, Traces, rescale_traced
 from fieldmon.infestation.uninspected_days import Counted, Since, UninspectedDays
 
@@ -77,9 +75,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-# an infested plant of which nothing is known has sent out so many before the season, and no more
-# than so many unseen: clusters of eight (our choice)
-_SENT, _MOST_SENT = 3.5, 7.0
+# an infested plant of which nothing is known has sent out so many before the season: half as many
+# as it may, see `traced_night`
+_SENT = 3.5
 # only another inspection can say that a plant found and left where it is may be clean
 _UNKNOWN = 0.95
 # one that seems clean on a later day may have been cleaned without a word: so likely it was not
@@ -87,9 +85,6 @@ _UNKNOWN = 0.95
 _STILL_INFESTED, _PROBABLE = 0.7, 0.5
 # what was inspected around a plant never lowers it by more in a day (as an exponent)
 _MOST_LOWERED = 3.0
-# the wind by which finds are traced: so much of it is that of the nights before the last, told
-# apart by metres a second
-_LATE, _WIND_M_S = 0.5, 1.0
 # what jumps were expected to bring is not made up from a chance of jumping below this
 _LEAST_JUMPS = 0.05
 # where more were infested at the start than was told, so much of that (as a logarithm) remains in
@@ -221,9 +216,10 @@ class TracedPairs:
     @property
     def reach(self) -> Reach:
         """The kernels of the plot."""
-        return self._reach(self.wind_m_s)
+        return self.reach_in(self.wind_m_s)
 
-    def _reach(self, wind_m_s: tuple[float, float]) -> Reach:
+    def reach_in(self, wind_m_s: tuple[float, float]) -> Reach:
+        """Return the kernels of the plot in a wind."""
         if self.pest is None or not self.known_to_jump:
             return reach_of(self.grid)
         return pest_reach_of(self.grid, kernel_of(self.pest.movement), wind_m_s)
@@ -504,12 +500,12 @@ class TracedPairs:
 
     def overnight(self, spread: Spread) -> TracedPairs:
         """Return what is believed the next morning."""
-        morning = self._overnight(spread, tells_apart=True)
-        morning = self._with_ancestry(morning, spread)
+        night = TracedNight(self, spread)
+        morning = self._with_ancestry(night.morning(tells_apart=True), night)
         others = self.others and tuple(one.overnight(spread) for one in self.others)
-        return replace(self._in_doubt(morning, spread), others=others)
+        return replace(self._in_doubt(morning, night), others=others)
 
-    def _in_doubt(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
+    def _in_doubt(self, morning: TracedPairs, night: TracedNight) -> TracedPairs:
         """Return the next morning with what is in doubt of it if nobody inspected today."""
         told = self.chance > KNOWN
         known, counted = int(np.count_nonzero(told)), self.uninspected.counted
@@ -517,7 +513,7 @@ class TracedPairs:
             known = min(known, counted.known)
         # of those of which it is not certain
         before, after = (max(float(b.chance.sum()) - known, LEAST_CHANCE) for b in (self, morning))
-        anywhere, by_edge = self._from_outside(self.reach, spread)
+        anywhere, by_edge = night.from_outside(self.reach)
         new = float(((1.0 - self.chance) * (anywhere + by_edge)).sum())
         sent = max(after - before - new, 0.0) * known / (known + before)
         if self.uninspected.begins:
@@ -535,24 +531,26 @@ class TracedPairs:
         """
         if self.ancestry is None or not self.ancestry.waits:
             return self
-        night = self._overnight(spread, tells_apart=False)
-        morning = self._with_ancestry(night, spread)
+        night = TracedNight(self, spread)
+        by_origins = night.morning(tells_apart=False)
+        morning = self._with_ancestry(by_origins, night)
         # what was found and treated today can only come back in the night
-        scale = np.where(self.chance > AS_GOOD_AS_CLEAN, morning.chance / night.chance, 1.0)
+        scale = np.where(self.chance > AS_GOOD_AS_CLEAN, morning.chance / by_origins.chance, 1.0)
         told = self.times(scale)
         return _levelled(replace(told, ancestry=morning.ancestry))
 
-    def _with_ancestry(self, by_origins: TracedPairs, spread: Spread) -> TracedPairs:
+    def _with_ancestry(self, by_origins: TracedPairs, night: TracedNight) -> TracedPairs:
         """Return what both maps say after a night."""
         if self.ancestry is None:
             return by_origins
         hiding = self.latency.likely if self.latency is not None else self.ancestry.hiding
         # what goes far comes from anywhere
-        sends = self._sends(spread) * (1.0 - self.reach.anywhere)
-        night = ToldNight(sends, self.told_from_outside(spread), wind_m_s=by_origins.wind_m_s)
-        if isinstance(spread, PestSpread):
-            night = night._replace(length=(spread.days, *spread.warmth))
-        ancestry, chance = replace(self.ancestry, hiding=hiding).overnight(night)
+        sends = night.sends * (1.0 - self.reach.anywhere)
+        arrives = told_from_outside(self.reach, night.spread)
+        told = ToldNight(sends, arrives, wind_m_s=by_origins.wind_m_s)
+        if isinstance(night.spread, PestSpread):
+            told = told._replace(length=(night.spread.days, *night.spread.warmth))
+        ancestry, chance = replace(self.ancestry, hiding=hiding).overnight(told)
         if chance is not None:
             # a logarithmic pool of both maps (Genest & Zidek 1986)
             odds = _BOTH * _odds(chance) ** _ANCESTRY * _odds(by_origins.chance) ** _ORIGINS
@@ -567,112 +565,8 @@ class TracedPairs:
 
         No find can be traced by it, but it is worked out in half the time.
         """
-        return self._in_doubt(self._overnight(spread, tells_apart=False), spread)
-
-    @property
-    def _degree(self) -> float:
-        """How many plants stand beside one, on average."""
-        return float(np.diff(self.grid.adjacent.start).mean())
-
-    def _sends(self, spread: Spread) -> float:
-        """Return what an infested plant sends out in a night."""
-        if isinstance(spread, PestSpread) and self.known_to_jump:
-            return spread.sends
-        return spread.rate_per_day * (self._degree if spread.to != "one" else 1.0)
-
-    def _overnight(self, spread: Spread, *, tells_apart: bool) -> TracedPairs:
-        degree, sends = self._degree, self._sends(spread)
-        reach, moves = self.reach, self.chance
-        if isinstance(spread, PestSpread) and self.cohorts is not None:
-            moves = self.chance * (1.0 - self.cohorts.still)
-            reach = self._reach(spread.wind_m_s)
-            each = spread.sends * reach.adjacent / max(degree, 1.0) if self.known_to_jump else None
-            spread = _moving(spread, each, float(moves.sum() / self.chance.sum()))
-        # of a pest with a kernel of its own, the rate is of the plants beside it already
-        beside = 1.0 if self.known_to_jump else 1.0 - self.jumps * (1.0 - reach.adjacent)
-        rate = spread.rate_per_day * min(1.0, beside * self.counts.scale[BY_ADJACENT])
-        near = replace(spread, rate_per_day=rate, arrivals_per_day=0.0)
-        pairs = self.chance, self.pair_chance
-        believed = night_of_pairs(pairs, self.grid.linked, near, leaning(self.evidence))
-        brought = self._brought(reach, (moves, sends), spread, tells_apart=tells_apart)
-        arrives = 1.0 - np.exp(-brought.sum(axis=0))
-        gain = (1.0 - believed[0]) * arrives
-        after = np.clip(believed[0] + gain, LEAST_CHANCE, MOST_CHANCE)
-        morning = replace(
-            self,
-            chance=after,
-            pair_chance=pairs_after_arrivals(believed, self.grid.adjacent, arrives, after),
-            unseen=np.minimum(self.unseen + sends, _MOST_SENT),
-        )
-        if tells_apart:
-            shares = self._shares_after(believed[0] - self.chance, gain, brought)
-            morning = replace(morning, shares=shares)
-        return self._aged(morning, spread)
-
-    def _aged(self, morning: TracedPairs, spread: Spread) -> TracedPairs:
-        """Return a morning with the young a night older, and with the wind of late."""
-        if self.latency is not None:
-            return replace(morning, latency=self.latency.overnight(self.chance, morning.chance))
-        if self.cohorts is None or not isinstance(spread, PestSpread):
-            return morning
-        gain = np.maximum(morning.chance - self.chance, 0.0)
-        cohorts = self.cohorts.overnight(self.chance, gain, morning.chance, spread)
-        if spread.mortality_per_day > 0.0:
-            left = (1.0 - spread.mortality_per_day) ** spread.days
-            morning = morning.treated(np.full(len(gain), left))
-        return replace(morning, cohorts=cohorts, wind_m_s=_of_late(self.wind_m_s, spread.wind_m_s))
-
-    def _brought(
-        self, reach: Reach, sent: tuple[Floats, float], spread: Spread, *, tells_apart: bool
-    ) -> Floats:
-        """Return what a night brings each plant from farther than beside it, ``(o, n)``.
-
-        `sent` is the chance ``(n,)`` that a plant is infested and sends something out, and how
-        much that is. Unless kernels are told apart, the first holds what all of them bring.
-        """
-        (moves, sends), scale = sent, self.counts.scale
-        brought = np.zeros((N_ORIGINS, len(self.chance)))
-        by_jumps = sends * self.jumps * (reach.beyond * scale[JUMPED:])
-        if tells_apart:
-            brought[JUMPED:] = reach.brought_by_each(moves) * by_jumps[:, None]
-        else:
-            brought[JUMPED] = reach.brought(moves, by_jumps)
-        brought[ANYWHERE], brought[BY_EDGE] = self._from_outside(reach, spread)
-        if isinstance(spread, PestSpread):
-            brought[ANYWHERE] += reach.anywhere * sends * float(moves.mean())
-        return brought
-
-    def _from_outside(self, reach: Reach, spread: Spread) -> tuple[float, Floats]:
-        """Return what a night brings a plant from outside: anywhere, and by the edge ``(n,)``."""
-        scale, (anywhere, by_edge) = self.counts.scale, self.told_from_outside(spread)
-        return anywhere * float(scale[ANYWHERE]), by_edge * scale[BY_EDGE] * reach.at_edge
-
-    def told_from_outside(self, spread: Spread) -> tuple[float, float]:
-        """Return the share of all plants taken to be infested from outside in a night.
-
-        Anywhere, and by the edge: as said, but never less than a little. What is said may be wrong,
-        and a find far from all others must have come from somewhere.
-        """
-        anywhere, by_edge = self.said_from_outside(spread)
-        return max(anywhere, ARRIVE), max(by_edge, ARRIVE_BY_EDGE)
-
-    def said_from_outside(self, spread: Spread) -> tuple[float, float]:
-        """Return the share of all plants that is said to be infested from outside in a night.
-
-        Anywhere, and by the edge.
-        """
-        if not isinstance(spread, PestSpread):
-            return spread.arrivals_per_day, 0.0
-        # said of plants at the edge
-        return spread.arrivals_per_day, spread.edge_per_day / float(self.reach.at_edge.max())
-
-    def _shares_after(self, beside: Floats, gain: Floats, brought: Floats) -> NDArray[np.float32]:
-        """Return the shares of the origins after a night that brought so much."""
-        parts = self.shares * self.chance[:, None].astype(np.float32)
-        parts[:, BY_ADJACENT] += np.maximum(beside, 0.0).astype(np.float32)
-        parts += (brought * (gain / np.maximum(brought.sum(axis=0), 1e-12))).T.astype(np.float32)
-        shares: NDArray[np.float32] = parts / parts.sum(axis=1, keepdims=True)
-        return shares
+        night = TracedNight(self, spread)
+        return self._in_doubt(night.morning(tells_apart=False), night)
 
     @property
     def arrivals_found(self) -> float:
@@ -734,21 +628,3 @@ def _levelled(belief: TracedPairs) -> TracedPairs:
 def _odds(chance: Floats) -> Floats:
     odds: Floats = chance / (1.0 - chance)
     return odds
-
-
-def _moving(spread: PestSpread, rate: float | None, moves: float) -> PestSpread:
-    """Return a night in which a share of the infested plants sends something to each beside it.
-
-    `rate` is what each gets of one that sends, if the pest has a kernel; else as it was.
-    """
-    rate = -np.log1p(-spread.rate_per_day) if rate is None else rate
-    return replace(spread, rate_per_day=float(-np.expm1(-rate * moves)))
-
-
-def _of_late(before: tuple[float, float], now: tuple[float, float]) -> tuple[float, float]:
-    """Return the wind of the last nights, as told apart as those of nights are."""
-    x, y = (
-        float(np.rint((_LATE * a + (1.0 - _LATE) * b) / _WIND_M_S) * _WIND_M_S) + 0.0
-        for a, b in zip(before, now, strict=True)
-    )
-    return x, y

@@ -7,7 +7,7 @@ from fieldmon.monitoring.batches import Batch, Recorded
 from fieldmon.monitoring.cautions import Caution
 from fieldmon.monitoring.contradictions import Contradictions
 from fieldmon.monitoring.day_figures import DayFigures, PlannedAndDone, Progress
-from fieldmon.monitoring.merging import Merged
+from fieldmon.monitoring.merging.merge import Merged
 from fieldmon.monitoring.outside_changes import OutsideChange
 from fieldmon.monitoring.season_file import Season
 from fieldmon.monitoring.season_log import LogEntry

@@ -220,6 +220,55 @@ class NotReached:
         ]  # fmt: skip
 
 
+@dataclass(frozen=True)
+class FewInspected:
+    """So few plants were inspected that they alone would not tell whether treating pays.
+
+    Parameters
+    ----------
+    inspected
+        How many plants were.
+    enough
+        If so many were, all of them clean, they would tell it by themselves.
+    background
+        The chance of a plant of which nothing is known, where nobody told it nor gave records;
+        None: something was told.
+    """
+
+    inspected: int
+    enough: int
+    background: float | None
+
+    @classmethod
+    def of(
+        cls, inspected: int, asked: AdviceSettings, detects: float, background: float | None
+    ) -> FewInspected | None:
+        """Return it; None where enough plants were inspected.
+
+        Enough are as many as would all be clean with a chance of 1 - `sure` at most, if as many
+        plants were infested as the threshold says, anywhere, and inspections found a share
+        `detects` of them.
+        """
+        enough = int(np.ceil(np.log(1.0 - asked.sure) / np.log1p(-asked.level * detects)))
+        return cls(inspected, enough, background) if inspected < enough else None
+
+    def sentence(self) -> str:
+        """Return what the answer rests on instead."""
+        if self.background is None:
+            return worded(
+                "{plants} {n:was|were} inspected. By themselves they do not tell: about {enough} "
+                "clean ones would. The answer rests mostly on what was told before.",
+                plants=counted(self.inspected, "plant"), n=self.inspected, enough=self.enough,
+            )  # fmt: skip
+        return worded(
+            "{plants} {n:was|were} inspected. By themselves they do not tell: about {enough} clean "
+            "ones would. The answer rests mostly on our default, {share} infested where nothing "
+            "is known, which nobody measured here.",
+            plants=counted(self.inspected, "plant"), n=self.inspected, enough=self.enough,
+            share=share_figure(self.background),
+        )  # fmt: skip
+
+
 def _days(days: float) -> Worded:
     """Return so many days in words; some languages have a form for some numbers."""
     if days == int(days):
@@ -255,6 +304,8 @@ class Advice:
         When to inspect again; None: the plot is not below the threshold.
     not_reached
         Plants too far from any inspection; None as above.
+    few
+        That few plants were inspected; None: enough were, or the plot is not below the threshold.
     """
 
     grid: PlantGrid
@@ -266,6 +317,7 @@ class Advice:
     done: tuple[Treatment, ...] = ()
     again: InspectAgain | None = None
     not_reached: NotReached | None = None
+    few: FewInspected | None = None
 
     def __repr__(self) -> str:
         return f"<Advice: {self.verdict}, {counted(len(self.zones), 'zone')}>"
@@ -398,12 +450,14 @@ class Advice:
         """Return what the answer rests on, how long it holds, and what would end it sooner."""
         again = [] if self.again is None else [self.again.sentence(units)]
         away = [] if self.not_reached is None else self.not_reached.sentences(units)
-        return [self.plot.believed(), *away, *self._done_said(), *again, *self._sooner_said()]
+        few = [] if self.few is None else [self.few.sentence()]
+        done, sooner = self._done_said(), self._sooner_said()
+        return [self.plot.believed(), *away, *few, *done, *again, *sooner]
 
     def _done_said(self) -> list[str]:
         if not self.done:
             return []
-        plants = np.logical_or.reduce([one.plants for one in self.done])
+        plants = self.grid.vines_of(np.logical_or.reduce([one.plants for one in self.done]))
         works = sorted({one.efficacy for one in self.done})
         return [
             worded(
@@ -439,7 +493,7 @@ class Advice:
         """Return in words what is assumed, and what a plant is where it has two faces."""
         faces = worded(
             "Each face counts as a plant: in the threshold, among the infested, and in what one "
-            "loses a day."
+            "loses a day. Where it is treated, its two faces are one plant."
         )
         has_faces = bool((self.grid.twin >= 0).any())
         return joined(" ", [*[faces] * has_faces, self.asked.assumed(units)])

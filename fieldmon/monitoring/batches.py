@@ -12,6 +12,7 @@ from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
 from fieldmon.io.parse.result_words import GONE, says_gone
 from fieldmon.monitoring import rows_that_count, schema, treatments
 from fieldmon.monitoring.geopackage import touch
+from fieldmon.monitoring.inspection_table import number_of
 from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
@@ -86,6 +87,8 @@ class BatchContents:
         many were counted (None: nobody counted). Of several and of a treatment they say nothing.
     note
         Of the only inspection.
+    at
+        Its plant, by the number in the season's file.
     who
         Everybody who inspected, by name.
     """
@@ -100,6 +103,7 @@ class BatchContents:
     result: str
     count: float | None = None
     note: str = ""
+    at: int = -1
     who: str = ""
 
     @property
@@ -248,7 +252,8 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
         "AND date NOTNULL AND result NOTNULL), "
         "counting AS (SELECT DISTINCT batch FROM own WHERE undone = 0) "
         "SELECT batch, count(*), sum(result = 'found'), sum(undone = 0), min(date), max(date), "
-        "min(line), min(number), min(result), min(count), min(coalesce(notes, '')) FROM own "
+        "min(line), min(number), min(result), min(count), min(coalesce(notes, '')), "
+        "coalesce(min(plant), -1) FROM own "
         "WHERE undone = 0 OR batch NOT IN counting GROUP BY batch",
         tuple(numbers),
     )
@@ -284,8 +289,9 @@ def undo(
     rows = treatments if batch.kind == "treatment" else rows_that_count
     again = rows.count_again(db)
     touch(db, table)
-    said = _undone(batch, contents(db, [batch.number]).get(batch.number), signs or {}, stay)
-    return {batch.number, *again}, _still(said, rows.n_elsewhere(db, batch.number))
+    said = contents(db, [batch.number]).get(batch.number)
+    told = _undone(batch, said, (signs or {}, _plant_of(db, said)), stay)
+    return {batch.number, *again}, _still(told, rows.n_elsewhere(db, batch.number))
 
 
 def to_undo(db: sqlite3.Connection, number: int | None) -> tuple[int, list[str]]:
@@ -393,14 +399,23 @@ def redo(
     n = batch.rows - len(but) - elsewhere
     if batch.kind == "findings":
         n -= rows_that_count.n_corrected(db, number)
-    return {number, *before, *again}, _counts_again(batch, said, (n, elsewhere), signs or {})
+    place = signs or {}, _plant_of(db, said)
+    return {number, *before, *again}, _counts_again(batch, said, (n, elsewhere), place)
+
+
+def _plant_of(db: sqlite3.Connection, said: BatchContents | None) -> str:
+    """Return which plant of its row the only inspection of a batch is of, as people say it."""
+    return "" if said is None or said.n != 1 else number_of(db, said.at, said.plant)
 
 
 def _counts_again(
-    batch: Batch, said: BatchContents | None, rows: tuple[int, int], signs: Mapping[int, str]
+    batch: Batch,
+    said: BatchContents | None,
+    rows: tuple[int, int],
+    place: tuple[Mapping[int, str], str],
 ) -> str:
     """Return in words how many rows of a batch count again, and how many count in another one."""
-    n, elsewhere = rows
+    (n, elsewhere), (signs, plant) = rows, place
     if elsewhere and n <= 0:
         return worded(
             "Nothing of batch {batch} counts again: it counts in another already.",
@@ -409,7 +424,7 @@ def _counts_again(
     if batch.kind == "findings" and said is not None and batch.rows == n == 1:
         return worded(
             "Counts again: row {row}, plant {plant} on {date} ({result}).",
-            row=signs.get(said.row, said.row), plant=said.plant, date=date_or_text(said.first),
+            row=signs.get(said.row, said.row), plant=plant, date=date_or_text(said.first),
             result=_RESULTS.get(said.called, said.called),
         )  # fmt: skip
     noun = {"findings": "inspection", "corrections": "correction", "treatment": "treatment"}[
@@ -422,17 +437,23 @@ def _counts_again(
     return joined(" ", (again, more))
 
 
-def _undone(batch: Batch, said: BatchContents | None, signs: Mapping[int, str], stay: int) -> str:
-    """Return what was taken back, in words; so many of its inspections `stay` as corrected."""
+def _undone(
+    batch: Batch, said: BatchContents | None, place: tuple[Mapping[int, str], str], stay: int
+) -> str:
+    """Return what was taken back, in words; so many of its inspections `stay` as corrected.
+
+    `place` is how rows are shown, by their numbers, and the plant of the only inspection.
+    """
     if stay:
-        one = _undone(replace(batch, rows=batch.rows - stay), None, signs, 0)
+        one = _undone(replace(batch, rows=batch.rows - stay), None, place, 0)
         more = worded(
             "{n:,} {n:inspection stays|inspections stay} as {n:it was|they were} corrected since.",
             n=stay,
         )
         return joined(" ", (one, more))
     if batch.kind == "findings" and said is not None and said.n == 1:
-        return _undone_one(signs.get(said.row, said.row), said.plant, said.first, said.called)
+        signs, plant = place
+        return _undone_one(signs.get(said.row, said.row), plant, said.first, said.called)
     what = {
         "findings": counted(batch.rows, "inspection"),
         "corrections": counted(batch.rows, "correction"),
@@ -467,7 +488,7 @@ def _still(said: str, n: int) -> str:
     return joined(" ", (said, still))
 
 
-def _undone_one(row: int | str, plant: int, on: str, result: str) -> str:
+def _undone_one(row: int | str, plant: str, on: str, result: str) -> str:
     return worded(
         "Undone: row {row}, plant {plant} on {date} ({result}).",
         row=row,
@@ -477,7 +498,7 @@ def _undone_one(row: int | str, plant: int, on: str, result: str) -> str:
     )
 
 
-def _undone_correction(row: int | str, plant: int, on: str, result: str) -> str:
+def _undone_correction(row: int | str, plant: str, on: str, result: str) -> str:
     return worded(
         "Undone: the correction of row {row}, plant {plant} on {date}. As it was recorded before, "
         "it counts again ({result}): undo it once more to take that back, too.",
@@ -516,12 +537,13 @@ def undo_one(
     close_if_empty(db, row[4])
     touch(db, schema.INSPECTIONS.name)
     sign = (signs or {}).get(row[0], row[0])
-    of = "SELECT result, notes FROM inspections WHERE fid = ?"
-    result = called(*db.execute(of, (inspection,)).fetchone())
+    of = "SELECT plant, result, notes FROM inspections WHERE fid = ?"
+    at, *seen = db.execute(of, (inspection,)).fetchone()
+    plant, result = number_of(db, at, row[1]), called(*seen)
     if counts := [one for mark in before if (one := _result_of(db, mark))]:
-        return {row[4], *again}, _undone_correction(sign, row[1], row[2], counts[0])
+        return {row[4], *again}, _undone_correction(sign, plant, row[2], counts[0])
     return {row[4], *again}, _still(
-        _undone_one(sign, *row[1:3], result), rows_that_count.n_counting(db, row[5])
+        _undone_one(sign, plant, row[2], result), rows_that_count.n_counting(db, row[5])
     )
 
 

@@ -95,7 +95,7 @@ def _treatments(season: SeasonTreatments) -> Iterator[dict[str, object]]:
             said.dose and said.dose.unit,
             said.water_l_ha,
             one.place.area_ha,
-            int(one.place.plants.sum()),
+            int(season.plot.grid.vines_of(one.place.plants).sum()),
             str(place_in_words(season.plot.grid, one.place.plants)),
             said.reason,
             said.pest,

@@ -11,9 +11,9 @@ import numpy as np
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import kept_routes
 from fieldmon.monitoring.closures import closed_plants
-from fieldmon.monitoring.history import BEGINS_OTHERWISE_S
 from fieldmon.monitoring.photos_asked import photos_asked_in
 from fieldmon.monitoring.scouts import inside, scouts_in
+from fieldmon.monitoring.shift_work import BEGINS_OTHERWISE_S
 from fieldmon.planning.members import person_key
 from fieldmon.planning.plan import DayPlan
 from fieldmon.planning.route import route_of

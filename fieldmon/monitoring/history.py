@@ -7,13 +7,13 @@ from dataclasses import dataclass, field, replace
 from datetime import timedelta
 from functools import cached_property
 from numbers import Real
-from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be, must_be_shaped
+from fieldmon.compute.arguments import must_be
+from fieldmon.compute.array_arguments import must_be_shaped
 from fieldmon.compute.kinds import checked, must_hold_kinds
-from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
@@ -30,14 +30,13 @@ from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.parse.result_words import says_gone
+from fieldmon.monitoring.shift_work import ShiftWork
 from fieldmon.pests.pest import USUAL_PER_DAY
 from fieldmon.pests.weather import DAY_S
-from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import Skips, without_flagged, without_skipped
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.robot import Robot
-from fieldmon.plot.travel import driven_s, robot_clock
-from fieldmon.samplers.base import NEVER, Scene, resting_place
+from fieldmon.samplers.base import NEVER, Scene
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable
@@ -50,32 +49,15 @@ if TYPE_CHECKING:
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
+    from fieldmon.monitoring.shift_work import Besides, Shift
     from fieldmon.pests.pest import Pest
     from fieldmon.plot.grid import PlantGrid
-    from fieldmon.plot.local_clock import LocalClock
-    from fieldmon.plot.travel import Aisles
 
 
 _T = TypeVar("_T")
-#: who begins later than this after the day's start, or sooner before it, has hours of their own
-BEGINS_OTHERWISE_S = 300.0
-# who begins no sooner than this before a day's start works on that day
-_BEGINS_EARLY_S = 3600.0
 # once this share of the inspections was made later, the first evening says hardly anything of the
 # start, and working it out again takes time
 _HARDLY_FIRST = 0.99
-
-
-class Besides(NamedTuple):
-    """Whoever works beside some others: what is not theirs is of this one.
-
-    Parameters
-    ----------
-    others
-        Their names.
-    """
-
-    others: tuple[str, ...]
 
 
 class _Last(Generic[_T]):
@@ -587,15 +569,13 @@ class History:
         morning
             What was believed on its morning.
         now_s
-            Seconds since midnight, of the next day where work goes past it and had not begun then;
-            None: when the last inspection recorded was done, by its own time or, where none was
-            noted, by what driving and looking cost.
+            What time it is, see `ShiftWork.gone_s`.
         who
             Whose scene it is, of a team or beside others; None: all inspections were made by the
             one who works.
         """
-        aisles, robot = shift.aisles, shift.robot
-        later = self._past_midnight(shift, day, who)
+        work = self.work(shift, who)
+        later = work.past_midnight(day)
         # what the day's finds say of other plants counts for the rest of it, too
         now = (
             in_hindsight(self._evening(morning, day, later), self.night(day))
@@ -607,9 +587,7 @@ class History:
         # nobody is sent to a plant twice a day, not even a closed one
         last[self.on(day).plant] = last[self.inspections.plant[later]] = day
         last[self.gone(day)] = day
-        trail = self._trail(shift, day, who)
-        today = made_by(self.worked(shift, day, who), who)
-        resting = resting_place(robot, trail)
+        aisles, robot, today = shift.aisles, shift.robot, work.own(day)
         scene = Scene(
             aisles=aisles,
             robot=robot,
@@ -619,119 +597,29 @@ class History:
             traces=believed.traces,
             last_inspected=last,
             day=day,
-            at=int(today.plant[-1]) if len(today) else resting,
-            seconds_left=max(0.0, robot.day_s - self._gone_s((shift, day), today, resting, now_s)),
-            trail=trail,
+            at=int(today.plant[-1]) if len(today) else work.resting(day),
+            seconds_left=max(0.0, robot.day_s - work.gone_s(day, now_s)),
+            trail=work.trail(day),
             key=shift.streams.key("sampler", day),
             infested=None if believed is now else now.chance.copy(),
         )
         known = without_flagged(scene, self.found_and_left(now, day))
         return without_skipped(known, self.skips(day - 1))
 
-    def begun_s(self, shift: Shift, day: int, who: str | Besides | None = None) -> float:
-        """Return the second of a day at which somebody's work began; `who` is that of `scene`.
-
-        It is the shift's, unless the first inspection shows that it was more than
-        `BEGINS_OTHERWISE_S` off: then it began with the way to that one.
-        """
-        resting = resting_place(shift.robot, self._trail(shift, day, who))
-        return _begun_s(shift, made_by(self.worked(shift, day, who), who), resting)
-
-    def gone_s(
-        self, shift: Shift, day: int, now_s: float | None = None, who: str | Besides | None = None
-    ) -> float:
-        """Return how many seconds of somebody's working day are gone; all is as in `scene`."""
-        resting = resting_place(shift.robot, self._trail(shift, day, who))
-        today = made_by(self.worked(shift, day, who), who)
-        return self._gone_s((shift, day), today, resting, now_s)
-
-    def _gone_s(
-        self, work: tuple[Shift, int], today: Inspections, resting: int, now_s: float | None
-    ) -> float:
-        """Return the seconds of somebody's working day that are gone after these inspections."""
-        shift, day = work
-        if now_s is None and len(today) and np.isfinite(today.second[-1]):
-            now_s = float(today.second[-1])
-        if now_s is None:
-            return _charged_s(shift, today.plant, resting) if len(today) else 0.0
-        begun_s = _begun_s(shift, today, resting)
-        if now_s < min(begun_s, self._ends_s(shift, day, begun_s)):  # past midnight
-            now_s += DAY_S
-        return max(0.0, self._clock.seconds_between(self.date_of(day), begun_s, now_s))
-
-    @cached_property
-    def _clock(self) -> LocalClock:
-        return grid_clock(self.grid)
-
-    def worked(self, shift: Shift, day: int, who: str | Besides | None = None) -> Inspections:
-        """Return what anybody inspected from when somebody's work of a day began until it ends.
-
-        Inspections after midnight are dated the next day; here their seconds go on from 86 400.
-        """
-        rows = self._work_days(shift, who) == day
-        done, late = self.inspections.take(rows), self.days[rows] > day
-        return replace(done, second=done.second + np.where(late, DAY_S, 0.0))
-
-    def _past_midnight(
-        self, shift: Shift, day: int, who: str | Besides | None
-    ) -> NDArray[np.signedinteger]:
-        """Return which inspections of the next day were made in the hours of a day's work."""
-        return np.flatnonzero((self._work_days(shift, who) == day) & (self.days > day))
-
-    def _work_days(self, shift: Shift, who: str | Besides | None) -> NDArray[np.int32]:
-        """Return ``(k,)`` the day on which the work began in whose hours each inspection was made.
-
-        That is its own day, or the one before where somebody's work went past midnight: until an
-        hour before their next work begins.
-        """
-        # asked for several times by each scene
+    def work(self, shift: Shift, who: str | Besides | None = None) -> ShiftWork:
+        """Return the work of a shift, day by day; `who` is that of `scene`."""
+        # asked for several times by each day
         key = shift.aisles, shift.robot, shift.starts_s, who
-        if key not in self._worked_out:
-            self._worked_out[key] = self._work_days_of(shift, who)
-        return self._worked_out[key]
+        if key not in self._works:
+            clock = grid_clock(self.grid)
+            self._works[key] = ShiftWork(
+                shift, who, self.begins, clock, self.inspections, self.days
+            )
+        return self._works[key]
 
     @cached_property
-    def _worked_out(self) -> dict[Hashable, NDArray[np.int32]]:
+    def _works(self) -> dict[Hashable, ShiftWork]:
         return {}
-
-    def _work_days_of(self, shift: Shift, who: str | Besides | None) -> NDArray[np.int32]:
-        is_early = self.inspections.second < shift.starts_s - BEGINS_OTHERWISE_S
-        nights = np.unique(self.days[is_early]) - 1
-        if not len(nights):
-            return self.days
-        work, own = self.days.copy(), _are_by(self.inspections, who)
-        for day in nights[nights >= 0].tolist():
-            mine = np.arange(*np.searchsorted(self.days, [day, day + 1]))
-            mine = mine[own[mine] & (work[mine] == day)]
-            early = np.arange(*np.searchsorted(self.days, [day + 1, day + 2]))
-            second = self.inspections.second[early]
-            # work begins when its first inspection is made, at the latest
-            latest_s = np.fmax(shift.starts_s, self.inspections.second[mine[:1]].sum())
-            if (second < self._ends_s(shift, day, latest_s)).any():
-                resting = resting_place(shift.robot, self._last_worked(work, own, day))
-                begun_s = _begun_s(shift, self.inspections.take(mine[:1]), resting)
-                if (second < self._ends_s(shift, day, begun_s)).any():
-                    # it went past midnight, and may run over: until the next is about to begin
-                    work[early[second < shift.starts_s - _BEGINS_EARLY_S]] = day
-        return work
-
-    def _ends_s(self, shift: Shift, day: int, begun_s: float) -> float:
-        """Return the second of the next day at which work's hours end or the next work begins."""
-        hours_s = shift.robot.day_s + BEGINS_OTHERWISE_S
-        ends_s = self._clock.second_after(self.date_of(day), begun_s, hours_s)
-        return min(ends_s - DAY_S, shift.starts_s - BEGINS_OTHERWISE_S)
-
-    def _trail(self, shift: Shift, day: int, who: str | Besides | None) -> NDArray[np.int32]:
-        """Return the plants ``(k,)`` of somebody's last work before `day` that had any."""
-        return self._last_worked(self._work_days(shift, who), _are_by(self.inspections, who), day)
-
-    def _last_worked(
-        self, work: NDArray[np.int32], own: NDArray[np.bool_], day: int
-    ) -> NDArray[np.int32]:
-        earlier = own & (self.inspections.result != SKIPPED) & (work < day)
-        last = work[earlier].max(initial=-1)
-        plants: NDArray[np.int32] = self.inspections.plant[earlier & (work == last)]
-        return plants
 
 
 def say_gone(inspections: Inspections) -> NDArray[np.bool_]:
@@ -785,58 +673,3 @@ def not_found_yet(
         return replace(made, chance_clean=0.0)
     clean = infested_in_all(grid, believed, flagged, sure).chance_clean
     return replace(made, chance_clean=clean)
-
-
-def made_by(inspections: Inspections, who: str | Besides | None) -> Inspections:
-    """Return those that somebody made; None: all."""
-    return inspections if who is None else inspections.take(_are_by(inspections, who))
-
-
-def _are_by(inspections: Inspections, who: str | Besides | None) -> NDArray[np.bool_]:
-    """Return ``(k,)`` whether somebody made each; None: all."""
-    if who is None:
-        return np.ones(len(inspections), np.bool_)
-    names = np.array([person_key(str(name)) for name in inspections.who], np.str_)
-    if isinstance(who, Besides):
-        return ~np.isin(names, [person_key(one) for one in who.others])
-    mine: NDArray[np.bool_] = names == person_key(who)
-    return mine
-
-
-@dataclass(frozen=True, eq=False)
-class Shift:
-    """Who works on a plot, and from when on.
-
-    Parameters
-    ----------
-    aisles
-        The plot: plants and the ways between them.
-    robot
-        Who inspects.
-    starts_s
-        Seconds since midnight at which the work starts.
-    streams
-        For samplers that draw.
-    """
-
-    aisles: Aisles
-    robot: Robot
-    starts_s: float = 6 * 3600.0
-    streams: RandomStreams = RandomStreams(1)  # noqa: RUF009 - a seed, not a call with effects
-
-
-def _begun_s(shift: Shift, today: Inspections, resting: int) -> float:
-    """Return the second of the day at which inspections of one day, in their order, began."""
-    if not len(today) or not np.isfinite(today.second[0]):
-        return shift.starts_s
-    begun_s = max(0.0, float(today.second[0]) - _charged_s(shift, today.plant[:1], resting))
-    return begun_s if abs(begun_s - shift.starts_s) > BEGINS_OTHERWISE_S else shift.starts_s
-
-
-def _charged_s(shift: Shift, plants: NDArray[np.int32], resting: int) -> float:
-    """Return what driving to plants in turn and inspecting them costs."""
-    robot = shift.aisles.worked_by(shift.robot)
-    clock = robot_clock(robot, robot.day_s)
-    travel = shift.aisles.for_robot(robot).travel
-    drive_s = driven_s(travel, clock, np.append(np.int64(resting), plants))
-    return drive_s + robot.visit_s * len(plants)

@@ -14,6 +14,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspection_columns import BESIDE, COUNT, IDENTIFYING
 from fieldmon.infestation.inspections import FOUND, RESULT_CODES, RESULT_NAMES, Inspections
+from fieldmon.io.writers.day_file import of_face
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import beside_plot, point_blobs, touch
 from fieldmon.monitoring.rows_that_count import COUNTS, as_it_was
@@ -216,6 +217,14 @@ def in_words(inspections: Inspections, detects: list[float]) -> dict[str, object
     counts = {name: int(np.count_nonzero(result == code)) for name, code in RESULT_CODES.items()}
     days = {"from": str(on.min()), "to": str(on.max())}
     return {**counts, **days, **({"detects": detects} if detects else {})}
+
+
+def number_of(db: sqlite3.Connection, plant: object, number: int) -> str:
+    """Return a plant's number in its row as people say it, with the face where it has two."""
+    at = "SELECT line, number FROM plants WHERE plant = ?"
+    same = f"SELECT plant FROM plants WHERE (line, number) = ({at}) ORDER BY plant"  # noqa: S608 - ours
+    both = [one for (one,) in db.execute(same, (plant,))]
+    return of_face(number, 1 + both.index(plant) if len(both) == 2 else 0)
 
 
 def not_what_they_say(db: sqlite3.Connection) -> list[int]:

@@ -12,14 +12,8 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from fieldmon.compute.arguments import (
-    array_of,
-    must_be,
-    must_be_chances,
-    must_be_in,
-    must_be_shaped,
-    shown,
-)
+from fieldmon.compute.arguments import must_be, must_be_in, shown
+from fieldmon.compute.array_arguments import array_of, must_be_chances, must_be_shaped
 from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams

@@ -21,6 +21,7 @@ from fieldmon.monitoring import (
     first_morning,
     inspection_lots,
     label_table,
+    logged_days,
     outside_changes,
     qgis_project,
     schema,
@@ -30,11 +31,12 @@ from fieldmon.monitoring import (
     treatments,
 )
 from fieldmon.monitoring.closures import closed_on, entry_waits, open_to_people
-from fieldmon.monitoring.history import Besides, History, Shift, made_by
+from fieldmon.monitoring.history import History
 from fieldmon.monitoring.mornings import Mornings
 from fieldmon.monitoring.mornings import keep as keep_mornings
 from fieldmon.monitoring.mornings import take as take_mornings
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
+from fieldmon.monitoring.shift_work import Besides, Shift
 from fieldmon.monitoring.told_detection import told_at_first, told_detection
 from fieldmon.monitoring.transactions import Store, get_meta
 from fieldmon.plot.grid import PlantNumbers, plant_numbers
@@ -54,6 +56,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.closures import Closure, EntryWait
     from fieldmon.monitoring.history import Treatment
     from fieldmon.monitoring.season_log import LogEntry
+    from fieldmon.monitoring.shift_work import ShiftWork
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Scene
@@ -191,8 +194,8 @@ class OpenSeason:
         """Return what counts, with who worked on a day, from when, and who chose, as it was then.
 
         As when the day was planned before its work or, if it never was, first recorded: whatever is
-        planned of it later changes nothing, see `season_log.worked_by`. What is believed is of now,
-        for all days (but see `fieldmon.monitoring.told_detection`).
+        planned of it later changes nothing, see `logged_days.worked_by`. What is believed is of
+        now, for all days (but see `fieldmon.monitoring.told_detection`).
         """
         return self._counted_on(on)
 
@@ -211,7 +214,7 @@ class OpenSeason:
     def _chosen_on(self, db: sqlite3.Connection, *days: date) -> settings_log.Marks:
         """Return by which settings the first of some days was worked; else those of now."""
         clock = local_clock(self.plot.field)
-        worked = (season_log.worked_by(db, day, clock) for day in days)
+        worked = (logged_days.worked_by(db, day, clock) for day in days)
         return next((one for one in worked if one is not None), None) or settings_log.marks(db)
 
     @property
@@ -372,12 +375,10 @@ class OpenSeason:
     ) -> tuple[Closure, ...]:
         if not contents.history.treatments:
             return ()
-        shift, name = self._shift(self._planned_by(contents, on), who)
-        begun_s, day_s = self._begun_s(contents, on, who), shift.robot.day_s
+        work, day = self._work(contents, on, who), contents.settings.day(on)
+        begun_s, day_s = work.begun_s(day), work.shift.robot.day_s
         if seconds_left is None:
-            day = contents.settings.day(on)
-            gone_s = contents.history.gone_s(shift, day, None, name)
-            seconds_left = max(0.0, day_s - gone_s)
+            seconds_left = max(0.0, day_s - work.gone_s(day))
         clock = grid_clock(self.plot.grid)
         begins_s = clock.second_after(on, begun_s, day_s - seconds_left)
         return self.closed_between(on, begins_s, clock.second_after(on, begun_s, day_s))
@@ -406,16 +407,15 @@ class OpenSeason:
             return self._begun_s(self._now(), on, who)
 
     def _begun_s(self, contents: SeasonContents, on: date, who: str | Besides) -> float:
-        shift, name = self._shift(self._planned_by(contents, on), who)
-        return contents.history.begun_s(shift, contents.settings.day(on), name)
+        return self._work(contents, on, who).begun_s(contents.settings.day(on))
 
     def left_s(self, on: date, now: time | None = None, who: str | Besides = "") -> float:
         """Return the seconds left of the working day `on`; `now` and `who` as in `scene`."""
         with self._lock:
             contents = self._now()
-            shift, name = self._shift(self._planned_by(contents, on), who)
-            day, now_s = contents.settings.day(on), None if now is None else seconds(now)
-            return max(0.0, shift.robot.day_s - contents.history.gone_s(shift, day, now_s, name))
+            work, day = self._work(contents, on, who), contents.settings.day(on)
+            gone_s = work.gone_s(day, None if now is None else seconds(now))
+            return max(0.0, work.shift.robot.day_s - gone_s)
 
     def worked(self, on: date, who: str | Besides = "") -> Inspections:
         """Return what somebody inspected in the work of the day `on`; `who` as in `plan`.
@@ -426,8 +426,11 @@ class OpenSeason:
             return self._worked(self._now(), on, who)
 
     def _worked(self, contents: SeasonContents, on: date, who: str | Besides) -> Inspections:
-        shift, name = self._shift(self._planned_by(contents, on), who)
-        return made_by(contents.history.worked(shift, contents.settings.day(on), name), name)
+        return self._work(contents, on, who).own(contents.settings.day(on))
+
+    def _work(self, contents: SeasonContents, on: date, who: str | Besides) -> ShiftWork:
+        """Return somebody's work by what counted on the day `on`."""
+        return contents.history.work(*self._shift(self._planned_by(contents, on), who))
 
     def _scene(
         self, contents: SeasonContents, on: date, now: time | None = None,

@@ -126,7 +126,7 @@ def refuse(db: sqlite3.Connection) -> None:
     if not found:
         return
     more = ["..."] if len(found) > _MOST_NAMED else []
-    named = joined("; ", [*(change.sentence() for change in found[:_MOST_NAMED]), *more])
+    named = joined("; ", [*(_faced(db, one).sentence() for one in found[:_MOST_NAMED]), *more])
     if all(change.layer == INSPECTIONS.name for change in found):
         remedy = worded(
             "Take it as a correction with: fieldmon correct {file} --who NAME; or go back to a "
@@ -146,6 +146,18 @@ def refuse(db: sqlite3.Connection) -> None:
             remedy=remedy,
         )
     )
+
+
+def _faced(db: sqlite3.Connection, change: OutsideChange) -> OutsideChange:
+    """Return a change of an inspection with the face of its plant in what stood there."""
+    if not change.before:
+        return change
+    plant = rows_that_count.as_it_was(change.before).get("plant")
+
+    def of(number: re.Match[str]) -> str:
+        return f", plant {inspection_table.number_of(db, plant, int(number[1]))} on "
+
+    return replace(change, was=_NUMBER.sub(of, change.was, 1))
 
 
 def _name(db: sqlite3.Connection) -> str:
@@ -355,7 +367,7 @@ def _made_anew(
                 "A changed inspection must say plant, date and result as the others do, but "
                 "{change} and does not ({error}). Mend it with the program that changed it; "
                 "nothing was taken.",
-                change=change.sentence(),
+                change=_faced(db, change).sentence(),
                 error=error,
             )
         ) from error
@@ -376,7 +388,7 @@ def _refuse_twice(db: sqlite3.Connection, change: OutsideChange, mark: object) -
             worded(
                 "No inspection may stand there twice, but {change} and says what row {twice} "
                 "says. Delete one of them with the program that changed it; nothing was taken.",
-                change=change.sentence(),
+                change=_faced(db, change).sentence(),
                 twice=twice[0],
             )
         )
@@ -414,7 +426,7 @@ def said_in(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> t
         said["count"] = None if said["count"] == before.get("count") else said["count"]
     stood = before.get("plant")
     if isinstance(row[0], bytes) and isinstance(stood, int) and 0 <= stood < len(grid):
-        said["plant"] = _plant_there(row[0], said["plant"], stood, change, grid)
+        said["plant"] = _plant_there(row[0], said["plant"], stood, _faced(db, change), grid)
     return tuple(said.values())
 
 

@@ -16,7 +16,7 @@ from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.monitoring import schema, season_log
 from fieldmon.monitoring.geopackage import insert
 from fieldmon.monitoring.season_file import Season
-from fieldmon.monitoring.transactions import Store
+from fieldmon.monitoring.transactions import Store, refuse_newer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,17 +45,21 @@ class Salvaged:
         Tables of which at least one row could not be read.
     whole
         Whether the new file works as a season again.
+    why
+        Why not, in a sentence; empty where it does.
     """
 
     rows: dict[str, int]
     lost: tuple[str, ...]
     whole: bool
+    why: str = ""
 
 
 def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
     """Copy every row that can still be read from a damaged season into a new file.
 
-    Raise `FileProblem` if nothing can be read, or if the new file exists already.
+    Raise `FileProblem` if nothing can be read, if a newer fieldmon wrote it, whose columns this one
+    would leave out, or if the new file exists already.
     """
     source = Path(damaged)
     if not source.is_file():
@@ -68,6 +72,8 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
     rows, lost = {}, []
     with working_folder() as folder:
         copy = _padded_copy(source, Path(folder))
+        with closing(sqlite3.connect(copy)) as db, suppress(sqlite3.Error, ValueError):
+            refuse_newer(db, source)
         with closing(sqlite3.connect(copy)) as db, Store.new(to) as new:
             new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
             _attach(db, new, copy)
@@ -91,12 +97,12 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
             first = (0, None, 0, 0, None, None, None, None, "", None)
             if new.execute("SELECT 1 FROM days").fetchone() is None:
                 insert(new, schema.DAYS, [first])
-    whole = True
+    why = ""
     try:
         Season(to).work_on()
-    except FieldmonError:
-        whole = False
-    return Salvaged(rows, tuple(lost), whole)
+    except FieldmonError as problem:
+        why = str(problem)
+    return Salvaged(rows, tuple(lost), not why, why)
 
 
 def _padded_copy(source: Path, folder: Path) -> Path:

@@ -16,7 +16,7 @@ import numpy as np
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
 from fieldmon.errors import AccessError, SettingError
-from fieldmon.monitoring import phone_tables, season_log
+from fieldmon.monitoring import logged_days, phone_tables
 from fieldmon.monitoring.geopackage import insert, touch
 from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import written_in
@@ -217,7 +217,7 @@ def scouts_on(
     rows = db.execute(f"SELECT {_COLUMNS} FROM scouts ORDER BY made, fid")  # noqa: S608 - ours
     had = [one for one in map(_scout, rows) if not one.ended or _date(clock, one.ended) > on]
     if is_over and any(_date(clock, one.made) > on for one in had):
-        given = {(person_key(one.who), one.at) for one in season_log.given_out(db)
+        given = {(person_key(one.who), one.at) for one in logged_days.given_out(db)
                  if one.date == str(on)}  # fmt: skip
         had = [
             one

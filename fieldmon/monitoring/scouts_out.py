@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES
-from fieldmon.monitoring import season_log
+from fieldmon.monitoring import logged_days
 from fieldmon.monitoring.day_ahead import DayAhead, WorkPart
 from fieldmon.monitoring.findings import CLOCK_IS_WRONG
-from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.scouts import overlapping, scouts_on
+from fieldmon.monitoring.shift_work import made_by
 from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import local_clock
 
@@ -94,7 +94,7 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
             ahead = replace(ahead, scouts=then, settings=season.planned_by(on))
         sent = {person_key(who): (at, clock) for who, at, clock in db.execute(_LAST_SENT)}
         photos = {person_key(who): at for who, at in db.execute(_LAST_PHOTO)}
-        given = {one.digest: one.at for one in season_log.given_out(db) if one.date == str(on)}
+        given = {one.digest: one.at for one in logged_days.given_out(db) if one.date == str(on)}
         finds = _finds_since(db, min(given.values(), default=""), day) if given else []
     codes = ahead.scouts, ahead.settings, int(season.plant_numbers.line.max())
     coded = {person_key(one.name): one for one in ahead.scouts}

@@ -6,6 +6,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.decisions.map_verdict import verdict_of
@@ -13,9 +15,16 @@ from fieldmon.decisions.sequential import LEAVE
 from fieldmon.errors import SettingError
 from fieldmon.infestation.earlier_season import EarlierSeason
 from fieldmon.infestation.inspections import SKIPPED
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import day_figures
-from fieldmon.monitoring.advice import AdviceSettings, InspectAgain, NotReached, advice
+from fieldmon.monitoring.advice import (
+    AdviceSettings,
+    FewInspected,
+    InspectAgain,
+    NotReached,
+    advice,
+)
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.history import in_sight
 from fieldmon.monitoring.mornings import rules
@@ -28,7 +37,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from datetime import date
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.compute.wording import Worded
@@ -121,6 +129,7 @@ class SeasonEstimates(OpenSeason):
             scene = self._scene(contents, on, read=db)
             morning = contents.morning(day)
             evening = contents.history.in_hindsight(morning, day)
+            told = db.execute("SELECT 1 FROM observations").fetchone()
         history, asked = contents.history, asked or AdviceSettings()
         done = tuple(one for one in history.treatments if one.day == day)
         found = history.found_and_left(evening, day)
@@ -132,10 +141,18 @@ class SeasonEstimates(OpenSeason):
         if made.verdict != LEAVE:
             return made
         ahead = history.forecast(morning, day)  # others may plan meanwhile
+        background = contents.settings.prior.background_chance
+        assumed = told is None and background == PriorSettings().background_chance
         return replace(
             made,
             again=InspectAgain.of(ahead, on, asked.level * len(history.grid)),
             not_reached=NotReached.of(history.grid, inspected),
+            few=FewInspected.of(
+                len(np.unique(inspected)),
+                asked,
+                history.mean_detection(day),
+                background if assumed else None,
+            ),
         )
 
     def status(self, on: date) -> Status:

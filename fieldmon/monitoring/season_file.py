@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import array_of, must_be_language
+from fieldmon.compute.arguments import must_be_language
+from fieldmon.compute.array_arguments import array_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError

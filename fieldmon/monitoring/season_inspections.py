@@ -1,9 +1,8 @@
-"""What was found in a season: recorded, corrected, merged and taken back."""
+"""What was found in a season: recorded, taken back and told again."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import UTC, datetime, time
 from functools import reduce
 from typing import TYPE_CHECKING
 
@@ -15,24 +14,18 @@ from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import (
     batches,
-    cautions,
-    copy_corrections,
     corrections,
     drafts,
     inspection_lots,
     inspection_table,
-    label_table,
-    merging,
     numbered_inspections,
     outside_changes,
     phone_tables,
     repeated_recordings,
-    scouts,
     season_log,
     tables,
-    treatments,
 )
-from fieldmon.monitoring.batches import Recorded, Undone, more_in_words
+from fieldmon.monitoring.batches import Recorded, Undone
 from fieldmon.monitoring.contradictions import (
     Contradictions,
     contradicting,
@@ -41,14 +34,11 @@ from fieldmon.monitoring.contradictions import (
     said_before,
     said_otherwise,
 )
-from fieldmon.monitoring.merging import Merged
-from fieldmon.monitoring.open_season import OpenSeason, settings_of
+from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import as_written, names_written, written_in
-from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.season_corrections import SeasonCorrections
 from fieldmon.monitoring.told_detection import said_now
-from fieldmon.monitoring.transactions import Store
 from fieldmon.pests.weather import DAY_S
-from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
@@ -58,22 +48,12 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.batches import Batch, BatchContents
-    from fieldmon.monitoring.merging import MergedCopy
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.tables import KeptMessage
-    from fieldmon.monitoring.treatments import KeptTreatment
-
-
-#: why treatments do not count any more after merging, as `MergedCopy` has them
-_GONE = (
-    "counted here, but was undone there",
-    "counted there, but was undone here",
-    "counted in both, but each undid another recording of it",
-)
 
 
 @checked
-class SeasonInspections(OpenSeason):
+class SeasonInspections(SeasonCorrections):
     """The inspections of a season, whoever brings them; each batch can be undone."""
 
     def contradictions(self, inspections: Inspections) -> Contradictions:
@@ -381,105 +361,6 @@ class SeasonInspections(OpenSeason):
         season_log.append(db, "undone", written_in(db, who), states=states, said=said, **what)
         self._refresh(db, min(batches.first_day(db, one) for one in changed))
 
-    def correct(self, who: str, *, confirmed: bool = False) -> int:
-        """Take what another program changed of inspections as corrections; return how many.
-
-        They are a batch of their own, of `who` corrects; undoing it brings back what was before.
-        What says nothing else than before is put back as it was, and is none. Raise `FileProblem`
-        if more than inspections was changed, or what makes no sense;
-        `ContradictionError` if they contradict what else is recorded and are not `confirmed`.
-        """
-        with self._lock, self.store.writing() as db:
-            outside_changes.refuse_more(db)
-            settings, plot = settings_of(db), (self.plot.grid, self.plant_numbers)
-            who = written_in(db, who)
-            taken = outside_changes.correct(db, plot, settings, who)
-            self._may_be_taken(db, taken, confirmed=confirmed)
-            self._corrected(db, taken, who)
-        return len(taken)
-
-    def correct_time(
-        self,
-        inspection: int,
-        at: time | None,
-        who: str,
-        on: date | None = None,
-        *,
-        confirmed: bool = False,
-    ) -> str:
-        """Give one inspection another day, or another time of its day; return what was done.
-
-        That is a batch of its own; undoing it brings back the time before.
-
-        Parameters
-        ----------
-        inspection
-            Its number (fid) in the season's file.
-        at
-            The local time that is right, none to come; None: as it is.
-        who
-            Who corrects.
-        on
-            The day that is right, of the season and not to come; None: as it is.
-        confirmed
-            Whether it counts though it contradicts what else is recorded of the plant and day.
-
-        Raises
-        ------
-        ContradictionError
-            If it does and nobody confirmed it.
-        SettingError
-            If there is no such inspection that counts, no such day or time (yet), or nothing
-            to correct.
-        """
-        with self._writing() as db:
-            plot, settings = (self.plot.grid, self.plant_numbers), settings_of(db)
-            if on is not None:
-                settings.day(on)
-            day, held_at = corrections.made(db, inspection)
-            self._must_have_come(on or day, at or held_at)
-            if on in {None, day} and at in {None, held_at}:
-                raise SettingError(
-                    worded(
-                        "A correction must say something else than what is recorded, but "
-                        "inspection {inspection} is of {when} already: there is nothing to "
-                        "correct.",
-                        inspection=inspection,
-                        when=str(day) if held_at is None else f"{day} {held_at:%H:%M}",
-                    )
-                )
-            who, when = written_in(db, who), (on, None if at is None else seconds(at))
-            said = corrections.retime(db, inspection, when, plot, settings, who)
-            self._may_be_taken(db, said, confirmed=confirmed)
-            self._corrected(db, said, who, here=True)
-        return said[0]
-
-    def _must_have_come(self, on: date, at: time | None) -> None:
-        """Raise `SettingError` if a moment, or a whole day, lies ahead of the plot's clock.
-
-        So it does if that clock never showed it.
-        """
-        clock = local_clock(self.plot.field)
-        now = clock.now()
-        told = datetime.combine(on, at or time())
-        if at is not None and clock.at(clock.moment(on, at).astimezone(UTC)) != told:
-            raise SettingError(
-                worded(
-                    "An inspection must be of a time that the plot's clock showed, but {day} is "
-                    "none: clocks were put forward over it.",
-                    day=f"{told:%Y-%m-%d %H:%M}",
-                )
-            )
-        if (on, at or now.time()) > (now.date(), now.time()):
-            raise SettingError(
-                worded(
-                    "An inspection must be of a moment that has come, but {day} has not: on the "
-                    "plot it is {now}.",
-                    day=str(on) if at is None or on > now.date() else f"{on} {at:%H:%M}",
-                    now=f"{now:%Y-%m-%d %H:%M}",
-                )
-            )
-
     def inspections_of(self, plant: int) -> tuple[numbered_inspections.NumberedInspection, ...]:
         """Return the inspections of a plant that count, in their order, with their numbers."""
         with self.store.reading() as db:
@@ -536,143 +417,6 @@ class SeasonInspections(OpenSeason):
         days = [one.inspection.date[0].item() for one in taken if one.inspection is not None]
         self._refresh(db, settings.day(min(days)))
 
-    def is_copy(self, file: Path) -> bool:
-        """Return whether a file is this season or a copy of it, however far they went apart.
-
-        Seasons begun apart are no copies, even of one plot and one day. Nor is a copy any more that
-        looks for another pest, once nothing that counts stands in both.
-        """
-        if file.resolve() == self.path.resolve():
-            return True
-        with self.store.reading() as db, Store(file).reading() as theirs:
-            try:
-                merging.refuse_strangers(db, theirs)
-            except FileProblem:
-                return False
-            apart = merging.are_of_two_pests(db, theirs)
-            return not apart or merging.hold_in_common(db, theirs)
-
-    def is_of_another_pest(self, file: Path) -> bool:
-        """Return whether this and the season in a file name pests that differ."""
-        with self.store.reading() as db, Store(file).reading() as theirs:
-            return merging.are_of_two_pests(db, theirs)
-
-    def refuse_another_pest(self, file: Path) -> None:
-        """Raise `FileProblem` where the season in a file looks for another pest than this one."""
-        with self.store.reading() as db, Store(file).reading() as theirs:
-            merging.refuse_another_pest(db, theirs)
-
-    def is_of_one_plot(self, file: Path) -> bool:
-        """Return whether the season in a file has the same rows and plants as this one."""
-        with self.store.reading() as db, Store(file).reading() as theirs:
-            return merging.are_of_one_plot(db, theirs)
-
-    def treatments_alone_in(self, file: Path) -> list[tuple[str, str]]:
-        """Return product and day of the treatments that count in another season's file alone."""
-        with self.store.reading() as db, Store(file).reading() as theirs:
-            return treatments.counting_alone(db, theirs)
-
-    def corrections_in(self, copy: Path) -> tuple[outside_changes.OutsideChange, ...]:
-        """Return what another program changed of inspections in a copy of this season.
-
-        A file that is no copy of it has none.
-        """
-        if not self.is_copy(copy):
-            return ()
-        with Store(copy).reading() as theirs:
-            return copy_corrections.waiting(theirs)
-
-    def take_corrections(self, copy: Path, name: str, who: str, *, confirmed: bool = False) -> int:
-        """Take what was corrected or deleted in a `copy` of this season; return how many were new.
-
-        They are a batch of their own, of `who`; `name` is what the copy is called.
-        Raise `FileProblem` if a changed row makes no sense or is not here, `SettingError` if
-        nobody is named, and `ContradictionError` if they contradict what else is recorded and are
-        not `confirmed`.
-        """
-        with self._writing() as db:
-            return self._take_corrections(db, copy, (name, who), confirmed=confirmed)
-
-    def _take_corrections(
-        self, db: sqlite3.Connection, copy: Path, said: tuple[str, str], *, confirmed: bool
-    ) -> int:
-        name, who = said
-        if not who.strip():
-            raise SettingError(
-                worded(
-                    "Corrections must have an author, but {name} was changed by another program "
-                    "and nobody says who did. Give --who NAME.",
-                    name=name,
-                )
-            )
-        with Store(copy).reading() as theirs:
-            plot, who = (self.plot.grid, self.plant_numbers), written_in(db, who)
-            taken = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who))
-        self._may_be_taken(db, taken, confirmed=confirmed)
-        self._corrected(db, taken, who)
-        return len(taken)
-
-    def _may_be_taken(
-        self, db: sqlite3.Connection, taken: tuple[str, ...], *, confirmed: bool
-    ) -> None:
-        """Raise `ContradictionError` if the last corrections contradict what else is recorded."""
-        if taken and not confirmed:
-            corrections.contradicting(db).refuse(self.plot.grid, corrected=True)
-
-    def _corrected(
-        self, db: sqlite3.Connection, taken: tuple[str, ...], who: str, *, here: bool = False
-    ) -> None:
-        """Log what was corrected; `here`: with fieldmon itself, not by another program."""
-        if taken:
-            what = {"rows": len(taken), "said": taken, **({"here": True} if here else {})}
-            season_log.append(db, "corrected", who, states=season_log.states(db), **what)
-            self._refresh(db)
-
-    def merge(self, other: OpenSeason) -> Merged:
-        """Take in what another copy of this season holds: all that is in either, once each.
-
-        The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
-        """
-        with self._lock, self.store.writing() as db:
-            held = self._inspections(db)
-            with other.store.reading(self.path) as theirs:
-                told = season_log.taken_in(db, theirs)
-                # what is told is noted in any case
-                was = None if told else season_log.states(db)
-                # nobody writes there from here on
-                contradict = contradictions(other.inspections, held)
-                clock = local_clock(self.plot.field)
-                here, there = (treatments.kept(one, self._inside, clock) for one in (db, theirs))
-                taken = merging.merge(db, theirs)
-            self._refresh(db)
-            # what either copy took back or corrected contradicts nothing
-            contradict = contradict.still(self._inspections(db))
-            ended = _ended(here, there, taken)
-            states, labels = season_log.states(db), label_table.read(db)
-            if states != was:
-                _log_merged(db, states, told, taken, ended)
-            twice = _recorded_twice(treatments.kept(db, self._inside, clock), taken)
-            overlaps = scouts.overlaps(db, int(self.plant_numbers.line.max()))
-        no_more = (
-            cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in ended
-        )
-        return Merged(
-            new=taken.new,
-            contradictions=(
-                *contradict.sentences(self.plot.grid),
-                *taken.differing,
-                *twice,
-                *no_more,
-            ),
-            taken_back=taken.taken_back,
-            moved=bool(taken.numbers),
-            treatments=taken.treatments,
-            codes=taken.codes,
-            overlaps=overlaps,
-            chosen=taken.chosen,
-            noted=taken.noted,
-        )
-
     def batches(self) -> tuple[Batch, ...]:
         """Return everything recorded, the last one first."""
         with self.store.reading() as db:
@@ -682,11 +426,6 @@ class SeasonInspections(OpenSeason):
         """Return what batches of inspections and treatments say, by their numbers."""
         with self.store.reading() as db:
             return batches.contents(db, numbers)
-
-    def corrected_by(self) -> dict[tuple[object, ...], str]:
-        """Return who corrected inspections that count, by plant, day (ISO), result and count."""
-        with self.store.reading() as db:
-            return batches.corrected_by(db)
 
     def messages(self) -> tuple[KeptMessage, ...]:
         """Return what the imports had to say."""
@@ -698,52 +437,3 @@ def _by_those_known(known: dict[str, str], told: Inspections) -> Inspections:
     """Return inspections whose people are written as they are known."""
     names = [as_written(known, str(name)) for name in told.who]
     return replace(told, who=np.array(names, object))
-
-
-def _ended(
-    here: Sequence[KeptTreatment], there: Sequence[KeptTreatment], taken: MergedCopy
-) -> list[tuple[KeptTreatment, str]]:
-    """Return the treatments of two copies that do not count any more, each with why."""
-    return [
-        (one, why)
-        for why, counted, gone in zip(_GONE, (here, there, here), taken.gone, strict=True)
-        for one in counted
-        if one.number in gone
-    ]
-
-
-def _log_merged(
-    db: sqlite3.Connection,
-    states: dict[str, str],
-    told: list[dict[str, str]],
-    taken: MergedCopy,
-    ended: list[tuple[KeptTreatment, str]],
-) -> None:
-    """Note that another copy was taken in, with the entries that its log `told` beside ours."""
-    undone = [
-        f"{one.application.product or 'a product that nobody named'} on {one.on}"
-        for one, why in ended
-        if why != _GONE[1]
-    ]
-    season_log.append(
-        db,
-        "merged",
-        states=states,
-        new=taken.new,
-        entries=len(told),
-        theirs=told,
-        moved=bool(taken.numbers),
-        numbers=taken.numbers,
-        undone=undone,
-        chosen=taken.chosen,
-        more=str(more_in_words(taken.noted)),
-    )
-
-
-def _recorded_twice(counting: Sequence[KeptTreatment], taken: MergedCopy) -> list[str]:
-    """Return a sentence for each two treatments that may be one, recorded in either copy."""
-    by_number = {one.number: one for one in counting}
-    said = (
-        cautions.same_plants_twice(by_number[one], by_number[other]) for one, other in taken.alike
-    )
-    return [one for one in said if one]

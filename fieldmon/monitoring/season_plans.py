@@ -12,12 +12,12 @@ import numpy as np
 from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring import kept_routes, scouts, season_log
+from fieldmon.monitoring import kept_routes, logged_days, scouts, season_log
 from fieldmon.monitoring.day_figures import PlannedAndDone
-from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.mornings import is_behind
 from fieldmon.monitoring.open_season import FileRevision, OpenSeason, newest_day
 from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.shift_work import Besides
 from fieldmon.planning.members import person_key
 from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
@@ -177,7 +177,7 @@ class SeasonPlans(OpenSeason):
         It is named by its digest.
         """
         with self.store.reading() as db:
-            return season_log.holds_still(db, on, plan)
+            return logged_days.holds_still(db, on, plan)
 
     def closed_to_kept(
         self, on: date, who: str = "", kept_as: str | None = None
@@ -209,7 +209,7 @@ class SeasonPlans(OpenSeason):
     def planned_only(self, until: date) -> tuple[date, ...]:
         """Return the planned days `until` a date of which nothing is recorded, in order.
 
-        Each is over on the plot, and was planned to be worked, see `season_log.to_be_worked`.
+        Each is over on the plot, and was planned to be worked, see `logged_days.to_be_worked`.
         That a plant could not be inspected is a record, too.
         """
         clock = local_clock(self.plot.field)
@@ -220,7 +220,7 @@ class SeasonPlans(OpenSeason):
             missing = planned[~np.isin(planned, contents.history.days)]
             dates = [contents.settings.date(day) for day in missing.tolist()]
             over = [day for day in dates if day <= last]
-            return season_log.to_be_worked(db, over, clock) if over else ()
+            return logged_days.to_be_worked(db, over, clock) if over else ()
 
     def codes_on(self, on: date) -> dict[str, tuple[int, int] | None]:
         """Return who has a code for work on the day `on` now, by name, and of which rows."""

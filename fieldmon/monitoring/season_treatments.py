@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.arguments import plants_marked
+from fieldmon.compute.array_arguments import plants_marked
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.decisions.labels import SAID_BY_HAND, label_for, plain_name, with_wait
@@ -28,7 +28,7 @@ from fieldmon.monitoring.early_entries import early_entries
 from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.open_season import OpenSeason, settings_of
 from fieldmon.monitoring.people import written_in
-from fieldmon.monitoring.treatments import KeptTreatment, TreatedPlace
+from fieldmon.monitoring.treatments import KeptTreatment, TreatedPlace, by_vine
 from fieldmon.monitoring.waiting_periods import end_of
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.named_rows import place_in_words
@@ -107,9 +107,10 @@ class SeasonTreatments(OpenSeason):
             batches.end(db, batch, new)
             if new:
                 where = place_in_words(self.plot.grid, place.plants)
+                once = replace(place, plants=self.plot.grid.vines_of(place.plants))
                 season_log.append(
                     db, "treated", said.operator, states=season_log.states(db, [batch]),
-                    batch=batch, date=str(on), said=treatments.in_words(place, said, where),
+                    batch=batch, date=str(on), said=treatments.in_words(once, said, where),
                     efficacy=works, **said.said(),
                 )  # fmt: skip
                 self._refresh(db, day, before)
@@ -237,7 +238,9 @@ class SeasonTreatments(OpenSeason):
         """
         done, rules, seen = self._held_to(units)
         early = early_entries(done, rules, seen, self.plot.grid, on)
-        return cautions.by_urgency((*cautions.cautions(done, rules, on), *early))
+        return cautions.by_urgency(
+            (*cautions.cautions(by_vine(done, self.plot.grid), rules, on), *early)
+        )
 
     def cautions_because_of(
         self, batch: int, on: date, units: Units | None = None
@@ -249,7 +252,9 @@ class SeasonTreatments(OpenSeason):
         done, rules, seen = self._held_to(units)
         own = [one for one in done if one.batch == batch and one.on <= on]
         early = early_entries(own, rules, seen, self.plot.grid, self.last_date())
-        return cautions.by_urgency((*cautions.because_of(done, batch, rules, on), *early))
+        return cautions.by_urgency(
+            (*cautions.because_of(by_vine(done, self.plot.grid), batch, rules, on), *early)
+        )
 
     def cautions_if_treated(
         self, on: date, product: str, plants: NDArray[np.bool_], units: Units | None = None
@@ -272,7 +277,8 @@ class SeasonTreatments(OpenSeason):
             batch, batch, day, on, place, 0.0, Application(product.strip()),
             end_of(clock, on, None), clock,
         )  # fmt: skip
-        found = cautions.because_of([*done, wanted], batch, replace(rules, asked=batch), on)
+        every = by_vine([*done, wanted], self.plot.grid)
+        found = cautions.because_of(every, batch, replace(rules, asked=batch), on)
         return tuple(one for one in found if one.kind in _BEFORE_TREATING)
 
     def _held_to(

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import day_of, must_be_in, must_be_known
+from fieldmon.compute.arguments import must_be_in, must_be_known
+from fieldmon.compute.day_arguments import day_of
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import SEED, AllowedRange
 from fieldmon.compute.wording import chance_figure, joined, worded

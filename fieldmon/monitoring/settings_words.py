@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.monitoring import MonitoringSettings, Season
-    from fieldmon.planning.members import TeamMember
+    from fieldmon.planning.members import TeamMember, Teamwork
 
 _NONE = worded("none")
 _NAMES = {
@@ -28,6 +28,8 @@ _NAMES = {
     "turning radius": worded("turning radius"),
     "detection": worded("detection"), "detection by seconds": worded("detection by seconds"),
     "way back": worded("way back to the gate within the hours"),
+    "contact": worded("contact"), "least gain": worded("least gain"),
+    "passing": worded("headland to pass each other"),
     "start": worded("start"), "traces": worded("traces"),
     "finds": worded("finds"), "spread": worded("spread"),
     "background": worded("infested where nothing is known"), "pest": worded("pest"),
@@ -44,6 +46,8 @@ _SAID_BY = {
     "robot width_m": "width", "robot length_m": "length",
     "robot turning_radius_m": "turning radius", "robot detection": "detection",
     "robot viewpoints": "detection by seconds", "robot returns": "way back",
+    "team teamwork contact_s": "contact", "team teamwork least_gain": "least gain",
+    "team teamwork passing_m": "passing",
     "season starts": "start", "season harvest": "harvest", "season language": "language",
     "beliefs traces": "traces", "beliefs treated": "finds",
     "beliefs spread rate_per_day": "spread", "prior background_chance": "background",
@@ -51,6 +55,7 @@ _SAID_BY = {
 }  # fmt: skip
 # it comes and goes with a team
 _WITH_TEAM = "team teamwork"
+_TEAMWORK = ("contact", "least gain", "passing")
 # parts of the settings that are believed of the whole season
 _OF_ALL_DAYS = ("prior", "beliefs", "pest", "weather")
 
@@ -82,6 +87,8 @@ def _differing(
     differ = [name for name in {**this, **that} if this.get(name) != that.get(name)]
     beside_team = "team" in differ  # where a team comes or goes the one robot is of no interest
     for name in differ:
+        if beside_team and name in _TEAMWORK and not (one.team and other.team):
+            continue
         if not (beside_team and name in _each_of_worker(one.robot) | _each_of_worker(other.robot)):
             yield _NAMES[name], this.get(name, _NONE), that.get(name, _NONE)
     for path, was, now in each_difference(*_parts_of(one, other)):
@@ -141,6 +148,7 @@ def _in_words(settings: MonitoringSettings) -> dict[str, str]:
     words = {"sampler": settings.sampler if every is None else f"{settings.sampler} {every:g}"}
     if settings.team:
         words["team"] = joined("; ", map(worker_in_words, settings.team))
+        words |= _each_of_teamwork(settings.teamwork)
     words |= _each_of_worker(settings.robot)
     words |= {
         "start": f"{settings.starts:%H:%M}",
@@ -158,6 +166,16 @@ def _in_words(settings: MonitoringSettings) -> dict[str, str]:
     return words | {"language": settings.language or "en"}
 
 
+def _each_of_teamwork(teamwork: Teamwork) -> dict[str, str]:
+    n = teamwork.contact_s / 60
+    metres = f"{teamwork.passing_m:g} m"
+    return {
+        "contact": worded("every {n:g} min", n=n) if n else worded("at once"),
+        "least gain": written(teamwork.least_gain, ".3g"),
+        "passing": metres if teamwork.passing_m else worded("any"),
+    }
+
+
 def _each_of_worker(robot: Robot) -> dict[str, str]:
     times = f"{robot.row_change_s:g}, {robot.turn_180_s:g} and {robot.stop_s:g} s"
     size = {
@@ -165,14 +183,21 @@ def _each_of_worker(robot: Robot) -> dict[str, str]:
         "length": robot.length_m,
         "turning radius": robot.turning_radius_m,
     }
-    seen = [f"{s:g} s {chance_figure(chance)}" for s, chance in robot.viewpoints.steps]
+    (first_s, least), (last_s, _) = robot.viewpoints.steps[0], robot.viewpoints.steps[-1]
     return {
         "hours": f"{robot.hours:g}",
         "look": f"{robot.look_s:g} s",
         "speed": f"{KM_H * robot.speed_m_s:.3g} km/h",
         "row changes, turns and stops": robot.times or times,
         "detection": str(chance_figure(robot.detects)),
-        "detection by seconds": "; ".join((*seen, f"> {chance_figure(robot.viewpoints.longer)}")),
+        # the ends of the ladder: of what lies between, the path of the setting says that it differs
+        "detection by seconds": worded(
+            "{low} in {first:g} s to {high} in over {last:g} s",
+            low=chance_figure(least),
+            first=first_s,
+            high=chance_figure(robot.viewpoints.longer),
+            last=last_s,
+        ),
         "way back": worded("yes") if robot.returns else worded("no"),
         **{name: f"{value_m:g} m" for name, value_m in size.items() if value_m is not None},
     }

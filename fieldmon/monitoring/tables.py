@@ -126,6 +126,8 @@ def _write_field(db: sqlite3.Connection, plot: Plot) -> None:
         _write_blocks(db, field.blocks)
     stated = [np.nan if (v := getattr(field, name)) is None else v for name in _STATED]
     write_array(db, "stated", np.array(stated, np.float64))
+    if plot.headland_m is not None:
+        write_array(db, "headland", np.array([plot.headland_m], np.float64))
     taken = {one.setting: one.value for one in plot.assumed}
     assumed = [taken.get(name, np.nan) for name in _ASSUMED]
     write_array(db, "assumed", np.array(assumed, np.float64))
@@ -222,7 +224,9 @@ def read_plot(db: sqlite3.Connection) -> Plot:
     assumed = [Assumed(*one) for one in zip(_ASSUMED, taken, strict=True) if not np.isnan(one[1])]
     assumed += [Assumed(_BEARING, one) for one in arrays.get("assumed_bearing", _NOTHING).tolist()]
     aisles = Aisles(grid, gate_xy_m, grid.frame.geometry_m(field.no_go))  # found when asked for
-    return Plot(field, aisles, tuple(assumed))
+    # nor of headlands
+    headland_m = next(iter(arrays.get("headland", _NOTHING).tolist()), None)
+    return Plot(field, aisles, tuple(assumed), headland_m=headland_m)
 
 
 def _grid(arrays: dict[str, NDArray[Any]]) -> PlantGrid:

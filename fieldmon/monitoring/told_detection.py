@@ -20,7 +20,7 @@ import numpy as np
 
 from fieldmon.compute.wording import chance_figure, worded
 from fieldmon.infestation.inspections import SKIPPED
-from fieldmon.monitoring import inspection_lots, season_log, settings_log
+from fieldmon.monitoring import inspection_lots, logged_days, settings_log
 from fieldmon.monitoring.pest_json import pest_of_json
 from fieldmon.monitoring.settings import told_to_detect
 from fieldmon.planning.members import person_key
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.monitoring.season_log import PlannedOrSeen
+    from fieldmon.monitoring.logged_days import PlannedOrSeen
     from fieldmon.monitoring.settings_log import Parts
     from fieldmon.pests.pest import Pest
 
@@ -336,7 +336,7 @@ def _said(db: sqlite3.Connection, told: _Told) -> list[tuple[PlannedOrSeen, int]
     """Return what was planned and recorded, and by which of what was told."""
     now, said = settings_log.now(db), []
     known: dict[str, int] = {}
-    for one in season_log.planned_and_seen(db):
+    for one in logged_days.planned_and_seen(db):
         if (by := repr(one.by)) not in known and one.by is not None:
             known[by] = told.add(ToldDetection.in_parts(settings_log.of(db, one.by), now))
         said.append((one, told.at(one.at) if one.by is None else known[by]))

@@ -111,13 +111,13 @@ class Store:
         journals.refuse_foreign_journal(self.path)
         with self.reading() as db:
             version = _version(db)
+            refuse_newer(db, path)
             _refuse_views(db, self.path)
             is_parted = (
                 not has_more
                 and db.execute("PRAGMA journal_mode").fetchone()[0] == "wal"
                 and (not version or get_meta(db, LIES) != journals.place_of(self.path))
             )
-            needs = get_meta(db, "needs") if version else None
         self._checked: tuple[int, str] | None = None
         #: what is to be doubted of the file, in a sentence, or None
         self.doubt: str | None = None
@@ -129,17 +129,6 @@ class Store:
                 worded(
                     "{path} must be the file of a season, but it was not made by fieldmon init.",
                     path=path,
-                )
-            )
-        if version > VERSION:
-            raise FileProblem(
-                worded(
-                    "{path} was made by a newer fieldmon (format {version}; this one reads up to "
-                    "{ours}): it needs fieldmon {needs}. Update fieldmon.",
-                    path=path,
-                    version=version,
-                    ours=VERSION,
-                    needs="?" if needs is None else f">= {needs}",
                 )
             )
         if version < VERSION:
@@ -517,6 +506,24 @@ def _into_one_file(db: sqlite3.Connection) -> None:
     if db.execute("PRAGMA journal_mode").fetchone()[0] == "wal":
         with _patience(db, 0.0), suppress(sqlite3.OperationalError):
             db.execute("PRAGMA journal_mode = DELETE")
+
+
+def refuse_newer(db: sqlite3.Connection, path: str | Path) -> None:
+    """Raise `FileProblem` if a season's file is of a newer version than this one can read."""
+    version = _version(db)
+    if version is None or version <= VERSION:
+        return
+    needs = get_meta(db, "needs")
+    raise FileProblem(
+        worded(
+            "{path} was made by a newer fieldmon (format {version}; this one reads up to "
+            "{ours}): it needs fieldmon {needs}. Update fieldmon.",
+            path=path,
+            version=version,
+            ours=VERSION,
+            needs="?" if needs is None else f">= {needs}",
+        )
+    )
 
 
 def _version(db: sqlite3.Connection) -> int | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date, datetime, time, timedelta
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     import shapely
     from numpy.typing import NDArray
     from shapely import MultiPolygon
+
+    from fieldmon.plot.grid import PlantGrid
 
     Inside = Callable[[shapely.Geometry], NDArray[np.bool_]]
 
@@ -286,6 +288,14 @@ def in_words(place: TreatedPlace, application: Application, where: str) -> str:
     plants = counted(int(np.count_nonzero(place.plants)), "plant")
     # of a part of a row, how many plants they are stands in `where`
     return ", ".join([" ".join(parts), *([] if where.startswith(plants) else [plants]), where])
+
+
+def by_vine(done: Iterable[KeptTreatment], grid: PlantGrid) -> list[KeptTreatment]:
+    """Return treatments of vines, each as one plant: its two faces are sprayed together."""
+    return [
+        replace(one, place=replace(one.place, plants=grid.vines_of(one.place.plants)))
+        for one in done
+    ]
 
 
 def not_what_they_say(db: sqlite3.Connection) -> list[int]:

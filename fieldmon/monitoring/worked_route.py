@@ -10,8 +10,8 @@ import numpy as np
 
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring.history import Shift, made_by
 from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.shift_work import Shift, made_by
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import Workday
 from fieldmon.plot.travel import GATE, driven_s
@@ -54,7 +54,7 @@ def worked_route(season: Season, on: date, who: str | None = None) -> Route:
         starts_s += member.starts_s
     history, day = season.history, settings.day(on)
     done = _in_order(made_by(history.on(day), who))
-    begun_s = history.begun_s(Shift(aisles, robot, starts_s), day, who)
+    begun_s = history.work(Shift(aisles, robot, starts_s), who).begun_s(day)
     # after midnight the work of the day before may go on
     begun_s = float(np.fmin(begun_s, done.second.min(initial=np.inf)))
     scene = Scene(

@@ -10,7 +10,8 @@ from zoneinfo import ZoneInfo
 
 import numpy as np
 
-from fieldmon.compute.arguments import entries_of, must_be_zone
+from fieldmon.compute.arguments import must_be_zone
+from fieldmon.compute.array_arguments import entries_of
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import worded

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.arguments import chances_of
+from fieldmon.compute.array_arguments import chances_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError

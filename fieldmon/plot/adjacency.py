@@ -12,6 +12,8 @@ from fieldmon.compute.jit import loop
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.plot.grid import PlantGrid
+
     Float: TypeAlias = NDArray[np.float64]
     Index: TypeAlias = NDArray[np.intp]
     Lists: TypeAlias = tuple[NDArray[np.int32], NDArray[np.int32]]
@@ -102,6 +104,46 @@ def across_aisles(
         return found
 
     return _either_way(over(1), over(0))
+
+
+def beside_vines(grid: PlantGrid) -> Lists:
+    """Return the neighbours of each vine, in its row and the next ones, by its first face.
+
+    Second faces have none. Where rows bend, the nearest of the next row is one if it stands about
+    as near as rows do.
+    """
+    vines = np.flatnonzero(grid.vine == np.arange(len(grid)))
+    xy_m, line = grid.xy_m[vines], grid.row_line[grid.row[vines]]
+    if grid.aisle is None:
+        start, plant = across(xy_m, line, grid.row_spacing_m, grid.plant_spacing_m)
+        one, other = np.repeat(vines, np.diff(start)), vines[plant]
+    else:
+        one, other = (vines[which] for which in _nearest_of_next(grid, xy_m, line))
+    along_of = np.repeat(np.arange(len(grid)), np.diff(grid.along_start))
+    one = np.concatenate([grid.vine[along_of], one])
+    other = np.concatenate([grid.vine[grid.along_plant], other])
+    # each pair once, whichever of the two named it
+    pairs = np.unique(np.sort(np.stack([one, other], axis=1), axis=1), axis=0)
+    return lists(len(grid), *pairs.T)
+
+
+def _nearest_of_next(
+    grid: PlantGrid, xy_m: Float, line: NDArray[np.integer]
+) -> tuple[Index, Index]:
+    """Return plants ``(k,)`` by places, and the nearest to each on a line beside its own."""
+    from scipy.spatial import cKDTree  # noqa: PLC0415 - as below
+
+    near_m = NEXT * float(np.hypot(grid.row_spacing_m, grid.plant_spacing_m / 2))
+    pairs = cKDTree(xy_m).query_pairs(near_m, output_type="ndarray")
+    pairs = np.concatenate([pairs, pairs[:, ::-1]])
+    step = line[pairs[:, 1]] - line[pairs[:, 0]]
+    pairs, step = pairs[np.abs(step) == 1], step[np.abs(step) == 1]
+    apart_m = np.hypot(*(xy_m[pairs[:, 0]] - xy_m[pairs[:, 1]]).T)
+    order = np.lexsort((apart_m, step, pairs[:, 0]))
+    pairs, step = pairs[order], step[order]
+    first = np.ones(len(pairs), bool)
+    first[1:] = (pairs[1:, 0] != pairs[:-1, 0]) | (step[1:] != step[:-1])
+    return pairs[first, 0], pairs[first, 1]
 
 
 def delaunay_sides(xy_m: Float) -> Index:

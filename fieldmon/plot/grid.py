@@ -347,6 +347,25 @@ class PlantGrid:
         return read_only(np.where(self.twin >= 0, np.minimum(self.twin, itself), itself))
 
     @cached_property
+    def vines_beside(self) -> Csr:
+        """Neighbours of each vine, by first faces: as `adjacent`, and across aisles in any case.
+
+        Where both faces are inspected insects stay on a vine's faces, but a sprayer reaches the
+        next row.
+        """
+        if not (self.twin >= 0).any():
+            return self.adjacent
+        from fieldmon.plot.adjacency import beside_vines  # noqa: PLC0415 - as below
+
+        return Csr(*map(read_only, beside_vines(self)))
+
+    def vines_of(self, plants: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return which vines are among plants ``(n,)``, each by its lower-numbered face alone."""
+        among = np.zeros(len(self), np.bool_)
+        among[self.vine[plants]] = True
+        return among
+
+    @cached_property
     def snake(self) -> NDArray[np.int32]:
         """All plants, up one line and down the next, ``(n,)``; each face is a line of its own."""
         new_pass = (np.diff(self.row_line) != 0) | (np.diff(self.side) != 0)

@@ -77,8 +77,8 @@ def place_in_words(grid: PlantGrid, plants: NDArray[np.bool_]) -> Worded:
 
 
 def plants_in_words(grid: PlantGrid, plants: NDArray[np.bool_]) -> Worded:
-    """Return how many plants ``(n,)`` these are, and of which rows."""
-    which = counted(int(np.count_nonzero(plants)), "plant")
+    """Return how many plants ``(n,)`` these are, both faces of one as one, and of which rows."""
+    which = counted(int(np.count_nonzero(grid.vines_of(plants))), "plant")
     if not grid.in_rows:
         return which
     line = grid.row_line_number[grid.row[plants]]

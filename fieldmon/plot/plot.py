@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Literal
 import shapely
 from shapely import MultiPolygon
 
-from fieldmon.compute.arguments import must_be, must_be_shaped
+from fieldmon.compute.arguments import must_be
+from fieldmon.compute.array_arguments import must_be_shaped
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ImportDoubt, PlotError
@@ -97,6 +98,8 @@ class Plot:
         What was taken for its rows because nobody said it.
     rows
         How well its measured plants stand in rows; None where plants were laid, or read back.
+    headland_m
+        Metres at both row ends that were kept free as it was laid; None: nothing is known of it.
 
     Examples
     --------
@@ -110,6 +113,7 @@ class Plot:
     aisles: Aisles
     assumed: tuple[Assumed, ...] = ()
     rows: RowReport | None = None
+    headland_m: float | None = None
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "A plot's")
@@ -282,7 +286,8 @@ class Plot:
         lines = [frame.xy_m(shapely.get_coordinates(line)) for line in rows.geoms]
         grid = lay_along(name, frame, lines, Ground(None, MultiPolygon()), planting)
         boundary = _outline(grid)
-        return cls._with(Field(name, boundary, gate=gate, row_lines=rows), grid)
+        field = Field(name, boundary, gate=gate, row_lines=rows)
+        return replace(cls._with(field, grid), headland_m=planting.headland_m)
 
     @classmethod
     def from_geopandas(
@@ -385,17 +390,22 @@ class Plot:
             self._with(self.field, without(self.grid, missing)),
             assumed=self.assumed,
             rows=self.rows,
+            headland_m=self.headland_m,
         )
 
     def with_gate(self, gate: tuple[float, float]) -> Plot:
         """Return the same plot with days that start and end at another `gate`, ``(lon, lat)``."""
-        return self._with(replace(self.field, gate=gate), self.grid)
+        moved = self._with(replace(self.field, gate=gate), self.grid)
+        return replace(moved, headland_m=self.headland_m)
 
     @classmethod
-    def _measured(cls, field: Field, grid: PlantGrid, rows: RowReport) -> Plot:
+    def _measured(
+        cls, field: Field, grid: PlantGrid, rows: RowReport, planting: Planting | None
+    ) -> Plot:
         """Return measured plants in their rows; where no way leads to some, say what may be why."""
         try:
-            return replace(cls._with(field, grid), rows=rows)
+            headland_m = (planting or Planting()).headland_m
+            return replace(cls._with(field, grid), rows=rows, headland_m=headland_m)
         except CutOffError as error:
             if not (why := rows.may_be_mixed):
                 raise
@@ -428,8 +438,10 @@ def plot_of(field: Field, planting: Planting | None = None) -> Plot:
     if field.plants is not None:
         names = PlantNames.of(field)
         grid, rows = _in_rows(field.plants, names, field, planting)
-        return Plot._measured(field, grid, rows)  # noqa: SLF001 - its own module
-    return Plot._with(field, lay(field, planting or planting_of(field)))  # noqa: SLF001 - as above
+        return Plot._measured(field, grid, rows, planting)  # noqa: SLF001 - its own module
+    planting = planting or planting_of(field)
+    plot = Plot._with(field, lay(field, planting))  # noqa: SLF001 - as above
+    return replace(plot, headland_m=planting.headland_m)
 
 
 def _doubts_of_bearing(field: Field, planting: Planting | None) -> list[str]:
@@ -449,7 +461,7 @@ def plot_around(
     grid, rows = _in_rows(plants, names, None, planting)
     boundary = _outline(grid)
     field = names.on(Field(name, boundary, gate=gate, plants=plants))
-    return Plot._measured(field, grid, rows)  # noqa: SLF001 - its own module
+    return Plot._measured(field, grid, rows, planting)  # noqa: SLF001 - its own module
 
 
 def _warn_of(doubts: Iterable[str]) -> None:

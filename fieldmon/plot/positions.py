@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import array_of
+from fieldmon.compute.array_arguments import array_of
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:

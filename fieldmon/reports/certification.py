@@ -371,7 +371,7 @@ def _fields(one: _PlotRecord, treatment: KeptTreatment) -> list[tuple[str, str]]
         (_F["dose"], "" if said.dose is None else str(said.dose)),
         (_F["water"], "" if said.water_l_ha is None else worded(words.RATE, rate=said.water_l_ha)),
         (_F["area"], "" if place.area_ha is None else one.units.square(place.area_ha * 1e4)),
-        (_F["plants"], figure(int(np.count_nonzero(place.plants)))),
+        (_F["plants"], figure(int(np.count_nonzero(one.season.plot.grid.vines_of(place.plants))))),
         (_F["where"], place_in_words(one.season.plot.grid, place.plants)),
         (_F["time"], times_said(said)),
         (_F["zone"], treatment.clock.zone),

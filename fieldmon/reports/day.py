@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.closures import Closure
     from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.planning.route import Route
+    from fieldmon.plot.grid import PlantGrid
 
 #: stands where plants have no row, a stop no time, or somebody no name
 NO_ROW = "–"
@@ -220,7 +221,7 @@ def day_report(facts: DayFacts, units: Units) -> Report:
         *([] if facts.missed else [_figures(facts, units)]),
         *_otherwise(facts),
         *(Paragraph(said) for said in [assumed_sentence(facts.settings, units)] if said),
-        *treatment_table(facts.treatments, facts.labels, units),
+        *treatment_table(facts.treatments, facts.labels, facts.route.aisles.grid, units),
         *_map(facts, units),
     ]
     has_route = len(facts.route) and not facts.missed
@@ -379,7 +380,10 @@ def which(numbers: list[int], letters: int) -> str:
 
 
 def treatment_table(
-    treatments: Sequence[KeptTreatment], labels: Sequence[ProductLabel], units: Units
+    treatments: Sequence[KeptTreatment],
+    labels: Sequence[ProductLabel],
+    grid: PlantGrid,
+    units: Units,
 ) -> list[Table]:
     """Return what was treated, the last first, as a table; none of nothing."""
     rows = []
@@ -389,7 +393,7 @@ def treatment_table(
             (
                 units.day(one.on),
                 one.application.product,
-                figure(int(np.count_nonzero(one.place.plants))),
+                figure(int(np.count_nonzero(grid.vines_of(one.place.plants)))),
                 figure(one.efficacy, ".0%"),
                 words.CERT_NOT_SAID if first is None else units.day(first),
             )

@@ -396,5 +396,5 @@ def _treatments(facts: _Facts) -> Block:
     kept = [one for one in facts.season.treatments() if one.day <= facts.status.day]
     if not kept:
         return Listing(words.TREATMENTS, (words.TREATMENTS_NONE,))
-    (table,) = treatment_table(kept, facts.season.labels(), facts.units)
+    (table,) = treatment_table(kept, facts.season.labels(), facts.season.plot.grid, facts.units)
     return table

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import chances_of, must_be_in, must_hold_shapes, shown
+from fieldmon.compute.arguments import must_be_in, shown
+from fieldmon.compute.array_arguments import chances_of, must_hold_shapes
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import PAIRED, SHARE
 from fieldmon.compute.wording import counted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import chances_of
+from fieldmon.compute.array_arguments import chances_of
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.pest_in_weather import seen_in_weather

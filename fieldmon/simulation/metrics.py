@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_hold_shapes
+from fieldmon.compute.array_arguments import must_hold_shapes
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be_in, must_be_shaped
+from fieldmon.compute.arguments import must_be_in
+from fieldmon.compute.array_arguments import must_be_shaped
 from fieldmon.compute.kinds import checked, must_be_of, must_hold_kinds
 from fieldmon.compute.ranges import DAYS, AllowedRange
 from fieldmon.errors import PlotError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.arguments import must_be_chances, must_hold_shapes
+from fieldmon.compute.array_arguments import must_be_chances, must_hold_shapes
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError

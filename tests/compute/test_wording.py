@@ -2,9 +2,10 @@
 
 import pickle
 
+import numpy as np
 import pytest
 
-from fieldmon.compute.wording import Worded, counted, first_few, runs, worded
+from fieldmon.compute.wording import Worded, counted, filled, first_few, runs, worded
 
 
 @pytest.mark.parametrize(
@@ -12,6 +13,12 @@ from fieldmon.compute.wording import Worded, counted, first_few, runs, worded
 )
 def test_one_thing_stands_alone_and_any_other_number_is_several(number, said):
     assert counted(number, "plant") == said
+
+
+@pytest.mark.parametrize(("n", "said"), [(1, "1 record lies"), (3, "3 records lie")])
+@pytest.mark.parametrize("kind", [int, np.int64, np.uint8, float])
+def test_words_for_one_or_more_are_chosen_by_any_kind_of_number(kind, n, said):
+    assert filled("{n:,.0f} {n:record lies|records lie}", {"n": kind(n)}) == said
 
 
 def test_a_worded_sentence_is_the_sentence_everywhere_but_remembers_its_words():

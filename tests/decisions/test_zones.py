@@ -6,6 +6,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fieldmon.decisions.rings import around
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import Zones, best_zones, outline_of, outlines, ring_bound, whole_plot
 from fieldmon.plot.layout import rectangle
@@ -145,6 +146,16 @@ def test_what_is_infested_on_the_second_face_is_treated_as_on_the_first(sprayer,
               for one in (first, ~first)]  # fmt: skip
     assert bounds[0] == pytest.approx(bounds[1])
     assert bounds[0] > 0.0
+
+
+def test_a_ring_on_two_faces_reaches_the_plants_of_the_rows_on_both_sides():
+    one, two = (rectangle(5, 5, Planting(90.0, 4.0, 2.0, faces=k)) for k in (1, 2))
+    vines = np.flatnonzero(two.vine == np.arange(50))
+    for plant in range(25):
+        for ring in (1, 2):
+            reached = vines[around(one, plant, ring)]
+            assert around(two, int(vines[plant]), ring).tolist() == reached.tolist()
+    assert len(around(two, int(vines[12]), 1)) == 5
 
 
 def test_a_plant_is_spared_whose_second_face_is():

@@ -15,8 +15,8 @@ from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.history import made_by
 from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.shift_work import made_by
 from fieldmon.plot.robot import Robot, scout
 
 ON = date(2026, 4, 6)

@@ -46,3 +46,9 @@ def db():
     with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
         schema.lay_out(connection)
         yield connection
+
+
+@pytest.fixture
+def other(path, tmp_path):
+    """Give another copy of `path`."""
+    return shutil.copy(path, tmp_path / "other.gpkg")

@@ -18,6 +18,8 @@ from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import SKIPPED, Inspections
+from fieldmon.infestation.observations import Observations
+from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.monitoring.advice import Advice, AdviceSettings, _first
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.samplers.decide import Decide
@@ -66,6 +68,11 @@ def test_faces_are_counted_by_the_advice_as_by_the_status_and_that_is_said(seaso
     infested = pytest.approx(status.infested.expected)
     assert advice.zones.inside + advice.zones.outside == infested
     assert advice.plot.share * status.plants == infested
+    two.treat(BEGINS, 0.5, plants=np.isin(grid.vine, grid.vine[second[:6]]), product="soap")
+    treated = two.advice(BEGINS, AdviceSettings(0.05, costs=CHEAP))
+    assert any(one.startswith("6 plants were treated that day") for one in treated.reasons())
+    assert two.log()[-1].what["said"].startswith("soap on 0.00")
+    assert ", 6 plants in row" in two.log()[-1].what["said"]
     said = "Each face counts as a plant"
     assert said in advice.said_of_zones()[-1]
     assert said not in " ".join(season.advice(BEGINS).sentences())
@@ -118,6 +125,26 @@ def test_a_plot_that_is_left_says_where_nobody_has_inspected(tmp_path):
     assert advice.not_reached.share == np.mean(away) > 0.1
     assert f"{100 * np.mean(away):.0f} % of the plants are more than" in advice.reasons()[1]
     assert made.advice(BEGINS, AdviceSettings(0.0001, costs=CHEAP)).not_reached is None
+
+
+def test_a_plot_that_is_left_says_that_few_inspections_tell_little(tmp_path):
+    settings = MonitoringSettings(BEGINS)
+    made = Season.create(tmp_path / "season.gpkg", a_plot(), Observations.none(), settings)
+    made.record(Inspections.of([9], [0], np.datetime64(BEGINS)), "day")
+    asked = AdviceSettings(0.1, costs=CHEAP)
+    (said,) = (one for one in made.advice(BEGINS, asked).reasons() if "By themselves" in one)
+    assert said.startswith("1 plant was inspected. By themselves they do not tell: about ")
+    assert "rests mostly on our default, 1 % infested where nothing is known" in said
+    few = made.advice(BEGINS, asked).few
+    detects = made.history.mean_detection(0)
+    by_chance = (1 - 0.1 * detects) ** np.array([few.enough, few.enough - 1])
+    assert by_chance[0] <= 1 - asked.sure < by_chance[1]
+    told = replace(made.settings, prior=replace(made.settings.prior, background_chance=0.011))
+    made.change(told, made.settings)
+    assert "mostly on what was told before" in made.advice(BEGINS, asked).few.sentence()
+    clean = np.arange(few.enough), np.zeros(few.enough)
+    made.record(Inspections.of(*clean, np.datetime64(BEGINS)), "more")
+    assert made.advice(BEGINS, asked).few is None
 
 
 def test_of_few_plants_out_of_reach_nothing_is_said(season):

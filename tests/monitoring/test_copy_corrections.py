@@ -4,10 +4,10 @@ import shutil
 
 import pytest
 
-from fieldmon.errors import ContradictionError, FileProblem, SettingError
+from fieldmon.errors import ContradictionError, FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season
-from tests.monitoring.seasons import BEGINS, three_results
+from tests.monitoring.seasons import three_results
 from tests.monitoring.test_outside_changes import moved_to, outside
 
 
@@ -96,12 +96,6 @@ def test_a_deleted_finding_is_found_where_the_season_has_other_numbers_by_now(pa
     assert season.take_corrections(brought, "brought.gpkg", "Ann") == 0
 
 
-def test_corrections_have_an_author(path, copy):
-    outside(copy, "DELETE FROM inspections WHERE fid = 3")
-    with pytest.raises(SettingError, match="--who"):
-        Season(path).take_corrections(copy, "copy.gpkg", " ")
-
-
 def test_what_makes_no_sense_or_is_not_here_is_refused_whole(path, copy):
     outside(copy, "DELETE FROM inspections WHERE fid = 2",
             "UPDATE inspections SET result = 'maybe' WHERE fid = 1")  # fmt: skip
@@ -113,11 +107,3 @@ def test_what_makes_no_sense_or_is_not_here_is_refused_whole(path, copy):
     season.undo()
     with pytest.raises(FileProblem, match="no longer"):
         season.take_corrections(copy, "copy.gpkg", "Ann")
-
-
-def test_a_file_that_is_no_copy_of_the_season_has_none(path, tmp_path):
-    from tests.monitoring.seasons import a_season
-
-    other = a_season(tmp_path / "other.gpkg")
-    assert Season(path).corrections_in(other.path) == ()
-    assert other.status(BEGINS).found == 0

@@ -1,11 +1,14 @@
 """Results that hold in place of what they contradict, and come back when that is undone."""
 
+import sqlite3
+from contextlib import closing
 from datetime import date
 
 import numpy as np
 import pytest
 
 from fieldmon.cli.status import _contradicting
+from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
@@ -35,6 +38,18 @@ def test_the_log_names_each_correction_and_of_two_faces_which(tmp_path, face):
     assert season.log()[-1].sentence(5).endswith("; ...")
     season.record(said(plants[:1], [CLEAN]), "again", confirmed=True)
     assert f"Row 1, plant 1{named}: found, clean" in next(_contradicting(season, BEGINS))
+    assert season.undo() == f"Undone: row 1, plant 1{named} on {BEGINS} (clean)."
+    season.record(said(grid.twin[[7]] if face == 2 else [7], [CLEAN]), "eighth")
+    assert season.undo() == f"Undone: row 1, plant 8{named} on {BEGINS} (clean)."
+    again = season.redo(season.batches()[0].number)
+    assert again == f"Counts again: row 1, plant 8{named} on {BEGINS} (clean)."
+    with closing(sqlite3.connect(season.path)) as db:
+        db.execute("UPDATE inspections SET result = 'flown' WHERE undone = 0 AND number = 2")
+        db.commit()
+    with pytest.raises(FileProblem, match=rf"at row 1, plant 2{named} on {BEGINS}\) was changed"):
+        Season(season.path).status(BEGINS)
+    with pytest.raises(FileProblem, match=rf"at row 1, plant 2{named} on {BEGINS}\) was changed"):
+        Season(season.path).correct("Ann")
 
 
 def test_one_stop_of_a_batch_is_corrected_and_the_others_stay(season: Season):

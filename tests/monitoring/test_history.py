@@ -14,7 +14,8 @@ from fieldmon.infestation.level_range import LevelRange
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.monitoring.history import BeliefSettings, History, Shift, Treatment
+from fieldmon.monitoring.history import BeliefSettings, History, Treatment
+from fieldmon.monitoring.shift_work import Shift
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers.base import NEVER
@@ -215,28 +216,11 @@ def test_the_scene_of_a_day_stands_where_and_when_its_last_inspection_was_made()
     assert scene.last_inspected[5] == 4
 
 
-def test_without_noted_times_the_work_took_what_driving_and_looking_cost():
-    scene = HISTORY.scene(SHIFT, 2, MORNING)
-    assert scene.at == 9
-    gone_s = SHIFT.robot.day_s - scene.seconds_left
-    assert gone_s > 2 * SHIFT.robot.visit_s
-    later = HISTORY.scene(SHIFT, 2, MORNING, now_s=SHIFT.starts_s + 3600.0)
-    assert later.seconds_left == SHIFT.robot.day_s - 3600.0
-    assert HISTORY.scene(SHIFT, 2, MORNING, now_s=86_000.0).seconds_left == 0.0
-
-
 def test_nobody_is_sent_again_on_that_day_or_the_next_to_a_plant_that_could_not_be_inspected():
     days = [HISTORY.scene(SHIFT, day, MORNING) for day in range(3)]
     assert [scene.last_inspected[7] for scene in days] == [0, 1, NEVER]
     assert days[0].skipped is days[2].skipped is None
     assert np.flatnonzero(days[1].skipped).tolist() == [7]
-
-
-def test_a_day_on_which_nothing_was_done_begins_at_the_gate_or_where_one_stayed():
-    assert HISTORY.scene(SHIFT, 3, MORNING).at == GATE
-    stays = Shift(PLOT.aisles, Robot(hours=2.0, returns=False))
-    assert HISTORY.scene(stays, 3, MORNING).at == 9
-    assert History(PLOT.grid, BEGINS, MORNING).scene(stays, 0, MORNING).at == GATE
 
 
 def test_an_impossible_efficacy_is_refused():
@@ -298,7 +282,7 @@ def test_a_day_and_all_before_it_are_what_going_through_the_looks_says(seed, who
         assert scene.trail.tolist() == trail
         assert scene.at == (own[-1][0] if own else trail[-1] if trail else GATE)
         gone_s = stays.robot.day_s - scene.seconds_left
-        begun_s = history.begun_s(stays, day, who)
+        begun_s = history.work(stays, who).begun_s(day)
         if own and np.isfinite(own[-1][3]):
             assert gone_s == min(own[-1][3] - begun_s, stays.robot.day_s)
         elif own:

@@ -14,8 +14,8 @@ from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Season, inspection_lots, repeated_recordings, schema
 from fieldmon.monitoring.inspection_import import read_brought
+from tests.monitoring.merging.copies import content
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
-from tests.monitoring.test_merging import content
 
 DAY = np.datetime64(BEGINS)
 

@@ -197,6 +197,26 @@ def test_what_is_no_file_or_no_season_cannot_be_saved(tmp_path):
     assert not (tmp_path / "x.gpkg").exists()
 
 
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ("UPDATE fieldmon SET value = '999' WHERE key = 'version'", "made by a newer fieldmon"),
+        ("UPDATE settings SET value = json_set(value, '$.colour', 1) WHERE name = 'robot'",
+         "does not know robot colour. The file was probably written by a newer fieldmon"),
+    ],
+)  # fmt: skip
+def test_what_a_newer_fieldmon_wrote_is_not_said_to_be_lost(path, tmp_path, change, says):
+    with closing(sqlite3.connect(path)) as db:
+        db.execute(change)
+        db.commit()
+    try:
+        said = salvage(path, tmp_path / "rescued.gpkg").why
+    except FileProblem as problem:
+        said = str(problem)
+        assert not (tmp_path / "rescued.gpkg").exists()
+    assert says in said
+
+
 def test_a_file_that_exists_is_never_overwritten(path, tmp_path):
     (tmp_path / "mine.gpkg").write_text("mine")
     with pytest.raises(FileProblem, match="exists already"):

@@ -1,17 +1,13 @@
 """What was found is recorded once, and can be taken back."""
 
 from dataclasses import replace
-from datetime import time
 
 import numpy as np
 import pytest
 
 from fieldmon.errors import ContradictionError, ObservationError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
-from tests.monitoring.seasons import (
-    BEGINS,
-    some_results,
-)
+from tests.monitoring.seasons import BEGINS, some_results
 
 
 def test_the_same_results_twice_change_nothing(season):
@@ -90,18 +86,6 @@ def test_one_inspection_can_be_undone(season):
     assert "found" in season.undo(inspection=fid)
     assert len(season.history.inspections) == 4
     assert season.status(BEGINS).found == 0
-
-
-def test_undoing_one_that_was_corrected_says_that_it_counts_again_as_it_was(season):
-    plants, on = np.arange(2), np.datetime64(BEGINS)
-    season.record(Inspections.of(plants, np.array([CLEAN, FOUND]), on, second=[100, 200]), "taps")
-    season.correct_time(2, time(7), "Ann")
-    said = season.undo(inspection=2)
-    assert said.startswith("Undone: the correction of row 1, plant 2 on 2026-04-06. As it was ")
-    assert "it counts again (found)" in said
-    assert season.history.inspections.second.tolist() == [100, 200]
-    assert season.undo(inspection=2) == "Undone: row 1, plant 2 on 2026-04-06 (found)."
-    assert season.history.inspections.second.tolist() == [100]
 
 
 def test_there_must_be_something_to_undo(season):

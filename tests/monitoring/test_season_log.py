@@ -6,7 +6,7 @@ import shutil
 import sqlite3
 from contextlib import closing
 from dataclasses import replace
-from datetime import date, timedelta
+from datetime import timedelta
 from hashlib import sha256
 
 import numpy as np
@@ -359,36 +359,6 @@ def test_a_batch_is_of_whom_its_entry_names(path):
     told, seen = season.batches(), [one for one in season.log() if one.kind == "seen"]
     assert [one.who for one in told][::-1][-2:] == [one.who for one in seen][-2:]
     assert [one.who for one in told][:2] == ["Dan", "Ann, Ben"]
-
-
-# what a log says of the 7th, with the settings (a letter) and the day on which it was said
-@pytest.mark.parametrize(
-    ("said", "by"),
-    [
-        ("", ""),
-        ("planned a 7, planned b 8", "b"),  # nothing was recorded
-        ("seen a 7, seen b 8", "a"),
-        ("planned a 7, seen a 7, planned b 7, seen b 7", "b"),  # planned anew, and worked on
-        ("planned a 7, seen a 7, planned b 7", "a"),
-        ("planned a 7, seen a 7, planned b 7, seen b 8", "a"),  # a late find
-        ("planned a 7, seen b 8, planned b 8, seen b 8", "a"),  # recorded the next day
-        ("seen a 7, planned b 8", "a"),
-    ],
-)
-def test_a_day_keeps_the_settings_that_it_was_worked_by(db, monkeypatch, said, by):
-    day = date(2026, 4, 7)
-    for k, one in enumerate(said.split(", ") if said else ()):
-        kind, chosen, on = one.split()
-        monkeypatch.setattr(season_log, "_canonical", _at(f"2026-04-0{on}T10:00:0{k}.000000Z"))
-        days = {"date": str(day)} if kind == "planned" else {"from": "2026-04-06", "to": str(day)}
-        season_log.append(db, kind, by={"robot": chosen}, **days)
-    worked = season_log.worked_by(db, day, LocalClock("UTC"))
-    assert worked == ({"robot": by} if by else None)
-    assert season_log.worked_by(db, date(2026, 4, 9), LocalClock("UTC")) is None
-
-
-def _at(moment):
-    return lambda entry: json.dumps({**entry, "at": moment})
 
 
 def test_a_change_of_settings_is_told_from_what_to_what(path):

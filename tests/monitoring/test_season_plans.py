@@ -10,9 +10,9 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, SKIPPED, Inspections
 from fieldmon.monitoring import Season, scouts
 from fieldmon.monitoring.day_ahead import WorkPart, route_ahead
-from fieldmon.monitoring.history import Besides
 from fieldmon.monitoring.kept_routes import kept_last
 from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.shift_work import Besides
 from fieldmon.planning.members import person_key, team_of
 from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.local_clock import local_clock

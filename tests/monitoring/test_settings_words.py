@@ -8,7 +8,7 @@ import pytest
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import MonitoringSettings
 from fieldmon.monitoring.settings_words import taken_back, worker_in_words
-from fieldmon.planning.members import TeamMember, team_of
+from fieldmon.planning.members import TeamMember, Teamwork, team_of
 from fieldmon.plot.robot import Robot, Viewpoints, scout
 
 FIRST = MonitoringSettings(date(2026, 11, 1))
@@ -31,8 +31,8 @@ ANN = TeamMember("Ann", scout())
         ({"robot": Robot(returns=False)},
          "way back to the gate within the hours no (now yes again)"),
         ({"robot": Robot(viewpoints=Viewpoints(((40.0, 0.84),), 1.0))},
-         ("detection by seconds 40 s 84 %; > 100 % "
-         "(now 20 s 50 %; 25 s 60 %; 30 s 69 %; 35 s 77 %; 40 s 84 %; > 90 % again)")),
+         ("detection by seconds 84 % in 40 s to 100 % in over 40 s "
+         "(now 50 % in 20 s to 90 % in over 40 s again)")),
         ({"robot": Robot(detection=0.84)}, "robot detection 0.84 (now none again)"),
         ({"prior": replace(FIRST.prior, edge_chance=0.1)},
          "prior edge chance 0.1 (now 0.05 again)"),
@@ -49,6 +49,13 @@ def test_what_is_taken_back_is_named_with_what_counts_again(chosen, said):
     changed = replace(FIRST, **chosen)
     assert taken_back(changed, FIRST) == f"The last change was taken back: {said}."
     assert taken_back(FIRST, changed) != taken_back(changed, FIRST)
+
+
+def test_how_a_team_works_together_is_said_in_words():
+    told = replace(FIRST, team=(ANN,), teamwork=Teamwork(contact_s=600.0, passing_m=5.0))
+    said = "contact every 10 min (now at once again), headland to pass each other 5 m"
+    assert said in taken_back(told, replace(FIRST, team=(ANN,)))
+    assert "contact" not in taken_back(told, FIRST)  # it goes with the team
 
 
 def test_of_a_member_all_is_told_that_is_not_usual():

@@ -113,7 +113,8 @@ def full_field():
 
 @pytest.mark.parametrize("faces", [1, 2])
 def test_a_plot_comes_back_exactly_as_it_was_laid(db, faces):
-    plot = Plot.of(full_field(), Planting(row_bearing_deg=12.5, row_spacing_m=4.0, faces=faces))
+    by_hand = Planting(row_bearing_deg=12.5, row_spacing_m=4.0, faces=faces, headland_m=3.0)
+    plot = Plot.of(full_field(), by_hand)
     taken = Assumed("plant_spacing_m", 3.0), Assumed("row_bearing_deg", 72.3)
     plot = replace(plot, assumed=taken[:faces])
     check_comes_back(db, plot)
@@ -168,7 +169,7 @@ def test_measured_plants_come_back_with_their_names_and_those_of_their_rows_and_
 def check_comes_back(db, plot):
     tables.write_plot(db, plot)
     again = tables.read_plot(db)
-    assert again.assumed == plot.assumed
+    assert (again.assumed, again.headland_m) == (plot.assumed, plot.headland_m)
     assert [block.content for block in again.field.blocks] == [
         block.content for block in plot.field.blocks
     ]

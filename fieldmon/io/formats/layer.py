@@ -13,8 +13,11 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import dropped, seen
 from fieldmon.io.parse.columns import find, recognised
+from fieldmon.io.parse.pest_names import pest_key
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from numpy.typing import NDArray
 
     from fieldmon.io.import_report import ImportMessage
@@ -99,8 +102,11 @@ class Layer:
             messages.append(dropped(said, f"feature {broken[0] + 1}"))
         return replace(self, geometry=flat, messages=(*self.messages, *messages))
 
-    def where(self, condition: str | None) -> Layer:
-        """Return the features that fulfil ``column=value``; all of them for None."""
+    def where(self, condition: str | None, pests: Collection[str] = ()) -> Layer:
+        """Return the features that fulfil ``column=value``; all of them for None.
+
+        A pest is meant in all its spellings, where the column is called so or is one of `pests`.
+        """
         if condition is None:
             return self
         column, _, value = condition.partition("=")
@@ -110,7 +116,9 @@ class Layer:
             like = self._with_value(value.strip())
             offers = tuple(f"{name}={value.strip()}" for name in like or asked.choices)
             raise ChoiceNeeded(asked.args[0], "where", offers) from None
-        kept = np.array([text(v) == value.strip() for v in named], dtype=bool)
+        of_pests = find("species", [column.strip()]) or column.strip() in pests
+        key = pest_key if of_pests else str
+        kept = np.array([key(text(v)) == key(value.strip()) for v in named], dtype=bool)
         if not kept.any():
             offers = tuple(f"{column}={v}" for v in sorted({text(v) for v in named})[:50])
             raise ChoiceNeeded(

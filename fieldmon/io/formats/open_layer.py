@@ -57,7 +57,8 @@ def open_layer(source: Source, options: ReadOptions, workroom: Workroom) -> Laye
     member = choose_member(found, options.member, source_name(source))
     staged = StagedMember(member, workroom.stage(member), member.name)
     layer = _read(staged, options).with_roles(options.columns)
-    return layer.where(options.where).checked()
+    pests = [name for role, name in options.columns if role == "species"]
+    return layer.where(options.where, pests).checked()
 
 
 def _data_sets(found: tuple[Member, ...]) -> tuple[Member, ...]:

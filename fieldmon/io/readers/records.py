@@ -68,7 +68,7 @@ from fieldmon.io.readers.inspection_file.columns import names_in, own_column
 from fieldmon.io.readers.inspection_file.results import results_in_names
 from fieldmon.io.readers.other_counts import about_other_counts
 from fieldmon.io.readers.placed_twice import placed_twice
-from fieldmon.io.readers.species import mixed_species
+from fieldmon.io.readers.species import mixed_species, spelt_in
 from fieldmon.io.readers.visits import VISIT_S, first_of_visits, same_places, telling
 from fieldmon.io.readers.wide_tables import by_day
 from fieldmon.plot.local_clock import clock_at
@@ -133,7 +133,7 @@ def _records_and_plots(
         day,
         count=counts.number,
         accuracy_m=accuracy_m,
-        species=table.texts("species"),
+        species=_species(table),
         stage=table.texts("stage"),
         leaves_sampled=table.numbers("leaves"),
     )
@@ -153,6 +153,13 @@ def _records_and_plots(
     more = (*mixed, *counted_once, *_same_visit(once, place[first]))
     messages += (*about_confidences(layer.columns, table.used()),)
     return Imported(once, (*messages, *more)), None if found.plot is None else found.plot[first]
+
+
+def _species(table: _Table) -> NDArray[np.str_]:
+    """Return the pest of each record ``(n,)``, each in one spelling."""
+    told = table.texts("species").tolist()
+    usual = spelt_in(told)
+    return np.array([usual.get(name, name) for name in told], dtype=np.str_)
 
 
 def _accuracy_m(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.infestation.observations import ABSENT
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful
+from fieldmon.io.parse.pest_names import about_spellings, usual_spellings
 from fieldmon.io.parse.result_words import meaning
 from fieldmon.io.parse.values import is_missing
 
@@ -14,19 +15,27 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
+def spelt_in(cells: Iterable[str]) -> dict[str, str]:
+    """Return the usual spelling of each species, by every one in cells; "none" is none."""
+    return usual_spellings(c for c in cells if not is_missing(c) and meaning(c) != ABSENT)
+
+
 def species_in(cells: Iterable[str]) -> list[str]:
-    """Return the species that cells name, each once; "none" is none."""
-    return sorted(c for c in set(cells) if not is_missing(c) and meaning(c) != ABSENT)
+    """Return the species that cells name, each once, however it is spelt; "none" is none."""
+    return sorted(set(spelt_in(cells).values()))
 
 
 def mixed_species(name: str, cells: Iterable[str]) -> list[ImportMessage]:
-    """Return a doubt where the cells of column `name` hold several species, each to be chosen."""
-    kinds = species_in(cells)
+    """Return a doubt where the cells of column `name` hold several species, each to be chosen.
+
+    What was taken for another spelling of one is said.
+    """
+    spelt = spelt_in(cells)
+    kinds, said = sorted(set(spelt.values())), about_spellings(name, spelt)
     if len(kinds) < 2:
-        return []
+        return said
     shown = first_few(kinds, 5)
     only = tuple(f"{name}={kind}" for kind in kinds)
     remedy = Remedy("where", only[0], worded("Only {species}", species=kinds[0]), only[1:])
-    return [
-        doubtful(worded("{n} species are mixed: {shown}.", n=len(kinds), shown=shown), name, remedy)
-    ]
+    mixed = worded("{n} species are mixed: {shown}.", n=len(kinds), shown=shown)
+    return [*said, doubtful(mixed, name, remedy)]

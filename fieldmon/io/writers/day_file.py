@@ -314,6 +314,11 @@ def faces(grid: PlantGrid, plants: NDArray[np.integer]) -> NDArray[np.int64]:
 def with_face(grid: PlantGrid, plant: int, number: int) -> str:
     """Return a plant's number in its row, with the face where it has two, for a sentence."""
     (face,) = faces(grid, np.array([plant])).tolist()
+    return of_face(number, face)
+
+
+def of_face(number: int, face: int) -> str:
+    """Return a plant's number in its row with its face, 1 or 2; 0: it has but one."""
     return worded("{number}, face {face}", number=number, face=face) if face else str(number)
 
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.arguments import array_of, shown
+from fieldmon.compute.arguments import shown
+from fieldmon.compute.array_arguments import array_of
 from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted

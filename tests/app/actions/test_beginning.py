@@ -177,7 +177,7 @@ SCATTERED = np.random.default_rng(1).uniform([35.1501, 30.3601], [35.1511, 30.36
 PLANTED = {
     "blocks": (
         {"blocks": (Block("west", WEST, 20.0, 3.0, 2.0), Block("east", EAST))},
-        {"row_spacing_m": 5.0},
+        {"row_spacing_m": 5.0, "headland_m": 6.5},
     ),
     "one bent row": ({"row_lines": MultiLineString([BENT])}, {"row_spacing_m": 3.5}),
     "a bent row a block": (
@@ -188,7 +188,7 @@ PLANTED = {
     "no rows": ({"plants": SCATTERED, "in_rows": False}, {}),
     "by hand": (
         {}, {"row_bearing_deg": 200.0, "row_spacing_m": 2.5, "plant_spacing_m": 1.5, "faces": 2,
-             "half_canopy_m": 0.4},
+             "half_canopy_m": 0.4, "headland_m": 2.0},
     ),
 }  # fmt: skip
 
@@ -211,6 +211,7 @@ def test_another_season_of_one_opened_by_its_address_is_laid_as_that_one(kind, s
     for one in ("in_rows", "half_canopy_m", "row_spacing_m", "plant_spacing_m"):
         assert getattr(after.grid, one) == pytest.approx(getattr(before.grid, one)), one
     assert [one.name for one in after.field.blocks] == [one.name for one in before.field.blocks]
+    assert after.headland_m == before.headland_m
 
 
 def test_the_gate_is_set_on_the_map_before_a_season_begins(app, tmp_path):

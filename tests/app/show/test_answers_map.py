@@ -1,5 +1,6 @@
 """Answers lie on one map under their numbers; a tap on any part of one is that answer."""
 
+import numpy as np
 import pytest
 
 from app.show import answers_map
@@ -51,6 +52,14 @@ def test_one_place_is_shown_from_so_far_that_its_country_is_seen():
     near = answers_map.content((HERE, NOWHERE), dark=False)
     assert near.bounds[2] - near.bounds[0] < 0.01
     assert near.legend == [], "an empty legend"
+
+
+@pytest.mark.parametrize("strip", [(5.0, 29.9, 35.0, 30.0), (34.9, 15.0, 35.0, 45.0)])
+def test_answers_in_a_line_stand_on_a_map_and_no_strip(strip):
+    (zones,) = answers_map.ground_of(np.array(strip), dark=False)
+    corners = np.array([corner for row in zones.data for corner in row["p"]])
+    wide, high = np.ptp(corners, axis=0)
+    assert min(wide, high) >= 0.45 * max(wide, high)
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,9 @@ def test_features_are_chosen_by_what_a_column_holds():
     assert ROWS.where("NAME = south").columns["n"].tolist() == [2.0]
     assert ROWS.where("n=2").columns["name"].tolist() == ["south"]
     assert ROWS.where(None) is ROWS
+    pests = Layer("x", {"pest": column(["Mite", "mite ", "thrips"])})
+    assert len(pests.where("pest=mite")) == 2
+    assert len(Layer("x", {"n": pests.columns["pest"]}).where("n=mite", ["n"])) == 2
 
 
 def test_a_choice_that_fits_nothing_is_a_question_with_what_there_is():

@@ -417,6 +417,9 @@ def test_several_species_are_a_question(elsewhere):
     assert asked.value.choices == ("species=mite", "species=thrips")
     options = InspectionOptions().choose(asked.value.option, asked.value.choices[0])
     assert read(text.format(elsewhere), options).value.plant.tolist() == [7]
+    spelt = read(text.format(elsewhere).replace("thrips", "Mites"))
+    assert spelt.value.plant.tolist() == [7, elsewhere]
+    assert any("Mites and mite were taken for one pest" in m.sentence for m in spelt.messages)
     as_one = read(text.format(elsewhere), InspectionOptions().choose("columns", "species="))
     assert as_one.value.plant.tolist() == [7, elsewhere]
 

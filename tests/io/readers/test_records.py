@@ -261,6 +261,10 @@ def test_several_species_are_doubted_and_each_can_be_chosen_alone():
     (doubt,) = [m for m in records.messages if "species are mixed" in m.sentence]
     assert doubt.remedy.choices == ("species=aphid", "species=mite")
     assert "mixed" not in sentences(read(count=[1, 2], species=["mite", ""]))
+    one = read(count=[1, 2, 3], species=["mite", "Mite", "mite"])
+    assert "mixed" not in sentences(one)
+    assert "Mite and mite were taken for one pest" in sentences(one)
+    assert one.value.species.tolist() == ["mite"] * 3
 
 
 def test_what_else_a_record_knows_comes_with_it():

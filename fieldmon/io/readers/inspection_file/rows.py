@@ -19,6 +19,7 @@ from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, guessed, seen
 from fieldmon.io.options import source_name
 from fieldmon.io.parse.columns import is_position, plain
+from fieldmon.io.parse.pest_names import about_spellings
 from fieldmon.io.parse.result_words import gone_note
 from fieldmon.io.readers.inspection_file.columns import (
     columns_of,
@@ -33,7 +34,7 @@ from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
 from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in, unknown_faces
 from fieldmon.io.readers.inspection_file.results import results_in
 from fieldmon.io.readers.inspection_file.times import times_in
-from fieldmon.io.readers.species import species_in
+from fieldmon.io.readers.species import spelt_in
 from fieldmon.io.readers.visits import telling
 from fieldmon.io.readers.wide_tables import by_day, by_plant
 
@@ -124,8 +125,8 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
         plot_column=np.full(len(layer), plot or ""),
     )
     kept = whole.take(said)
-    _of_one_pest(columns.species, texts_in(layer, columns.species)[said])
-    every = (*layer.messages, *messages, *results.messages, *more, *times.messages)
+    spelt = _of_one_pest(columns.species, texts_in(layer, columns.species)[said])
+    every = (*layer.messages, *messages, *results.messages, *more, *times.messages, *spelt)
     return Imported(kept, every)
 
 
@@ -180,14 +181,15 @@ def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) 
     return np.array(cells or [""] * len(layer), dtype=np.str_)
 
 
-def _of_one_pest(name: str | None, species: NDArray[np.str_]) -> None:
+def _of_one_pest(name: str | None, species: NDArray[np.str_]) -> list[ImportMessage]:
     """Ask for one pest where a column names several: a season is of one."""
-    kinds = species_in(species.tolist()) if name else []
+    if not name:
+        return []
     # a figure is no pest's name
-    kinds = [kind for kind in kinds if not kind.replace(".", "", 1).isdecimal()]
-    kinds = [*{" ".join(kind.casefold().split()): kind for kind in reversed(kinds)}.values()][::-1]
+    spelt = spelt_in(c for c in species.tolist() if not c.replace(".", "", 1).isdecimal())
+    kinds = sorted(set(spelt.values()))
     if len(kinds) < 2:
-        return
+        return about_spellings(name, spelt)
     raise ChoiceNeeded(
         worded(
             "Inspections must be of one pest, but column {name!r} names {n}: {shown}. Choose one, "

@@ -1,0 +1,182 @@
+"""Arrays that a caller of the library hands over: what they must hold, and how many of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fieldmon.compute.arguments import shown
+from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+    from typing import TypeVar
+
+    from numpy.typing import NDArray
+
+    K = TypeVar("K", np.float64, np.bool_)
+
+
+def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDArray[K]:
+    """Return an array of numbers, or of True and False; raise `SettingError` for anything else.
+
+    Parameters
+    ----------
+    kind
+        ``np.float64`` or ``np.bool_``: numbers are not taken for True and False.
+    what
+        What is asked for: ``"A risk map"``.
+    given
+        What was handed over.
+    instead
+        What to do.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> array_of(np.float64, "A risk map", [0.1, None, 0.3])
+    array([0.1, nan, 0.3])
+    >>> array_of(np.bool_, "What was treated", [True, False])
+    array([ True, False])
+    """
+    held = "True or False" if kind is np.bool_ else "numbers"
+    try:
+        array = np.asarray(given)
+        if kind is not np.bool_ and array.dtype.kind in "biufO":
+            array = array.astype(kind)
+    except (TypeError, ValueError, OverflowError):
+        array = None
+    if array is None or array.dtype != kind:
+        sentence = f"{what} must hold {held}, but {shown(given)} does not. {instead}"
+        raise SettingError(sentence.rstrip())
+    return array
+
+
+def plants_marked(
+    what: str, given: object, n: int, wrong: Callable[[int], str]
+) -> NDArray[np.bool_]:
+    """Return which of n plants are marked, ``(n,)``; raise `SettingError` for anything else.
+
+    Parameters
+    ----------
+    what
+        What is asked for: ``"The mask of treated plants"``.
+    given
+        What was handed over.
+    n
+        How many plants there are.
+    wrong
+        What to say where so many are marked or not, instead of n.
+    """
+    marked = array_of(
+        np.bool_, what, given, f"Of plants by their numbers give np.isin(np.arange({n}), numbers)."
+    )
+    if marked.shape != (n,):
+        raise SettingError(wrong(marked.size))
+    return marked
+
+
+def entries_of(what: str, which: Any, n: int) -> Any:  # noqa: ANN401 - an array or a slice
+    """Return what picks some of n entries; raise `SettingError` for anything else.
+
+    Parameters
+    ----------
+    what
+        What is picked: ``"Records"``.
+    which
+        Numbers of entries, a mask ``(n,)`` or a slice.
+    n
+        How many entries there are.
+
+    Examples
+    --------
+    >>> entries_of("Records", [True, False], 2)
+    array([ True, False])
+    """
+    if isinstance(which, slice):
+        return which
+    try:
+        picked = np.asarray(which)
+    except ValueError:
+        picked = np.empty(())
+    if picked.ndim == 1 and not picked.size:
+        return picked.astype(np.int64)
+    if picked.dtype == bool and picked.shape == (n,):
+        return picked
+    if picked.ndim == 1 and picked.dtype.kind in "iu" and -n <= picked.min() <= picked.max() < n:
+        return picked
+    raise SettingError(
+        f"{what} must be picked by their numbers below {n}, or by True and False for each, but "
+        f"'which' is {shown(which)}."
+    )
+
+
+def must_be_shaped(whose: str, arrays: Mapping[str, tuple[Any, tuple[int, ...]]]) -> None:
+    """Raise `SettingError` unless arrays have their shapes.
+
+    Parameters
+    ----------
+    whose
+        Who has them, in the sentence: ``"A route's"``.
+    arrays
+        By name: the array, and the shape that it must have.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> must_be_shaped("A start's", {"chance": (np.zeros(3), (2,))})
+    Traceback (most recent call last):
+    ...
+    fieldmon.errors.SettingError: A start's chance must have the shape (2,), but it has (3,).
+    """
+    for name, (array, shape) in arrays.items():
+        if array.shape != shape:
+            raise SettingError(
+                f"{whose} {name} must have the shape {shape}, but it has {array.shape}."
+            )
+
+
+def must_hold_shapes(holder: object, whose: str, shapes: Mapping[str, tuple[int, ...]]) -> None:
+    """Raise `SettingError` unless a holder's arrays, by their names, have these `shapes`."""
+    must_be_shaped(whose, {name: (getattr(holder, name), one) for name, one in shapes.items()})
+
+
+def must_be_chances(what: str, chance: NDArray[np.float64]) -> None:
+    """Raise `SettingError` unless an array ``(n,)`` holds chances from 0 to 1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> must_be_chances("A start", np.array([0.1, 12.0]))
+    Traceback (most recent call last):
+    ...
+    fieldmon.errors.SettingError: A start must hold chances in 0..1, but plant 1 of 2 has 12.
+    """
+    wrong = ~((chance >= 0) & (chance <= 1))
+    if wrong.any():
+        plant = int(wrong.argmax())
+        raise SettingError(
+            f"{what} must hold chances in 0..1, but plant {plant} of {len(chance)} has "
+            f"{chance[plant]:g}."
+        )
+
+
+def chances_of(given: object, n: int) -> NDArray[np.float64]:
+    """Return what a caller hands over as the chances of n plants, ``(n,)``.
+
+    Raise `SettingError` unless it is a chance for each.
+
+    Examples
+    --------
+    >>> chances_of([0.1, 1], 2)
+    array([0.1, 1. ])
+    >>> chances_of([0.1], 2)
+    Traceback (most recent call last):
+    ...
+    fieldmon.errors.SettingError: A plot's chance map must have the shape (2,), but it has (1,).
+    """
+    chance = array_of(np.float64, "A chance map", given)
+    must_be_shaped("A plot's", {"chance map": (chance, (n,))})
+    must_be_chances("A chance map", chance)
+    return chance

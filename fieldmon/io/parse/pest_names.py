@@ -1,0 +1,52 @@
+"""One pest, however its name is written."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.wording import first_few, worded
+from fieldmon.io.import_report import ImportMessage, guessed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_BETWEEN = re.compile(r"[\s._-]+")
+# mites and mite, aphids and aphid; not Tetranychus and occidentalis
+_PLURAL = re.compile(r"(?<=[a-z]{3})(?<![isu])s$")
+
+
+def pest_key(name: str) -> str:
+    """Return what all ways of writing one pest have in common: ``spider mite``."""
+    return _PLURAL.sub("", _BETWEEN.sub(" ", name.casefold()).strip())
+
+
+def usual_spellings(names: Iterable[str]) -> dict[str, str]:
+    """Return the spelling of each pest that is most often written, by every one that is."""
+    often = Counter(names)
+    spelt = defaultdict[str, list[str]](list)
+    for name in often:
+        spelt[pest_key(name)].append(name)
+    return {
+        name: max(alike, key=lambda one: often[one]) for alike in spelt.values() for name in alike
+    }
+
+
+def about_spellings(column: str, usual: dict[str, str]) -> list[ImportMessage]:
+    """Return what pests of a column are taken for one that are written in several ways."""
+    others = defaultdict[str, list[str]](list)
+    for name, taken in usual.items():
+        if name != taken:
+            others[taken].append(name)
+    return [
+        guessed(
+            worded(
+                "{alike} and {pest} were taken for one pest.",
+                alike=first_few(sorted(alike), 5),
+                pest=pest,
+            ),
+            column,
+        )
+        for pest, alike in others.items()
+    ]

@@ -1,0 +1,115 @@
+"""Treatments of two copies: what both recorded counts once, what may be one is said."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from fieldmon.decisions.labels import plain_name
+from fieldmon.monitoring import schema, treatments
+from fieldmon.monitoring.merging import merged_rows
+from fieldmon.monitoring.merging.merged_recordings import recordings_of_both
+from fieldmon.monitoring.rows_that_count import COUNTS, TAKEN_BACK
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Iterator
+
+    from fieldmon.monitoring.merging.merged_rows import Numbers, TableRows
+    from fieldmon.monitoring.treatments import Row
+
+#: digests and batches of now of the treatments that a copy had
+Held = set[tuple[str | None, int | None]]
+#: what a label may fill in, in words
+_FILLED = dict(zip(treatments.FILLED, ("waiting days", "re-entry hours", "group"), strict=True))
+
+
+def merge(
+    db: sqlite3.Connection, copies: list[TableRows], numbers: list[Numbers]
+) -> tuple[list[Row], list[Held]]:
+    """Let `db` have the treatments of both; return them, and which each copy had."""
+    own = [copied["treatments"] for copied in copies]
+    treated = recordings_of_both(own, numbers, set(), {})
+    treatments.settle(treated)
+    merged_rows.write(db, schema.TREATMENTS, treated)
+    held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}
+            for rows, batch_of in zip(own, numbers, strict=True)]  # fmt: skip
+    return treated, held
+
+
+def changed(
+    db: sqlite3.Connection, applied: list[dict[int, frozenset[str]]]
+) -> tuple[int, tuple[set[int], set[int], set[int]]]:
+    """Return how many treatments are new, and the numbers of those that count no more.
+
+    `applied` is what those that counted in each copy are known by, by their numbers there; what
+    counts no more is told apart as in `MergedCopy.gone`.
+    """
+    counting = treatments.counting(db)
+    known, theirs = (frozenset().union(*one.values()) for one in applied)
+    n_new = sum(known.isdisjoint(marks) for marks in counting)
+    now = frozenset().union(*counting)
+    here, there = ({n: marks for n, marks in one.items() if marks.isdisjoint(now)}
+                   for one in applied)  # fmt: skip
+    twice = {n for n, marks in here.items() if marks & theirs}
+    alone = {n for n, marks in there.items() if marks.isdisjoint(known)}
+    return n_new, ({*here} - twice, alone, twice)
+
+
+def alike_but_for_labels(treated: list[Row], held: list[Held]) -> Iterator[str]:
+    """Yield a sentence for each two treatments that say the same but for what a label may add.
+
+    One is of each copy: `held` says which each had. Where people said the same the second stands
+    back for the first; else nobody knows, and both count.
+    """
+    alike: dict[str, list[Row]] = {}
+    for row in treated:
+        if row["undone"] != TAKEN_BACK and row["digest"] is not None:
+            alike.setdefault(treatments.but_for_labels(row), []).append(row)
+    for one, other in (pair for rows in alike.values() for pair in combinations(rows, 2)):
+        of = [[(row["digest"], row["batch"]) in had for had in held] for row in (one, other)]
+        names = [name for name in treatments.FILLED if one[name] != other[name]]
+        if sorted(of) != [[False, True], [True, False]] or not names:
+            continue
+        here, there = (one, other) if of[0][0] else (other, one)
+        differ = ", ".join(
+            f"{_FILLED[name]} {_or_none(here[name])} here, {_or_none(there[name])} there"
+            for name in names
+        )
+        named = f"{one['product'] or 'a product that nobody named'} on {one['date']}"
+        counts = [row["undone"] for row in (one, other)].count(COUNTS)
+        if counts == 1 and treatments.known_by(one) & treatments.known_by(other):
+            yield (
+                f"The treatment with {named} was recorded in both, and labels added different "
+                f"values: {differ}. It counts once; the longer waits and all groups hold."
+            )
+        elif counts == 2:
+            old = any(row["by_label"] is None and row[name] is not None
+                      for row in (one, other) for name in names)  # fmt: skip
+            why = " (an earlier version did not note whether a label added that)" if old else ""
+            yield (
+                f"Treatments with {named}, batches {one['batch']} and {other['batch']}, say the "
+                f"same but for {differ}{why}. Both count; if they are one, undo a batch."
+            )
+
+
+def _or_none(value: object) -> str:
+    return "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def of_one_product(treated: list[Row], held: list[Held]) -> Iterator[tuple[int, int]]:
+    """Yield the numbers of each two treatments of one day and product that people may have doubled.
+
+    Both count, and one is of each copy: `held` is as above. What differs in what a label may add
+    alone is told there.
+    """
+    same: dict[tuple[str, str], list[tuple[int, Row, list[bool]]]] = {}
+    for number, row in enumerate(treated, 1):
+        of = [(row["digest"], row["batch"]) in had for had in held]
+        if row["undone"] == COUNTS and not all(of):
+            product = row["date"], plain_name(row["product"] or "")
+            same.setdefault(product, []).append((number, row, of))
+    for one, other in (pair for rows in same.values() for pair in combinations(rows, 2)):
+        alike = treatments.but_for_labels(one[1]) == treatments.but_for_labels(other[1])
+        if one[2] != other[2] and not alike:
+            yield one[0], other[0]

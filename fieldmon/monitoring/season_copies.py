@@ -1,0 +1,167 @@
+"""Other files that may be copies of a season, and what they hold taken in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.kinds import checked
+from fieldmon.errors import FileProblem
+from fieldmon.monitoring import cautions, label_table, scouts, season_log, treatments
+from fieldmon.monitoring.batches import more_in_words
+from fieldmon.monitoring.contradictions import contradictions
+from fieldmon.monitoring.merging import same_season
+from fieldmon.monitoring.merging.merge import Merged, merge_copies
+from fieldmon.monitoring.open_season import OpenSeason
+from fieldmon.monitoring.transactions import Store
+from fieldmon.plot.local_clock import local_clock
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from fieldmon.monitoring.merging.merge import MergedCopy
+    from fieldmon.monitoring.treatments import KeptTreatment
+
+#: why treatments do not count any more after merging, as `MergedCopy` has them
+_GONE = (
+    "counted here, but was undone there",
+    "counted there, but was undone here",
+    "counted in both, but each undid another recording of it",
+)
+
+
+@checked
+class SeasonCopies(OpenSeason):
+    """A season beside other files: whether they are copies of it, and what merging them brings."""
+
+    def is_copy(self, file: Path) -> bool:
+        """Return whether a file is this season or a copy of it, however far they went apart.
+
+        Seasons begun apart are no copies, even of one plot and one day. Nor is a copy any more that
+        looks for another pest, once nothing that counts stands in both.
+        """
+        if file.resolve() == self.path.resolve():
+            return True
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            try:
+                same_season.refuse_strangers(db, theirs)
+            except FileProblem:
+                return False
+            apart = same_season.are_of_two_pests(db, theirs)
+            return not apart or same_season.hold_in_common(db, theirs)
+
+    def is_of_one_plot(self, file: Path) -> bool:
+        """Return whether the season in a file has the same rows and plants as this one."""
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            return same_season.are_of_one_plot(db, theirs)
+
+    def is_of_another_pest(self, file: Path) -> bool:
+        """Return whether this and the season in a file name pests that differ."""
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            return same_season.are_of_two_pests(db, theirs)
+
+    def refuse_another_pest(self, file: Path) -> None:
+        """Raise `FileProblem` where the season in a file looks for another pest than this one."""
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            same_season.refuse_another_pest(db, theirs)
+
+    def treatments_alone_in(self, file: Path) -> list[tuple[str, str]]:
+        """Return product and day of the treatments that count in another season's file alone."""
+        with self.store.reading() as db, Store(file).reading() as theirs:
+            return treatments.counting_alone(db, theirs)
+
+    def merge(self, other: OpenSeason) -> Merged:
+        """Take in what another copy of this season holds: all that is in either, once each.
+
+        The other one stays as it is. Raise `FileProblem` if it is no copy of this season.
+        """
+        with self._lock, self.store.writing() as db:
+            held = self._inspections(db)
+            with other.store.reading(self.path) as theirs:
+                told = season_log.taken_in(db, theirs)
+                # what is told is noted in any case
+                was = None if told else season_log.states(db)
+                # nobody writes there from here on
+                contradict = contradictions(other.inspections, held)
+                clock = local_clock(self.plot.field)
+                here, there = (treatments.kept(one, self._inside, clock) for one in (db, theirs))
+                taken = merge_copies(db, theirs)
+            self._refresh(db)
+            # what either copy took back or corrected contradicts nothing
+            contradict = contradict.still(self._inspections(db))
+            ended = _ended(here, there, taken)
+            states, labels = season_log.states(db), label_table.read(db)
+            if states != was:
+                _log_merged(db, states, told, taken, ended)
+            kept = treatments.by_vine(treatments.kept(db, self._inside, clock), self.plot.grid)
+            twice = _recorded_twice(kept, taken)
+            overlaps = scouts.overlaps(db, int(self.plant_numbers.line.max()))
+        no_more = (
+            cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in ended
+        )
+        return Merged(
+            new=taken.new,
+            contradictions=(
+                *contradict.sentences(self.plot.grid),
+                *taken.differing,
+                *twice,
+                *no_more,
+            ),
+            taken_back=taken.taken_back,
+            moved=bool(taken.numbers),
+            treatments=taken.treatments,
+            codes=taken.codes,
+            overlaps=overlaps,
+            chosen=taken.chosen,
+            noted=taken.noted,
+        )
+
+
+def _ended(
+    here: Sequence[KeptTreatment], there: Sequence[KeptTreatment], taken: MergedCopy
+) -> list[tuple[KeptTreatment, str]]:
+    """Return the treatments of two copies that do not count any more, each with why."""
+    return [
+        (one, why)
+        for why, counted, gone in zip(_GONE, (here, there, here), taken.gone, strict=True)
+        for one in counted
+        if one.number in gone
+    ]
+
+
+def _log_merged(
+    db: sqlite3.Connection,
+    states: dict[str, str],
+    told: list[dict[str, str]],
+    taken: MergedCopy,
+    ended: list[tuple[KeptTreatment, str]],
+) -> None:
+    """Note that another copy was taken in, with the entries that its log `told` beside ours."""
+    undone = [
+        f"{one.application.product or 'a product that nobody named'} on {one.on}"
+        for one, why in ended
+        if why != _GONE[1]
+    ]
+    season_log.append(
+        db,
+        "merged",
+        states=states,
+        new=taken.new,
+        entries=len(told),
+        theirs=told,
+        moved=bool(taken.numbers),
+        numbers=taken.numbers,
+        undone=undone,
+        chosen=taken.chosen,
+        more=str(more_in_words(taken.noted)),
+    )
+
+
+def _recorded_twice(counting: Sequence[KeptTreatment], taken: MergedCopy) -> list[str]:
+    """Return a sentence for each two treatments that may be one, recorded in either copy."""
+    by_number = {one.number: one for one in counting}
+    said = (
+        cautions.same_plants_twice(by_number[one], by_number[other]) for one, other in taken.alike
+    )
+    return [one for one in said if one]

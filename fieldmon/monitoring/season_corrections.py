@@ -1,0 +1,187 @@
+"""What was recorded wrong in a season: corrected here, or taken from another program or a copy."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, time
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.kinds import checked
+from fieldmon.compute.wording import worded
+from fieldmon.errors import SettingError
+from fieldmon.monitoring import batches, copy_corrections, corrections, outside_changes, season_log
+from fieldmon.monitoring.open_season import settings_of
+from fieldmon.monitoring.people import written_in
+from fieldmon.monitoring.season_copies import SeasonCopies
+from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.transactions import Store
+from fieldmon.plot.local_clock import local_clock
+
+if TYPE_CHECKING:
+    import sqlite3
+    from datetime import date
+    from pathlib import Path
+
+
+@checked
+class SeasonCorrections(SeasonCopies):
+    """The corrections of a season; each time they are a batch, which can be undone."""
+
+    def correct(self, who: str, *, confirmed: bool = False) -> int:
+        """Take what another program changed of inspections as corrections; return how many.
+
+        They are a batch of their own, of `who` corrects; undoing it brings back what was before.
+        What says nothing else than before is put back as it was, and is none. Raise `FileProblem`
+        if more than inspections was changed, or what makes no sense;
+        `ContradictionError` if they contradict what else is recorded and are not `confirmed`.
+        """
+        with self._lock, self.store.writing() as db:
+            outside_changes.refuse_more(db)
+            settings, plot = settings_of(db), (self.plot.grid, self.plant_numbers)
+            who = written_in(db, who)
+            taken = outside_changes.correct(db, plot, settings, who)
+            self._may_be_taken(db, taken, confirmed=confirmed)
+            self._corrected(db, taken, who)
+        return len(taken)
+
+    def correct_time(
+        self,
+        inspection: int,
+        at: time | None,
+        who: str,
+        on: date | None = None,
+        *,
+        confirmed: bool = False,
+    ) -> str:
+        """Give one inspection another day, or another time of its day; return what was done.
+
+        That is a batch of its own; undoing it brings back the time before.
+
+        Parameters
+        ----------
+        inspection
+            Its number (fid) in the season's file.
+        at
+            The local time that is right, none to come; None: as it is.
+        who
+            Who corrects.
+        on
+            The day that is right, of the season and not to come; None: as it is.
+        confirmed
+            Whether it counts though it contradicts what else is recorded of the plant and day.
+
+        Raises
+        ------
+        ContradictionError
+            If it does and nobody confirmed it.
+        SettingError
+            If there is no such inspection that counts, no such day or time (yet), or nothing
+            to correct.
+        """
+        with self._writing() as db:
+            plot, settings = (self.plot.grid, self.plant_numbers), settings_of(db)
+            if on is not None:
+                settings.day(on)
+            day, held_at = corrections.made(db, inspection)
+            self._must_have_come(on or day, at or held_at)
+            if on in {None, day} and at in {None, held_at}:
+                raise SettingError(
+                    worded(
+                        "A correction must say something else than what is recorded, but "
+                        "inspection {inspection} is of {when} already: there is nothing to "
+                        "correct.",
+                        inspection=inspection,
+                        when=str(day) if held_at is None else f"{day} {held_at:%H:%M}",
+                    )
+                )
+            who, when = written_in(db, who), (on, None if at is None else seconds(at))
+            said = corrections.retime(db, inspection, when, plot, settings, who)
+            self._may_be_taken(db, said, confirmed=confirmed)
+            self._corrected(db, said, who, here=True)
+        return said[0]
+
+    def _must_have_come(self, on: date, at: time | None) -> None:
+        """Raise `SettingError` if a moment, or a whole day, lies ahead of the plot's clock.
+
+        So it does if that clock never showed it.
+        """
+        clock = local_clock(self.plot.field)
+        now = clock.now()
+        told = datetime.combine(on, at or time())
+        if at is not None and clock.at(clock.moment(on, at).astimezone(UTC)) != told:
+            raise SettingError(
+                worded(
+                    "An inspection must be of a time that the plot's clock showed, but {day} is "
+                    "none: clocks were put forward over it.",
+                    day=f"{told:%Y-%m-%d %H:%M}",
+                )
+            )
+        if (on, at or now.time()) > (now.date(), now.time()):
+            raise SettingError(
+                worded(
+                    "An inspection must be of a moment that has come, but {day} has not: on the "
+                    "plot it is {now}.",
+                    day=str(on) if at is None or on > now.date() else f"{on} {at:%H:%M}",
+                    now=f"{now:%Y-%m-%d %H:%M}",
+                )
+            )
+
+    def corrections_in(self, copy: Path) -> tuple[outside_changes.OutsideChange, ...]:
+        """Return what another program changed of inspections in a copy of this season.
+
+        A file that is no copy of it has none.
+        """
+        if not self.is_copy(copy):
+            return ()
+        with Store(copy).reading() as theirs:
+            return copy_corrections.waiting(theirs)
+
+    def take_corrections(self, copy: Path, name: str, who: str, *, confirmed: bool = False) -> int:
+        """Take what was corrected or deleted in a `copy` of this season; return how many were new.
+
+        They are a batch of their own, of `who`; `name` is what the copy is called.
+        Raise `FileProblem` if a changed row makes no sense or is not here, `SettingError` if
+        nobody is named, and `ContradictionError` if they contradict what else is recorded and are
+        not `confirmed`.
+        """
+        with self._writing() as db:
+            return self._take_corrections(db, copy, (name, who), confirmed=confirmed)
+
+    def _take_corrections(
+        self, db: sqlite3.Connection, copy: Path, said: tuple[str, str], *, confirmed: bool
+    ) -> int:
+        name, who = said
+        if not who.strip():
+            raise SettingError(
+                worded(
+                    "Corrections must have an author, but {name} was changed by another program "
+                    "and nobody says who did. Give --who NAME.",
+                    name=name,
+                )
+            )
+        with Store(copy).reading() as theirs:
+            plot, who = (self.plot.grid, self.plant_numbers), written_in(db, who)
+            taken = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who))
+        self._may_be_taken(db, taken, confirmed=confirmed)
+        self._corrected(db, taken, who)
+        return len(taken)
+
+    def _may_be_taken(
+        self, db: sqlite3.Connection, taken: tuple[str, ...], *, confirmed: bool
+    ) -> None:
+        """Raise `ContradictionError` if the last corrections contradict what else is recorded."""
+        if taken and not confirmed:
+            corrections.contradicting(db).refuse(self.plot.grid, corrected=True)
+
+    def _corrected(
+        self, db: sqlite3.Connection, taken: tuple[str, ...], who: str, *, here: bool = False
+    ) -> None:
+        """Log what was corrected; `here`: with fieldmon itself, not by another program."""
+        if taken:
+            what = {"rows": len(taken), "said": taken, **({"here": True} if here else {})}
+            season_log.append(db, "corrected", who, states=season_log.states(db), **what)
+            self._refresh(db)
+
+    def corrected_by(self) -> dict[tuple[object, ...], str]:
+        """Return who corrected inspections that count, by plant, day (ISO), result and count."""
+        with self.store.reading() as db:
+            return batches.corrected_by(db)

@@ -1,0 +1,49 @@
+"""Days that a program hands over, whatever says them."""
+
+from datetime import date, datetime
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from fieldmon.compute.day_arguments import day_of, days_of
+from fieldmon.errors import SettingError
+
+
+def test_days_are_dates_texts_or_numpys_and_no_numbers():
+    for good in ("2026-11-18", date(2026, 11, 18), datetime(2026, 11, 18, 5), np.datetime64("NaT")):
+        assert days_of(good) is not None
+    assert days_of([date(2026, 11, 18), None]).astype(str).tolist() == ["2026-11-18", "NaT"]
+    for bad in (
+        None,
+        "",
+        "soon",
+        20_000,
+        1e30,
+        10**30,
+        [10**30],
+        [1, 2],
+        pd.NaT,
+        [[1], [1, 2]],
+        True,
+    ):
+        assert days_of(bad) is None
+
+
+@pytest.mark.parametrize(
+    ("given", "day"),
+    [
+        ("2026-11-18", date(2026, 11, 18)),
+        (datetime(2026, 11, 18, 5), date(2026, 11, 18)),
+        (np.datetime64("2026-11-18T05"), date(2026, 11, 18)),
+        (np.datetime64(10**9, "D"), np.datetime64(10**9, "D")),
+        (3, 3),
+    ],
+)
+def test_a_day_is_taken_from_a_text_or_a_time_and_the_rest_is_left(given, day):
+    assert day_of("A harvest", given) == day
+
+
+def test_a_text_that_is_no_day_is_refused():
+    with pytest.raises(SettingError, match="A harvest must be a day as 2026-11-18, but it is 'soo"):
+        day_of("A harvest", "soon")

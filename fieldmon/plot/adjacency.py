@@ -12,8 +12,6 @@ from fieldmon.compute.jit import loop
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.plot.grid import PlantGrid
-
     Float: TypeAlias = NDArray[np.float64]
     Index: TypeAlias = NDArray[np.intp]
     Lists: TypeAlias = tuple[NDArray[np.int32], NDArray[np.int32]]
@@ -106,34 +104,55 @@ def across_aisles(
     return _either_way(over(1), over(0))
 
 
-def beside_vines(grid: PlantGrid) -> Lists:
+def beside_vines(
+    vine: Index,
+    place: tuple[Float, NDArray[np.integer]],
+    spacing_m: tuple[float, float],
+    along_rows: Lists,
+    *,
+    bent: bool,
+) -> Lists:
     """Return the neighbours of each vine, in its row and the next ones, by its first face.
 
     Second faces have none. Where rows bend, the nearest of the next row is one if it stands about
     as near as rows do.
+
+    Parameters
+    ----------
+    vine
+        ``(n,)`` the first face of the vine that each plant is.
+    place
+        Where plants stand, ``(n, 2)`` in metres, and the line ``(n,)`` that each stands on.
+    spacing_m
+        Distances between rows and between plants.
+    along_rows
+        Neighbours along the rows, as `along` has them.
+    bent
+        Whether rows bend.
     """
-    vines = np.flatnonzero(grid.vine == np.arange(len(grid)))
-    xy_m, line = grid.xy_m[vines], grid.row_line[grid.row[vines]]
-    if grid.aisle is None:
-        start, plant = across(xy_m, line, grid.row_spacing_m, grid.plant_spacing_m)
-        one, other = np.repeat(vines, np.diff(start)), vines[plant]
+    vines = np.flatnonzero(vine == np.arange(len(vine)))
+    xy_m, line = place[0][vines], place[1][vines]
+    if bent:
+        one, other = (vines[which] for which in _nearest_of_next(xy_m, line, spacing_m))
     else:
-        one, other = (vines[which] for which in _nearest_of_next(grid, xy_m, line))
-    along_of = np.repeat(np.arange(len(grid)), np.diff(grid.along_start))
-    one = np.concatenate([grid.vine[along_of], one])
-    other = np.concatenate([grid.vine[grid.along_plant], other])
+        start, plant = across(xy_m, line, *spacing_m)
+        one, other = np.repeat(vines, np.diff(start)), vines[plant]
+    start, plant = along_rows
+    one = np.concatenate([vine[np.repeat(np.arange(len(vine)), np.diff(start))], one])
+    other = np.concatenate([vine[plant], other])
     # each pair once, whichever of the two named it
     pairs = np.unique(np.sort(np.stack([one, other], axis=1), axis=1), axis=0)
-    return lists(len(grid), *pairs.T)
+    return lists(len(vine), *pairs.T)
 
 
 def _nearest_of_next(
-    grid: PlantGrid, xy_m: Float, line: NDArray[np.integer]
+    xy_m: Float, line: NDArray[np.integer], spacing_m: tuple[float, float]
 ) -> tuple[Index, Index]:
     """Return plants ``(k,)`` by places, and the nearest to each on a line beside its own."""
     from scipy.spatial import cKDTree  # noqa: PLC0415 - as below
 
-    near_m = NEXT * float(np.hypot(grid.row_spacing_m, grid.plant_spacing_m / 2))
+    row_m, plant_m = spacing_m
+    near_m = NEXT * float(np.hypot(row_m, plant_m / 2))
     pairs = cKDTree(xy_m).query_pairs(near_m, output_type="ndarray")
     pairs = np.concatenate([pairs, pairs[:, ::-1]])
     step = line[pairs[:, 1]] - line[pairs[:, 0]]

@@ -357,7 +357,14 @@ class PlantGrid:
             return self.adjacent
         from fieldmon.plot.adjacency import beside_vines  # noqa: PLC0415 - as below
 
-        return Csr(*map(read_only, beside_vines(self)))
+        made = beside_vines(
+            self.vine,
+            (self.xy_m, self.row_line[self.row]),
+            (self.row_spacing_m, self.plant_spacing_m),
+            (self.along_start, self.along_plant),
+            bent=self.aisle is not None,
+        )
+        return Csr(*map(read_only, made))
 
     def vines_of(self, plants: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Return which vines are among plants ``(n,)``, each by its lower-numbered face alone."""

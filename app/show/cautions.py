@@ -32,6 +32,7 @@ def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
         return
     if not kinds:
         _show_not_come(choices, season)
+        _show_found_again(choices, season)
     found = season.cautions(choices.on, choices.units.in_sentences(choices.on))
     _warn([one for one in found if not kinds or one.kind in kinds])
 
@@ -99,6 +100,12 @@ def _show_not_come(choices: Choices, season: Season) -> None:
     """Say so on the pages of days before, which show nothing of it."""
     if said := not_come(choices, season.last_recorded()):
         st.warning(said)
+
+
+def _show_found_again(choices: Choices, season: Season) -> None:
+    """Say that plants were found again, though they are taken as treated."""
+    if (said := season.found_again(choices.on)) is not None:
+        st.warning(in_words(said.sentence(texts.FINDS_FLAGGED_HOW)))
 
 
 def show_treatments(choices: Choices) -> None:

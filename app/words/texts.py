@@ -148,6 +148,7 @@ ASSUMED_LAID = "Rows and plants were laid when the season began and stay as they
 ASSUMED_CHANGED = "The season reckons with these from its first morning on."
 FINDS_ARE = "Plants found infested are"
 FINDS_TREATED = {True: "treated at once", False: "only flagged"}
+FINDS_FLAGGED_HOW = "*Plants found infested are*: *only flagged*, under *See all, or change*."
 FINDS_ARE_HELP = (
     "Plants that are only flagged stay infested: they infest others, and count when it is decided "
     "whether to treat."
@@ -895,7 +896,7 @@ RECORD_FILE_IN = (
     "or positions, a copy of this season that QGIS or QField changed, or what a phone saved as not "
     "sent"
 )
-TAKE_DOUBTFUL = "Take doubtful positions too"
+TAKE_DOUBTFUL = "Take doubtful results too"
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
 RESULT, COUNT, RESULTS_OF = "Result", "Count", {
     0: "clean", 1: "found", 2: "could not inspect", 3: "gone",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from fieldmon.cli.messages import tell_found_again
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import LastDate, SeasonFile
@@ -261,6 +262,7 @@ def decide(
     said, short = _in_words(advice, threshold, leaves)
     where = advice.said_of_zones(above=of_plants)
     typer.echo("\n".join([f"{when}, after the day's work.", threshold.sentence(), *said, *where]))
+    tell_found_again(kept, when)
     pest = kept.settings.pest
     if doubt := threshold.doubt("" if pest is None else pest.name):
         typer.echo(f"warning: {doubt}", err=True)

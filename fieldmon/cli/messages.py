@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.io.prepared_plots import Laid, SourceMessage
+    from fieldmon.monitoring import Season
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.plot.assumed import Assumed
@@ -184,15 +185,25 @@ def tell_drafts(sentences: Iterable[str]) -> None:
         typer.echo(sentence, err=True)
 
 
-def tell_not_come(on: date, field: Field, what: str) -> None:
-    """Print that a day has not come yet on a plot, if so: a slip in a date moves a whole season."""
+def tell_not_come(on: date, field: Field, what: str, todo: str = "") -> None:
+    """Print that a day has not come yet on a plot, if so: a slip in a date moves a whole season.
+
+    `todo` is what else can be done if its date is wrong.
+    """
     today = day_on(field, None)
     if on > today:
         typer.echo(
             f"doubtful: {what}, {on}, has not come: it is {today} on the plot. If its date is "
-            "wrong, take it back with: fieldmon undo",
+            f"wrong, {todo}take it back with: fieldmon undo",
             err=True,
         )
+
+
+def tell_found_again(season: Season, on: date) -> None:
+    """Print that plants were found again up to a day, though they are taken as treated."""
+    if (said := season.found_again(on)) is not None:
+        how = shlex.join(["fieldmon", "change", str(season.path), "--flag-only"])
+        typer.echo(f"doubtful: {said.sentence(how)}", err=True)
 
 
 def tell_clock_change(start: datetime, hours: float, field: Field) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import FLAGS, Terminal, tell_drafts
+from fieldmon.cli.messages import FLAGS, Terminal, tell_drafts, tell_found_again
 from fieldmon.cli.named_values import chosen
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile
@@ -36,7 +36,11 @@ FindingFiles = Annotated[
     ),
 ]
 TakeDoubtful = Annotated[
-    bool, typer.Option("--take-doubtful", help="Assign doubtful positions to the nearest plant.")
+    bool,
+    typer.Option(
+        "--take-doubtful",
+        help="Also record doubtful results: positions assigned to the nearest plant, days to come.",
+    ),
 ]
 Contradicting = Annotated[
     bool,
@@ -110,6 +114,7 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
     if on is not None:
         with kept.one_moment():
             typer.echo("\n".join(lines(kept, kept.status(on))))
+            tell_found_again(kept, on)
 
 
 def _read(

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
 
+# inspections of a day that has not come, of which the numbers are shown
+_NUMBERS_SHOWN = 5
+
 
 def opened(files: Iterable[Path]) -> list[Season]:
     """Open the seasons that go into one table or report.
@@ -79,7 +82,7 @@ def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:
     if last <= max(today, season.settings.begins):
         return season.day_meant() if told is None else told
     recorded = season.last_recorded()
-    tell_not_come(recorded, season.plot.field, "the last day recorded")
+    _tell_recorded_ahead(season, recorded)
     if told is not None:
         return told
     meant, was = season.day_meant(), "recorded" if last == recorded else "planned"
@@ -89,6 +92,25 @@ def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:
         err=True,
     )
     return meant
+
+
+def _tell_recorded_ahead(season: Season, recorded: date) -> None:
+    """Print that the last day recorded has not come, and how to mend one of its inspections."""
+    from fieldmon.compute.wording import counted
+
+    todo, numbers = "", season.inspections_on(recorded)
+    if numbers:
+        path, one = str(season.path), ["--inspection", str(numbers[0])]
+        shown = ", ".join(map(str, numbers[:_NUMBERS_SHOWN]))
+        more = "" if len(numbers) <= _NUMBERS_SHOWN else ", ..."
+        dated = shlex.join(["fieldmon", "correct", path, "--who", "NAME", *one, "--date"])
+        undone = shlex.join(["fieldmon", "undo", path, *one])
+        todo = (
+            f"correct each of its {counted(len(numbers), 'inspection')} ({shown}{more}) with: "
+            f"{dated} YYYY-MM-DD; or take one back with: {undone}; or, if a whole recording is "
+            "wrong, "
+        )
+    tell_not_come(recorded, season.plot.field, "the last day recorded", todo)
 
 
 def learnt_of_each(season: Season, on: date) -> Iterator[tuple[str, str, str]]:

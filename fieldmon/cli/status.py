@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.cli.messages import assumed_in_words, how_to_say_wait, tell_drafts
+from fieldmon.cli.messages import (
+    assumed_in_words,
+    how_to_say_wait,
+    tell_drafts,
+    tell_found_again,
+)
 from fieldmon.cli.options import LastDate, SeasonFile
 from fieldmon.cli.season_files import day_meant, learnt_of_each
 from fieldmon.cli.times import day
@@ -66,6 +71,7 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
         _show_rows(kept, now)
     if batches:
         _show_batches(kept)
+    tell_found_again(kept, now.on)
     whole = kept.is_short
     for sentence in kept.verify(whole=whole):
         typer.echo(f"doubtful: {sentence}", err=True)

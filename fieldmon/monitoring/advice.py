@@ -69,6 +69,8 @@ class AdviceSettings:
         Litres a hectare where it is sprayed.
     learnt_of
         The product of which the season learnt how well treating works; empty: it was not learnt.
+    finds_treated
+        Whether finds are taken as treated at once; a season says it itself.
 
     Examples
     --------
@@ -86,6 +88,7 @@ class AdviceSettings:
     costs: TreatmentCosts = field(default_factory=TreatmentCosts)
     rate_l_ha: float = USUAL_RATE_L_HA
     learnt_of: str = ""
+    finds_treated: bool = False
 
     def __post_init__(self) -> None:
         must_be_rate(self.rate_l_ha)
@@ -116,6 +119,9 @@ class AdviceSettings:
             joined(", ", [one for name, one in said.items() if (name in left) == is_left])
             for is_left in (True, False)
         )
+        if self.finds_treated:
+            finds = worded("finds are treated at once")
+            assumed = joined(", ", [finds, *[assumed] * bool(assumed)])
         both = [worded("Assumed: {what}.", what=assumed)] * bool(assumed)
         both += [worded("As you said: {what}.", what=told)] * bool(told)
         of = worded(

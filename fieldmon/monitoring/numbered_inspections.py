@@ -1,4 +1,4 @@
-"""Inspections of a plant by their numbers in the season's file, to correct one of them."""
+"""Inspections of a plant or a day by their numbers in the season's file, to correct one of them."""
 
 from __future__ import annotations
 
@@ -30,6 +30,15 @@ class NumberedInspection(NamedTuple):
     second: float
     result: int
     who: str
+
+
+def of_day(db: sqlite3.Connection, on: date) -> tuple[int, ...]:
+    """Return the numbers of the inspections of a day that count, in order."""
+    wanted = (
+        "SELECT fid FROM inspections WHERE date = ? AND undone = 0 AND digest IS NOT NULL "
+        "ORDER BY fid"
+    )
+    return tuple(fid for (fid,) in db.execute(wanted, (str(on),)))
 
 
 def of_plant(db: sqlite3.Connection, plant: int) -> tuple[NumberedInspection, ...]:

@@ -26,6 +26,7 @@ from fieldmon.monitoring.advice import (
     advice,
 )
 from fieldmon.monitoring.day_figures import DayFigures, Progress
+from fieldmon.monitoring.found_again import found_again
 from fieldmon.monitoring.history import in_sight
 from fieldmon.monitoring.mornings import rules
 from fieldmon.monitoring.open_season import OpenSeason
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.advice import Advice
+    from fieldmon.monitoring.found_again import FoundAgain
     from fieldmon.monitoring.open_season import SeasonContents
     from fieldmon.monitoring.told_detection import ToldOtherwise
     from fieldmon.pests.development import Development
@@ -131,6 +133,7 @@ class SeasonEstimates(OpenSeason):
             evening = contents.history.in_hindsight(morning, day)
             told = db.execute("SELECT 1 FROM observations").fetchone()
         history, asked = contents.history, asked or AdviceSettings()
+        asked = replace(asked, finds_treated=history.belief.treated)
         done = tuple(one for one in history.treatments if one.day == day)
         found = history.found_and_left(evening, day)
         inspected = history.inspected(day)
@@ -194,6 +197,14 @@ class SeasonEstimates(OpenSeason):
             return 0.0  # no morning is needed for it
         with self._asked(on) as (contents, morning, day):
             return contents.history.flagged(morning, day)
+
+    def found_again(self, on: date) -> FoundAgain | None:
+        """Return how many plants that are taken as treated were found again up to `on`.
+
+        None: none, or no more than may be chance.
+        """
+        now = self._now()
+        return found_again(now.history, now.settings.day(on))
 
     def learnt(self, on: date, detection: float | None = None) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of `on` tell of the insects.

@@ -366,6 +366,11 @@ class SeasonInspections(SeasonCorrections):
         with self.store.reading() as db:
             return numbered_inspections.of_plant(db, plant)
 
+    def inspections_on(self, on: date) -> tuple[int, ...]:
+        """Return the numbers (fid) in the file of a day's inspections that count, in order."""
+        with self.store.reading() as db:
+            return numbered_inspections.of_day(db, on)
+
     def number_of(self, inspections: Inspections) -> int:
         """Return the number (fid) in the file of the last of some inspections with times."""
         last = inspections.take(slice(len(inspections) - 1, len(inspections)))

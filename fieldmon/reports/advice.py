@@ -40,9 +40,11 @@ def advice_report(
 ) -> Report:
     """Return the report of what is advised after a day's work."""
     lead, *sentences = advice.sentences(units)
+    again = season.found_again(on)
     blocks: list[Block] = [
         Paragraph(lead, lead=True),
         *map(Paragraph, sentences),
+        *([] if again is None else [Paragraph(again.sentence())]),
         _figures(advice, product, units),
         *_map(season, on, advice, units),
         *([_zones(advice)] if len(advice.zones) else []),

@@ -172,6 +172,8 @@ def _stands(facts: _Facts) -> Iterator[Block]:
     assumed = assumed_sentence(facts.goes_by, facts.units)
     if assumed:
         yield Paragraph(assumed)
+    if (again := facts.season.found_again(facts.on)) is not None:
+        yield Paragraph(again.sentence())
     beware = facts.season.cautions(facts.on, facts.units)
     if beware:
         sentences = tuple(dict.fromkeys(one.sentence for one in beware))

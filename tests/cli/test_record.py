@@ -3,6 +3,7 @@
 import json
 import shutil
 import uuid
+from datetime import date, timedelta
 
 import numpy as np
 import pyogrio
@@ -53,6 +54,30 @@ def test_a_file_that_contradicts_what_is_recorded_is_listed_and_taken_only_when_
     code, out, err, _ = run("record", season, "r.csv", "--date", BEGINS, "--contradicting")
     assert code == 0, err
     assert "2 new, 3 known" in out
+
+
+def test_finds_that_are_found_again_are_said_wherever_the_season_is_told(run, season, tmp_path):
+    days = [date.fromisoformat(BEGINS) + timedelta(days=k) for k in range(2)]
+    for on in days:
+        rows = "".join(f"{k},yes,{on}\n" for k in range(20))
+        (tmp_path / f"{on}.csv").write_text(f"plant,found,date\n{rows}")
+    said = (
+        "doubtful: 20 of 20 plants found before were infested again when inspected again, although "
+        "finds are taken as treated at once; if nobody treats them, say so: fieldmon change "
+        f"{season} --flag-only"
+    )
+    assert said not in run("record", season, f"{days[0]}.csv")[2]
+    told = (["record", season, f"{days[1]}.csv"], ["status", season, "--date", days[1]],
+            ["decide", season, "--threshold", "5%", "--date", days[1]])  # fmt: skip
+    for words in told:
+        assert said in run(*words)[2].splitlines(), words
+    run("report", season, "--until", days[1], "-o", "r.html")
+    assert said[10:80] in (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert run("change", season, "--flag-only")[0] == 0
+    for words in told[1:]:
+        _, out, err, _ = run(*words)
+        assert "found before" not in err
+        assert "finds are treated" not in out
 
 
 def test_who_is_told_by_the_option_and_rows_that_say_otherwise_are_counted(run, season, tmp_path):

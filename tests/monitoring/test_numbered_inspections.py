@@ -24,5 +24,6 @@ def test_a_plants_inspections_that_count_come_in_their_order_with_their_numbers(
     ]  # fmt: skip
     assert [one.second for one in made[:2]] == [50_000, 30_000]
     assert np.isnan(made[2].second)
+    assert season.inspections_on(on(1)) == (1, 2, 3)
     season.correct_time(1, time(6), "Ben", on(0), confirmed=True)
     assert [one.number for one in season.inspections_of(7)] == [1, 4, 3]

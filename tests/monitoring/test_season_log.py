@@ -166,6 +166,12 @@ def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(p
     assert list(season_log.lines(log, CLOCK))[-1].endswith(log[-1].digest)
 
 
+def test_what_a_program_records_without_a_name_is_logged_without_one(path):
+    season = Season(path)
+    season.record(three_results(5))
+    assert season.log()[-1].sentence().startswith("0 found, 3 clean, 0 could not be inspected, ")
+
+
 def test_the_log_speaks_of_one_thing_as_of_one():
     one = {"stops": 1, "labels": 1, "new": 1, "entries": 1, "source": "a.csv", "said": "x"}
     told = [

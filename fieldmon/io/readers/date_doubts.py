@@ -28,10 +28,33 @@ def mixed_dates(read: DatedColumn, where: str | None = None) -> list[ImportMessa
     return [doubtful(said, where)]
 
 
+def to_come(day: NDArray[np.datetime64]) -> NDArray[np.bool_]:
+    """Return which days ``(n,)`` have not come yet, anywhere on earth."""
+    today = np.datetime64(datetime.now(UTC).date(), "D") + 1  # it may be tomorrow elsewhere
+    ahead: NDArray[np.bool_] = day > today
+    return ahead
+
+
+def amid_past(day: NDArray[np.datetime64]) -> dict[int, str]:
+    """Return why each of days ``(n,)`` is doubtful that have not come, where others have.
+
+    A file of days to come alone may be a rehearsal.
+    """
+    ahead = to_come(day)
+    if not (~ahead & ~np.isnat(day)).any():
+        return {}
+    return {
+        i: worded(
+            "its day, {day}, has not come, but others of the file have; correct it there",
+            day=day[i],
+        )
+        for i in np.flatnonzero(ahead).tolist()
+    }
+
+
 def in_future(day: NDArray[np.datetime64], where: str | None = None) -> list[ImportMessage]:
     """Return a doubt where days ``(n,)`` have not come yet, anywhere on earth."""
-    today = np.datetime64(datetime.now(UTC).date(), "D") + 1  # it may be tomorrow elsewhere
-    n_future = int((day > today).sum())
+    n_future = int(to_come(day).sum())
     if not n_future:
         return []
     said = worded(

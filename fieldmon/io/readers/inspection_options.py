@@ -40,7 +40,7 @@ class InspectionOptions(RecordOptions):
         Words of one's own for a plant that does not stand there any more, set apart by commas.
     take_doubtful
         Take what would be listed and left out: the nearest plant, the plant's id before its row
-        and number or position, a find before a contradicting "clean".
+        and number or position, a find before a contradicting "clean", a day that has not come.
     """
 
     day: np.datetime64 | None = None

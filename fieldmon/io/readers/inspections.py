@@ -39,6 +39,7 @@ from fieldmon.io.import_report import (
 )
 from fieldmon.io.parse.joined_notes import joined_notes
 from fieldmon.io.read import read_inspection_rows
+from fieldmon.io.readers.date_doubts import amid_past
 from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspection_places import (
@@ -178,6 +179,7 @@ def _placed(rows: InspectionRows, grid: PlantGrid, options: InspectionOptions) -
     plant = np.where(snapped.plant >= 0, snapped.plant, plant)
     problems |= snapped.problems
     doubts = doubts | from_zero(rows, grid, labelled.plant) | snapped.doubts | _own_doubts(rows)
+    doubts |= amid_past(rows.day)
     problems |= _unknown_faces(rows, grid, plant)
     below = below_first(rows, grid)
     for i in np.flatnonzero(plant < 0).tolist():

@@ -51,6 +51,22 @@ def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):
     assert shown[-1] == ("caption", texts.EFFECTS_TREATED)
 
 
+def test_finds_that_are_found_again_are_said_with_where_the_setting_is(shown, tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    for seen in np.datetime64(BEGINS) + np.arange(2):
+        season.record(Inspections.of(np.arange(20), np.ones(20), seen), f"{seen}")
+    here = choices(season)
+    cautions.show(here)
+    assert shown == []
+    here.on = BEGINS + timedelta(days=1)
+    cautions.show(here)
+    ((_, said),) = shown
+    assert said.startswith("20 of 20 plants found before were infested again ")
+    assert said.endswith(f"say so: {texts.FINDS_FLAGGED_HOW}")
+    named = texts.FINDS_ARE, texts.FINDS_TREATED[False], texts.ASSUMED_ALL
+    assert all(f"*{one}*" in said for one in named)
+
+
 def test_no_day_of_harvest_is_shown_where_the_wait_of_a_later_treatment_was_not_said(
     shown, tmp_path
 ):

@@ -9,6 +9,7 @@ from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.io.parse.values import dates
 from fieldmon.io.readers.date_doubts import in_future, mixed_dates
+from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.plot.layout import rectangle
 
@@ -47,3 +48,20 @@ def test_findings_of_a_day_to_come_are_doubted():
     read = read_inspections(file, rectangle(2, 5), None)
     assert any("1 record lies in the future" in message.sentence for message in read.messages)
     assert len(read.value) == 1
+
+
+def test_a_day_to_come_amid_days_that_have_come_is_left_out_unless_it_is_taken():
+    days = [days_from_now(-2), days_from_now(363), days_from_now(0), days_from_now(1)]
+    lines = "".join(f"{k},yes,{day}\n" for k, day in enumerate(days))
+    file = Upload("found.csv", f"plant,found,date\n{lines}".encode())
+    read = read_inspections(file, rectangle(2, 5), None)
+    assert read.value.plant.tolist() == [0, 2, 3]
+    (said,) = (one for one in read.messages if one.feature == "record 2")
+    assert said.severity == Severity.DOUBTFUL
+    assert said.sentence == (
+        f"It is doubtful: its day, {days[1]}, has not come, but others of the file have; correct "
+        "it there."
+    )
+    assert said.remedy.setting == "take_doubtful=yes"
+    taken = read_inspections(file, rectangle(2, 5), InspectionOptions(take_doubtful=True))
+    assert taken.value.date.tolist() == [day.item() for day in days]

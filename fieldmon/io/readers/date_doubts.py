@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import first_few, worded
+from fieldmon.compute.wording import joined, worded
 from fieldmon.io.import_report import ImportMessage, Severity, UnreadDates, doubtful, guessed
 
 if TYPE_CHECKING:
@@ -57,17 +57,21 @@ def midnights_left_out(n: int, where: str | None = None) -> list[ImportMessage]:
     return [guessed(said, where)]
 
 
-#: what is said of dates that are none, and how they are written instead
+_NAMED = 5
+#: how dates are written instead that are none
 HOW_TO_WRITE = worded("Write dates as 2026-11-18, 18/11/2026 or 18 November 2026.")
 
 
 def unread_dates(cells: Mapping[int, str]) -> Worded:
     """Return how many dates are none, and of which records: cells by their numbers from 1."""
-    first = [f"record {number}: {cell!r}" for number, cell in cells.items()]
+    first = [
+        worded("record {number}: {cell!r}", number=number, cell=cell)
+        for number, cell in list(cells.items())[:_NAMED]
+    ]
     return worded(
         "{n} {n:record has|records have} a date that is none ({shown}).",
         n=len(cells),
-        shown=first_few(first),
+        shown=joined(", ", [*first, *["..."] * (len(cells) > _NAMED)]),
     )
 
 

@@ -987,7 +987,7 @@ def dates_that_could_be_both_and_were_told():
 @case(
     "records",
     check=days("2026-03-13", "NaT"),
-    says="doubtful: 1 record has a date that is none ('03/13/2026')",
+    says="doubtful: 1 record has a date that is none (record 2: '03/13/2026')",
 )
 def dates_in_both_orders():
     return dated("13/03/2026", "03/13/2026")
@@ -1019,7 +1019,11 @@ def dates_in_the_future():
     return dated("2026-03-01", "2126-03-01")
 
 
-@case("records", check=days("2026-03-01", "NaT"), says="doubtful: date that is none ('soon')")
+@case(
+    "records",
+    check=days("2026-03-01", "NaT"),
+    says="doubtful: date that is none (record 2: 'soon')",
+)
 def dates_that_are_none():
     return dated("2026-03-01", "soon")
 

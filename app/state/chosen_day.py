@@ -292,8 +292,8 @@ def season_days(choices: Choices) -> list[str]:
 
 def messages_on_records(choices: Choices) -> list[str]:
     """Return what planning says about records it cannot use."""
-    days = choices.prior.hardly_days
-    return list(usable(choices.records, np.datetime64(_known_on(choices)), days).messages())
+    on = np.datetime64(_known_on(choices))
+    return list(usable(choices.records, on, choices.prior).messages())
 
 
 def _known_on(choices: Choices) -> str:

@@ -238,7 +238,7 @@ def tell_unusable(records: Observations, day: np.datetime64, prior: PriorSetting
     """Print of which days records are, and which say nothing, or hardly anything, about a day."""
     from fieldmon.infestation.observations import usable
 
-    known = usable(records, day, prior.hardly_days)
+    known = usable(records, day, prior)
     if len(known.observations):
         typer.echo(f"seen: {known.observations.sentence()}", err=True)
     for sentence in known.messages():

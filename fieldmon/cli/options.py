@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -457,6 +458,18 @@ class FileOptions:
     blocks_option: BlocksChoices = None
     guess_blocks: GuessBlocks = False
 
+    def _refuse_of_plot(self, role: str) -> None:
+        """Refuse what is said of a plot file where another file, of `role`, is the first."""
+        named = {"crs": self.crs, "layer": self.layer}
+        said = {f"--{name} {value}": f"{name}={value}" for name, value in named.items() if value}
+        said |= {f"--plot-option {value}": value for value in self.plot_option or ()}
+        if said:
+            instead = " ".join(f"--{role}-option {shlex.quote(one)}" for one in said.values())
+            raise SettingError(
+                f"A plot file must be given for {', '.join(said)}, but none is. Of the file of "
+                f"--{role} say it with {instead}."
+            )
+
     def sources(self, plot: Path | None, feature: str | None) -> PlotSources:
         """Return the plot's files, given the first of them."""
         from fieldmon.io.options import PlotOptions, ReadOptions
@@ -467,12 +480,8 @@ class FileOptions:
                 "Give a plot file, or the positions of its plants with --plants FILE, or its rows "
                 "with --rows FILE."
             )
-        if plot is None and (self.crs or self.layer or self.plot_option):
-            raise SettingError(
-                "--crs, --layer and --plot-option say how the plot file is read, and none is "
-                "given. Of another file say it with --plants-option or --rows-option, as "
-                "crs=EPSG:2039."
-            )
+        if plot is None:
+            self._refuse_of_plot("rows" if self.plants is None else "plants")
         return PlotSources(
             plot,
             plot_options(feature, self.crs, self.layer, self.plot_option),

@@ -16,6 +16,7 @@ from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import ImportDoubt, ObservationError
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.plot.positions import lonlat_of
 
 if TYPE_CHECKING:
@@ -30,8 +31,6 @@ NEARBY_M = 100.0
 _DAY = np.timedelta64(1, "D")
 _READ = ", or read the file with read_records"
 _TEXTS = frozenset({"species", "stage"})
-#: a record of the usual half-life, 14 days, counts a thirtieth after so many
-HARDLY_DAYS = 70.0
 
 
 def _column(name: str, given: object) -> NDArray[np.generic]:
@@ -221,8 +220,8 @@ class UsableRecords:
     undecided, future, undated, old
         How many were left out because they say neither, because they are of a later day; and how
         many of those kept have no date, or are so old that they hardly count.
-    hardly_days
-        How old that is.
+    prior
+        How old that is, and how old undated ones are taken to be.
     """
 
     observations: Observations
@@ -230,7 +229,7 @@ class UsableRecords:
     future: int
     undated: int
     old: int
-    hardly_days: float = HARDLY_DAYS
+    prior: PriorSettings
 
     def messages(self) -> tuple[str, ...]:
         """Return a sentence for each thing that a person should know about the records."""
@@ -240,11 +239,16 @@ class UsableRecords:
                 "{n} of the records say neither infested nor clean and are left out.", n=neither
             ),
             worded("{n} of the records are of a later day and are left out.", n=later),
-            worded("{n} of the records have no date and count as old ones.", n=self.undated),
+            worded(
+                "{n} of the records have no date and count as {days:g} days old, whatever day is "
+                "planned.",
+                n=self.undated,
+                days=self.prior.undated_days,
+            ),
             worded(
                 "{n} of the records are more than {days} days old and hardly count.",
                 n=self.old,
-                days=round(self.hardly_days),
+                days=round(self.prior.hardly_days),
             ),
         )
         return tuple(sentence for sentence in said if sentence.values["n"])
@@ -260,12 +264,14 @@ def _must_make_sense(given: dict[str, Any]) -> None:
 
 
 def usable(
-    observations: Observations, on_day: np.datetime64, hardly_days: float = HARDLY_DAYS
+    observations: Observations, on_day: np.datetime64, prior: PriorSettings | None = None
 ) -> UsableRecords:
     """Return the records that speak on a day; the caller tells of the others.
 
-    Those that are more than `hardly_days` old are counted, and kept.
+    Those that are so old that they hardly count by `prior` (None: the usual one) are counted, and
+    kept.
     """
+    prior = prior or PriorSettings()
     today = on_day.astype("datetime64[D]")
     undecided = observations.present == UNKNOWN
     future = ~undecided & (observations.day > today)
@@ -275,8 +281,8 @@ def usable(
         undecided=int(np.count_nonzero(undecided)),
         future=int(np.count_nonzero(future)),
         undated=int(np.count_nonzero(np.isnat(kept.day))),
-        old=int(np.count_nonzero((today - kept.day) / _DAY > hardly_days)),
-        hardly_days=hardly_days,
+        old=int(np.count_nonzero((today - kept.day) / _DAY > prior.hardly_days)),
+        prior=prior,
     )
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from fieldmon.io.import_report import doubtful
 from fieldmon.plot import outline_bearing
 from fieldmon.plot.plot import planting_of
+from fieldmon.plot.projection import goes_round
 
 if TYPE_CHECKING:
     from fieldmon.io.import_report import ImportMessage
@@ -23,8 +24,12 @@ def guessed_bearing(field: Field, choices: PlantingChoices) -> OutlineBearing | 
 
 
 def doubts_of_bearing(field: Field, choices: PlantingChoices) -> tuple[ImportMessage, ...]:
-    """Return the doubt that rows may run otherwise: their ends move by more than a row spacing."""
-    if not choices.in_rows:
+    """Return the doubt that rows may run otherwise: their ends move by more than a row spacing.
+
+    A plot on both sides of longitude 180 is doubted for that instead (`said_of_place`).
+    """
+    west, _, east, _ = field.boundary.bounds
+    if not choices.in_rows or goes_round([west, east]):
         return ()
     said = outline_bearing.doubt_of_bearing(field, planting_of(field, **choices.given()))
     many = "Of {n} plots the rows' bearing is in doubt"

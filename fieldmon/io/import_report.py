@@ -128,6 +128,11 @@ class WrongRows(ImportMessage):
     value: float = 0.0
 
 
+@dataclass(frozen=True)
+class UnreadDates(ImportMessage):
+    """A doubt that inspections say as their date what is none."""
+
+
 def gathered(messages: Iterable[ImportMessage]) -> tuple[ImportMessage, ...]:
     """Return messages with those of one kind, about many features, as one with their number."""
     kinds: dict[object, list[ImportMessage]] = {}

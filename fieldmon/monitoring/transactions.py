@@ -177,6 +177,15 @@ class Store:
         """Make a new file: it appears with all that is written inside this block, or not at all."""
         must_be_name_of_file("A season", path)
         target = Path(path).absolute()
+        if target.suffix.casefold() != ".gpkg":
+            raise FileProblem(
+                worded(
+                    "A season must be named as QGIS knows it, with .gpkg at the end, but it is "
+                    "{name!r}. Name it {better!r}.",
+                    name=target.name,
+                    better=f"{target.stem or 'season'}.gpkg",
+                )
+            )
         _refuse_old(target, path)
         with _draft_folder(target) as folder:
             draft = Path(folder) / "season.gpkg"

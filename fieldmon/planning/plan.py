@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from datetime import date, datetime, time
+from types import NoneType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted, worded
@@ -222,6 +224,8 @@ def plan_day(
 
 def starts_at(on: str | date | datetime | np.datetime64 | None, plot: Plot) -> datetime:
     """Return the local date and time at which work starts, see `plan_day`."""
+    kinds = str, date, np.datetime64, NoneType
+    must_be("A day must be as 2026-11-18", on, kinds, 'Give "2026-11-18".')
     clock = local_clock(plot.field)
     if on is None:
         return datetime.combine(clock.today(), _STARTS)

@@ -12,7 +12,7 @@ from fieldmon.errors import SettingError
 _SPACING = AllowedRange(0.05, 1000.0, said=worded("0.05 to 1000 metres"))
 #: what settings of `Planting` may be
 PLANTED = {
-    "row_bearing_deg": AllowedRange(-720.0, 720.0, said=worded("-720 to 720 degrees")),
+    "row_bearing_deg": AllowedRange(-360.0, 360.0, said=worded("-360 to 360 degrees")),
     "row_spacing_m": _SPACING,
     "plant_spacing_m": _SPACING,
     "headland_m": _SPACING,
@@ -27,7 +27,8 @@ class Planting:
     Parameters
     ----------
     row_bearing_deg
-        Direction of the rows, degrees clockwise from true north; None: found.
+        Direction of the rows, degrees clockwise from true north, -360 to 360; None:
+        found.
     row_spacing_m, plant_spacing_m
         From row to row, and from plant to plant in a row (thesis: 4 m and 3 m).
     headland_m

@@ -109,7 +109,7 @@ def _of(name):
         ("--width", "99", "--width must be 0.05 to 10 metres, but it is 99."),
         ("--spread", "-1", "--spread must be a chance in 0..1, but it is -1."),
         ("--row-spacing", "0", "--row-spacing must be 0.05 to 1000 metres, but it is 0."),
-        ("--bearing", "721", "--bearing must be -720 to 720 degrees, but it is 721."),
+        ("--bearing", "400", "--bearing must be -360 to 360 degrees, but it is 400."),
         ("--contact", "1441", "--contact must be 1440 minutes at most, but it is 1441."),
         ("--every", "0", "--every must be 1 or more, but it is 0."),
         ("--sure", "0.5", "--sure must be a chance between 0.5 and 1, but it is 0.5."),

@@ -101,11 +101,18 @@ def test_how_records_are_read_is_not_said_without_records():
 
 
 @pytest.mark.parametrize(
-    "said", [{"crs": "EPSG:2039"}, {"layer": "plots"}, {"plot_option": ["swap_axes=yes"]}]
+    ("said", "told", "instead"),
+    [
+        ({"crs": "EPSG:25831"}, "--crs EPSG:25831", "--plants-option crs=EPSG:25831."),
+        ({"layer": "plots"}, "--layer plots", "--plants-option layer=plots."),
+        ({"plot_option": ["swap_axes=yes"]}, "--plot-option swap_axes=yes", "swap_axes=yes."),
+    ],
 )
-def test_how_a_plot_file_is_read_is_not_said_without_one(said):
-    with pytest.raises(SettingError, match=r"none is given.*--plants-option"):
+def test_how_a_plot_file_is_read_is_not_said_without_one(said, told, instead):
+    with pytest.raises(SettingError) as refused:
         FileOptions(plants=Path("p.csv"), **said).sources(None, None)
+    assert str(refused.value).startswith(f"A plot file must be given for {told}, but none is.")
+    assert str(refused.value).endswith(instead)
 
 
 def test_the_help_of_every_names_each_sampler_that_takes_an_n_with_its_own():

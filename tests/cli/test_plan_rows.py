@@ -244,7 +244,7 @@ def test_a_bearing_of_the_file_that_cannot_be_is_refused_unless_another_is_given
     plan = "plan", "turned.geojson", "--hours", "1", "--no-bound", "-o", "r.geojson"
     code, _, err, made = run(*plan)
     assert (code, made) == (2, set())
-    assert "must be -720 to 720 degrees, but it is 1000" in err
+    assert "must be -360 to 360 degrees, but it is 1000" in err
     code, out, err, _ = run(*plan, "--bearing", "20")
     assert code == 0, err
     assert "bearing 20.0 degrees" in out

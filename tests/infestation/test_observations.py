@@ -1,5 +1,7 @@
 """Pest records as they were brought, and which of them speak on a day."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -80,10 +82,12 @@ def test_records_so_old_that_they_hardly_count_are_told_of(days, old):
 
 
 def test_how_old_that_is_follows_from_the_half_life_of_records():
-    assert PriorSettings().hardly_days == usable(at_middle(PRESENT), TODAY).hardly_days
     short = PriorSettings(half_life_days=4.0)
-    kept = usable(at_middle(PRESENT, 21), TODAY, short.hardly_days)
+    kept = usable(at_middle(PRESENT, 21), TODAY, short)
     assert kept.messages() == ("1 of the records are more than 20 days old and hardly count.",)
+    undated = replace(at_middle(PRESENT), day=np.array(["NaT"], "datetime64[D]"))
+    said = "1 of the records have no date and count as 9 days old, whatever day is planned."
+    assert usable(undated, TODAY, PriorSettings(undated_days=9.0)).messages() == (said,)
     # a thirtieth of what it says on its own day
     nothing = np.zeros(len(GRID))
     new, old = (

@@ -4,7 +4,9 @@ import pytest
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.io.guessed_bearing import doubts_of_bearing
 from fieldmon.io.open_sea import said_of_place
+from fieldmon.io.plot_request import PlantingChoices
 from fieldmon.plot.field import Field
 
 
@@ -34,6 +36,8 @@ def test_another_one_is_doubted_without_a_way_out(place):
 
 def test_a_plot_cut_at_longitude_180_is_doubted_for_that_and_not_where_its_middle_lies():
     parts = shapely.box(179.9995, -16.801, 180, -16.8), shapely.box(-180, -16.801, -179.9995, -16.8)
-    (said,) = said_of_place(Field("Taveuni", MultiPolygon(parts)))
+    field = Field("Taveuni", MultiPolygon(parts))
+    (said,) = said_of_place(field)
+    assert not doubts_of_bearing(field, PlantingChoices())  # so that it is listed, and said once
     assert "on one side of longitude 180" in said.sentence
     assert "sea" not in said.sentence

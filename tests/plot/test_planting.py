@@ -25,4 +25,4 @@ def test_impossible_plantings_are_refused(wrong):
 def test_what_can_be_planted_can_be_said():
     for edge in (0.05, 1000.0):
         assert Planting(row_spacing_m=edge, plant_spacing_m=edge, headland_m=edge).faces == 1
-    assert Planting(faces=2, half_canopy_m=0.0, row_bearing_deg=-720.0).outer_faces
+    assert Planting(faces=2, half_canopy_m=0.0, row_bearing_deg=-360.0).outer_faces

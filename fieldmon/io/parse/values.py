@@ -367,26 +367,49 @@ def halves(cell: str) -> list[str] | None:
 _ISO = re.compile(r"^(\d{4})[-/.](\d{1,2})[-/.](\d{1,2})(?:[T\s].*)?$")
 _COMPACT = re.compile(r"^(\d{4})(\d{2})(\d{2})$")
 _NUMERIC = re.compile(r"^(\d{1,2})[-/. ](\d{1,2})[-/. ](\d{2}|\d{4})(?:[,T\s].*)?$")
-_NAMED = re.compile(r"^(\d{1,2})[-/. ]*([^\W\d_]{3,})\.?[-/., ]*(\d{2}|\d{4})(?:[,T\s].*)?$")
+# 5 May 26, 5. Mai 2026, 1er mai 2026, 1.º de mayo de 2026, 6 de jun. de 2026, 10 בינואר 2026
+_NAMED = re.compile(
+    r"^(\d{1,2})(?:st|nd|rd|th|er|\.?[ºª°])?[-/. ]*(?:(?:de|of) |d['’]|ב[- ]?)?"
+    r"([^\W\d_]{3,})\.?[-/., ]*(?:(?:del?|of) )?(\d{2}|\d{4})(?:[,T\s].*)?$",
+    re.IGNORECASE,
+)
 _NAMED_US = re.compile(
-    r"^([^\W\d_]{3,})\.?[-/ ]*(\d{1,2})(?:st|nd|rd|th)?[-/., ]+(\d{4})(?:\s.*)?$"
+    r"^([^\W\d_]{3,})\.?[-/ ]*(\d{1,2})(?:st|nd|rd|th)?[-/., ]+(?:del? )?(\d{4})(?:\s.*)?$"
+)
+_WEEKDAY = (
+    "monday|tuesday|wednesday|thursday|friday|saturday|sunday|"
+    "mon|tue|tues|wed|thu|thur|thurs|fri|sat|sun|"
+    "montag|dienstag|mittwoch|donnerstag|freitag|samstag|sonnabend|sonntag|mo|di|mi|do|fr|sa|so|"
+    "lunes|martes|miércoles|miercoles|jueves|viernes|sábado|sabado|domingo|"
+    "lun|mar|mié|mie|jue|vie|sáb|sab|dom|"
+    "lundi|mardi|mercredi|jeudi|vendredi|samedi|dimanche|mer|jeu|ven|sam|dim|"
+    "lunedì|martedì|mercoledì|giovedì|venerdì|domenica|gio|"
+    "segunda-feira|terça-feira|quarta-feira|quinta-feira|sexta-feira|"
+    "segunda|terça|quarta|quinta|sexta|seg|ter|qua|qui|sex|"
+    "ראשון|שני|שלישי|רביעי|חמישי|שישי|שבת"
+)
+# what may stand before a date: Di, | Tuesday, | martes | יום ג' | Dienstag, den | le
+_BEFORE = re.compile(
+    rf"^(?:(?:(?:ב?יום )?(?:{_WEEKDAY}|[א-וש]['’׳])"
+    r"\.?,? )(?:(?:den|the|le|el|il) |ה-?)?|(?:den|the|le|el|il) |ה-?)(?=[^\W_])",
+    re.IGNORECASE,
 )
 _MONTHS = {
     word: month
     for month, words in enumerate(
         (
-            "jan january januar ene enero janv janvier gennaio janeiro ינואר",
-            "feb february februar feb febrero fevr février febbraio fevereiro פברואר",
-            "mar march märz maerz mrz marzo mars março מרץ",
+            "jan january januar ene enero janv janvier gennaio gen janeiro ינואר",
+            "feb february februar feb febrero fevr février fév febbraio fevereiro fev פברואר",
+            "mar march märz mär maerz mrz marzo mars março מרץ",
             "apr april abr abril avr avril aprile אפריל",
-            "may mai mayo maggio maio מאי",
-            "jun june juni junio juin giugno junho יוני",
-            "jul july juli julio juil juillet luglio julho יולי",
+            "may mai mayo maggio mag maio מאי",
+            "jun june juni junio juin giugno giu junho יוני",
+            "jul july juli julio juil juillet luglio lug julho יולי",
             "aug august ago agosto aout août אוגוסט",
-            "sep sept september septiembre septembre settembre setembro ספטמבר",
-            "oct october okt oktober octubre octobre ottobre outubro אוקטובר",
+            "sep sept september septiembre setiembre septembre set settembre setembro ספטמבר",
+            "oct october okt oktober octubre octobre ottobre ott outubro out אוקטובר",
             "nov november noviembre novembre novembro נובמבר",
-            "dec december dez dezember dic diciembre décembre dicembre dezembro דצמבר",
+            "dec december dez dezember dic diciembre déc décembre dicembre dezembro דצמבר",
         ),
         start=1,
     )
@@ -402,11 +425,16 @@ class DatedColumn(NamedTuple):
     day: NDArray[np.datetime64]
     order: DateOrder | None
     is_ambiguous: bool
-    n_broken: int
-    broken: tuple[str, ...]
+    #: cells that are no date and not missing, by their index
+    unread: dict[int, str]
     n_serial: int
     #: cells that could be day or month first, in a column that has certain ones of both kinds
     n_mixed: int = 0
+
+    @property
+    def broken(self) -> tuple[str, ...]:
+        """Return the first few different cells that are no date."""
+        return tuple(dict.fromkeys(self.unread.values()))[:5]
 
 
 def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> DatedColumn:
@@ -418,7 +446,7 @@ def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> DatedC
     """
     cells = [text(v) for v in column]
     distinct = sorted(set(cells))
-    numeric = [found for c in distinct if (found := _NUMERIC.match(c))]
+    numeric = [found for c in distinct if (found := _NUMERIC.match(_date_alone(c)))]
     day_first = all(int(m.group(2)) <= 12 for m in numeric)
     month_first = all(int(m.group(1)) <= 12 for m in numeric)
     same = all(m.group(1).zfill(2) == m.group(2).zfill(2) for m in numeric)
@@ -426,22 +454,32 @@ def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> DatedC
     used: DateOrder = order or ("mdy" if month_first and not day_first else "dmy")
     known = {c: _day(c, used) for c in distinct}
     days = np.array([known[c] or "NaT" for c in cells], dtype="datetime64[D]")
-    broken = [c for c in cells if known[c] is None and c.casefold() not in MISSING]
+    none = {c for c in distinct if known[c] is None and c.casefold() not in MISSING}
+    unread = {i: c for i, c in enumerate(cells) if c in none}
     serial = sum(known[c] is not None and _is_serial(c) for c in cells)
-    some = tuple(dict.fromkeys(broken))[:5]
     either = set() if day_first or month_first or order else {c for c in distinct if _either(c)}
     mixed = sum(c in either for c in cells)
-    return DatedColumn(days, used if numeric else None, ambiguous, len(broken), some, serial, mixed)
+    return DatedColumn(days, used if numeric else None, ambiguous, unread, serial, mixed)
 
 
 def is_written_as_day(cell: str) -> bool:
     """Return whether a cell is written as days are, be it one or none (2026-02-30)."""
-    return any(pattern.match(cell) for pattern, _ in _DATE_FORMS) or _is_serial(cell)
+    return _has_form(_date_alone(cell)) or _is_serial(cell)
+
+
+def _date_alone(cell: str) -> str:
+    """Return a date without the weekday and the article before it; another cell as it is."""
+    rest = _BEFORE.sub("", cell)
+    return rest if _has_form(rest) else cell
+
+
+def _has_form(cell: str) -> bool:
+    return any(pattern.match(cell) for pattern, _ in _DATE_FORMS)
 
 
 def _either(cell: str) -> bool:
     """Return whether a cell is one day read day first and another read month first."""
-    found = _NUMERIC.match(cell)
+    found = _NUMERIC.match(_date_alone(cell))
     if not found:
         return False
     first, second = int(found.group(1)), int(found.group(2))
@@ -450,15 +488,15 @@ def _either(cell: str) -> bool:
 
 def dates_of_parts(year: Float, month: Float, day: Float) -> DatedColumn:
     """Return days from three columns of numbers; NaT where they name none."""
-    days, broken = [], []
-    for parts in np.stack([year, month, day], axis=1).tolist():
+    days, unread = [], {}
+    for i, parts in enumerate(np.stack([year, month, day], axis=1).tolist()):
         whole = all(np.isfinite(parts))
         found = _valid(*(int(part) for part in parts)) if whole else None
         if whole and found is None:
-            broken.append("-".join(f"{part:g}" for part in parts))
+            unread[i] = "-".join(f"{part:g}" for part in parts)
         days.append(found or "NaT")
     named = np.array(days, dtype="datetime64[D]")
-    return DatedColumn(named, None, False, len(broken), tuple(dict.fromkeys(broken))[:5], 0)
+    return DatedColumn(named, None, False, unread, 0)
 
 
 def _is_serial(cell: str) -> bool:
@@ -468,8 +506,9 @@ def _is_serial(cell: str) -> bool:
 
 
 def _day(cell: str, order: DateOrder) -> date | None:
+    alone = _date_alone(cell)
     for pattern, parse in _DATE_FORMS:
-        found = pattern.match(cell)
+        found = pattern.match(alone)
         if found:
             return parse(found, order)
     if _is_serial(cell):

@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import worded
-from fieldmon.io.import_report import ImportMessage, doubtful, guessed
+from fieldmon.compute.wording import joined, worded
+from fieldmon.io.import_report import ImportMessage, Severity, UnreadDates, doubtful, guessed
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.io.parse.values import DatedColumn
 
 
@@ -75,6 +78,37 @@ def midnights_left_out(n: int, where: str | None = None) -> list[ImportMessage]:
         n=n,
     )
     return [guessed(said, where)]
+
+
+_NAMED = 5
+#: how dates are written instead that are none
+HOW_TO_WRITE = worded("Write dates as 2026-11-18, 18/11/2026 or 18 November 2026.")
+
+
+def unread_dates(cells: Mapping[int, str]) -> Worded:
+    """Return how many dates are none, and of which records: cells by their numbers from 1."""
+    first = [
+        worded("record {number}: {cell!r}", number=number, cell=cell)
+        for number, cell in list(cells.items())[:_NAMED]
+    ]
+    return worded(
+        "{n} {n:record has|records have} a date that is none ({shown}).",
+        n=len(cells),
+        shown=joined(", ", [*first, *["..."] * (len(cells) > _NAMED)]),
+    )
+
+
+def unread_days(cells: Mapping[int, str]) -> list[ImportMessage]:
+    """Return a doubt about inspections, by their numbers from 1, whose date is none."""
+    if not cells:
+        return []
+    said = worded(
+        "{said} {n:It has|They have} no day, not even one that is told. {how}",
+        said=unread_dates(cells),
+        n=len(cells),
+        how=HOW_TO_WRITE,
+    )
+    return [UnreadDates(Severity.DOUBTFUL, said)]
 
 
 def broken_times(cells: list[str]) -> list[ImportMessage]:

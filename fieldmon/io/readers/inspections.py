@@ -24,6 +24,7 @@ import numpy as np
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import first_few, worded
+from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.nearby_plants import outside_m
@@ -32,6 +33,7 @@ from fieldmon.io.import_report import (
     Imported,
     ImportMessage,
     Remedy,
+    UnreadDates,
     doubtful,
     dropped,
     guessed,
@@ -102,9 +104,13 @@ def read_inspections(
 def dated(read: Imported[Inspections]) -> Imported[Inspections]:
     """Leave out, and say so, which inspections have no date where others have one.
 
-    Where none has one they stay: the day of the work is then to be asked for.
+    Where none has one they stay: the day of the work is then to be asked for. Raise
+    `ObservationError` where what they say as their date is none: no other day may be put there.
     """
     without = np.isnat(read.value.date)
+    unread = [one.sentence for one in read.messages if isinstance(one, UnreadDates)]
+    if unread and len(without) and without.all():
+        raise ObservationError(unread[0])
     if not without.any() or without.all():
         return read
     said = worded(
@@ -112,7 +118,8 @@ def dated(read: Imported[Inspections]) -> Imported[Inspections]:
         n=int(without.sum()),
     )
     day = Remedy("day", "2026-04-06", worded("Say the day of those that have none"))
-    return read.having(read.value.take(~without), (dropped(said, None, day),))
+    way_out = None if unread else day
+    return read.having(read.value.take(~without), (dropped(said, None, way_out),))
 
 
 def look_up(

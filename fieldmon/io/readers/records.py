@@ -11,6 +11,7 @@ import numpy as np
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, ObservationError
 from fieldmon.infestation.observations import PRESENT, UNKNOWN, Observations
+from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import (
     Imported,
@@ -59,10 +60,12 @@ from fieldmon.io.parse.values import (
     presence,
 )
 from fieldmon.io.readers.date_doubts import (
+    HOW_TO_WRITE,
     broken_times,
     in_future,
     midnights_left_out,
     mixed_dates,
+    unread_dates,
 )
 from fieldmon.io.readers.inspection_file.columns import names_in, own_column
 from fieldmon.io.readers.inspection_file.results import results_in_names
@@ -120,10 +123,10 @@ def _records_and_plots(
         raise ObservationError(
             worded("{name} must hold records, but it holds none.", name=layer.name)
         )
-    layer, repeated = _once_each(by_day(layer, options))
+    layer, record, repeated = _once_each(by_day(layer, options))
     found = located(layer, options, places)
     table = _Table(found.layer, options)
-    day, at_s, day_messages = _days(table, found.lonlat)
+    day, at_s, day_messages = _days(table, found.lonlat, record)
     counts = _counts(table)
     accuracy_m, unread = _accuracy_m(table, found, options)
     twice = placed_twice(found, accuracy_m, options)
@@ -214,8 +217,8 @@ class _Counts(NamedTuple):
     messages: list[ImportMessage]
 
 
-def _once_each(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
-    """Return the layer without records that repeat another in every column."""
+def _once_each(layer: Layer) -> tuple[Layer, NDArray[np.int64], list[ImportMessage]]:
+    """Return the layer without records that repeat another, and the number of each, from 1."""
     columns = [list(values) for values in layer.columns.values()]
     if layer.geometry is not None:
         columns.append([None if g is None else g.wkb for g in layer.geometry])
@@ -225,13 +228,13 @@ def _once_each(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     kept = np.fromiter(first.values(), dtype=np.int64)
     n_again = len(layer) - len(kept)
     if n_again == 0 or len(columns) < 3:
-        return layer, []
+        return layer, np.arange(1, len(layer) + 1), []
     said = worded(
         "{n_again} {n_again:record repeats|records repeat} another in every column and "
         "{n_again:was|were} left out.",
         n_again=n_again,
     )
-    return layer.take(kept), [dropped(said)]
+    return layer.take(kept), kept + 1, [dropped(said)]
 
 
 class _Days(NamedTuple):
@@ -242,8 +245,8 @@ class _Days(NamedTuple):
     messages: list[ImportMessage]
 
 
-def _days(table: _Table, lonlat: NDArray[np.float64]) -> _Days:
-    """Return the local days of records at positions ``(n, 2)``, and their times."""
+def _days(table: _Table, lonlat: NDArray[np.float64], record: NDArray[np.int64]) -> _Days:
+    """Return the local days of records ``(n,)`` at positions ``(n, 2)``, and their times."""
     parts = tuple(name for role in ("year", "month", "day") if (name := table.named(role)))
     by_hand = table.options.column("date")
     zoned: list[ImportMessage] = []
@@ -271,7 +274,7 @@ def _days(table: _Table, lonlat: NDArray[np.float64]) -> _Days:
     is_guess = name is not None and by_hand is None and is_of_writing(name)
     said = worded("Dates were read from {where}.", where=quoted)
     of_dates = guessed(said) if is_guess else seen(said)
-    about = (*_about_dates(read, where), *of_midnights, *broken_times(unread))
+    about = (*_about_dates(read, where, record), *of_midnights, *broken_times(unread))
     return _Days(read.day, at_s, [of_dates, *zoned, *about])
 
 
@@ -326,7 +329,7 @@ def _as_local(
     return local, [seen(said)]
 
 
-def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
+def _about_dates(read: DatedColumn, where: str, record: NDArray[np.int64]) -> list[ImportMessage]:
     messages = []
     if read.is_ambiguous:
         messages.append(
@@ -347,18 +350,15 @@ def _about_dates(read: DatedColumn, where: str) -> list[ImportMessage]:
                 where,
             )
         )
-    if read.broken:
-        messages.append(
-            doubtful(
-                worded(
-                    "{n} {n:record has|records have} a date that is none ({shown}); it is left "
-                    "open.",
-                    n=read.n_broken,
-                    shown=_some(read.broken),
-                ),
-                where,
-            )
+    if read.unread:
+        said = worded(
+            "{said} {n:It counts|They count} as {days:g} days old, whatever day is planned. {how}",
+            said=unread_dates({int(record[k]): cell for k, cell in read.unread.items()}),
+            n=len(read.unread),
+            days=PriorSettings().undated_days,
+            how=HOW_TO_WRITE,
         )
+        messages.append(doubtful(said, where))
     messages += in_future(read.day, where)
     return messages
 

@@ -55,7 +55,8 @@ _DAYS = frozenset(
 # 2026111813, 20261118:1300, 202611181300
 _PACKED = re.compile(r"^(\d{4})(\d\d)(\d\d)[ T:_]?(\d\d)(?::?(\d\d)(?::?\d\d)?)?(Z?)$")
 _AFTER_DATE = re.compile(
-    r"^(?:\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/. ]\d{1,2}[-/. ](?:\d{4}|\d\d))[,T\s]+(\S.*)$"
+    r"^(?:\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/. ]\d{1,2}[-/. ](?:\d{4}|\d\d)|"
+    r"[^:]*[^\W\d_][^:]*\D\d{4})[,T\s]+(\S.*)$"  # a month or a weekday in words
 )
 _BARE_HOUR = re.compile(r"^(\d{1,2})(?:[h.](\d\d)|(\d\d))?\s*(?:h|hrs|uhr)?\.?(Z?)$", re.IGNORECASE)
 # Time (UTC), Date Time GMT+02:00
@@ -218,7 +219,7 @@ def _about_broken(
 ) -> list[ImportMessage]:
     """Return what to say of cells that are no date, or one with something that is no clock."""
     broken = [*read.broken, *(c for c in clocks if clocks[c] is None and _rest(c))]
-    n_broken = read.n_broken + sum(clocks[cell] is None and _rest(cell) for cell in cells)
+    n_broken = len(read.unread) + sum(clocks[cell] is None and _rest(cell) for cell in cells)
     if not n_broken:
         return []
     shown = ", ".join(repr(cell) for cell in broken[:3])

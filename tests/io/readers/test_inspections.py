@@ -1,6 +1,7 @@
 """What comes back from the field finds its plants, once, whatever it is written in."""
 
 import json
+import re
 
 import geopandas as gpd
 import numpy as np
@@ -377,6 +378,13 @@ def test_a_record_without_a_date_is_left_out_and_said_where_others_have_one():
     assert any("1 record has no date" in str(one) for one in brought.messages)
     none = read("plant,result\n1,found\n")
     assert dated(none) is none
+    unread = read(
+        "plant,result,date\n1,found,5 xyz 2026\n2,clean,June 10th\n",
+        InspectionOptions(work_day=np.datetime64("2026-06-10")),
+    )
+    said = "2 records have a date that is none (record 1: '5 xyz 2026', record 2: 'June 10th')"
+    with pytest.raises(ObservationError, match=re.escape(said)):
+        dated(unread)
 
 
 def test_a_number_that_nothing_bears_out_is_said_to_count_from_zero():

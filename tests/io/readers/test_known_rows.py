@@ -65,7 +65,7 @@ def test_what_no_rows_are_is_doubted_with_its_column_and_its_value():
     layer = table(row_dist=[5000, 4], azimuth=[10, -1000], plant_m=[0, 0.01])
     known, (_, *doubts) = known_rows(layer, NAMES)
     assert [(one.severity.value, one.feature, one.sentence) for one in doubts] == [
-        ("doubtful", "b", "Column 'azimuth' must be -720 to 720 degrees, but it is -1000."),
+        ("doubtful", "b", "Column 'azimuth' must be -360 to 360 degrees, but it is -1000."),
         ("doubtful", "a", "Column 'row_dist' must be 0.05 to 1000 metres, but it is 5000."),
         ("doubtful", "b", "Column 'plant_m' must be 0.05 to 1000 metres, but it is 0.01."),
     ]

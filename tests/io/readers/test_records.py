@@ -173,7 +173,9 @@ def test_days_that_are_none_stay_open_and_those_to_come_are_doubted():
     records = read(count=[1, 1, 1], date=["2026-04-01", "soon", ahead])
     assert np.isnat(records.value.day).tolist() == [False, True, False]
     doubts = said(records, Severity.DOUBTFUL)
-    assert "1 record has a date that is none ('soon')" in doubts
+    assert (
+        "1 record has a date that is none (record 2: 'soon'). It counts as 14 days old, " in doubts
+    )
     assert f"1 record lies in the future, the last on {ahead}" in doubts
 
 

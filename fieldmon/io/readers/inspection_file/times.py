@@ -26,6 +26,7 @@ from fieldmon.io.readers.date_doubts import (
     in_future,
     midnights_left_out,
     mixed_dates,
+    unread_days,
 )
 from fieldmon.io.readers.inspection_file.columns import arrivals_in, own_column, texts_in
 
@@ -79,10 +80,11 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     when = np.full(len(layer), "NaT", dtype="datetime64[s]")
     zone = None if options.zone is None else zone_of(options.zone)
     n_utc, broken, zoned = 0, [], np.zeros(len(layer), bool)
+    undated = {}
     for i, cell in enumerate(at):
         clock = read_clocks[cell]
         if not unsaid[i] and np.isnat(read.day[i]):
-            broken.append(f"{on[i]} {clocks[i]}" if days[i] and clocks[i] else on[i])
+            undated[i + 1] = f"{on[i]} {clocks[i]}" if days[i] and clocks[i] else on[i]
         elif clock is None and (":" in cell or (clocks[i] and np.isnat(own[i]))):
             broken.append(cell)
         elif clock is not None and not np.isnat(day[i]):
@@ -97,7 +99,8 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     if are_days(int(midnights.sum()), n_times):
         when[midnights] = "NaT"
     of_days = midnights_left_out(n_days)
-    about = _about_times(broken, read.is_ambiguous, n_utc)
+    about = unread_days(undated)
+    about += _about_times(broken, read.is_ambiguous, n_utc)
     idle = _of_told_day(options.day, day, needed=unsaid & np.isnat(planned))
     idle += _of_writing(date, options)
     return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *idle, *of_days, *about])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.io.import_report import Severity
+from fieldmon.io.import_report import Severity, UnreadDates
 from fieldmon.io.readers.inspection_file.columns import columns_of
 from fieldmon.io.readers.inspection_file.times import times_in
 from fieldmon.io.readers.inspection_options import InspectionOptions
@@ -148,7 +148,10 @@ def test_a_day_that_is_none_is_not_taken_for_the_planned_day_or_the_day_told(col
     times = read(told, arrive=["2026-11-18T08:30:00"], **columns)
     assert np.isnat(times.day).all()
     assert np.isnat(times.when).all()
-    assert len(times.messages) == 1
+    (said,) = times.messages
+    assert isinstance(said, UnreadDates)
+    assert "1 record has a date that is none (record 1: '" in said.sentence
+    assert "Write dates as 2026-11-18, 18/11/2026 or" in said.sentence
 
 
 def test_times_that_are_none_are_left_open_and_shown():

@@ -185,16 +185,18 @@ def tell_drafts(sentences: Iterable[str]) -> None:
         typer.echo(sentence, err=True)
 
 
-def tell_not_come(on: date, field: Field, what: str, todo: str = "") -> None:
+def tell_not_come(
+    on: date, field: Field, what: str, todo: str = "take it back with: fieldmon undo"
+) -> None:
     """Print that a day has not come yet on a plot, if so: a slip in a date moves a whole season.
 
-    `todo` is what else can be done if its date is wrong.
+    `todo` is what can be done if its date is wrong.
     """
     today = day_on(field, None)
     if on > today:
         typer.echo(
             f"doubtful: {what}, {on}, has not come: it is {today} on the plot. If its date is "
-            f"wrong, {todo}take it back with: fieldmon undo",
+            f"wrong, {todo}",
             err=True,
         )
 

@@ -96,21 +96,23 @@ def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:
 
 def _tell_recorded_ahead(season: Season, recorded: date) -> None:
     """Print that the last day recorded has not come, and how to mend one of its inspections."""
-    from fieldmon.compute.wording import counted
-
-    todo, numbers = "", season.inspections_on(recorded)
-    if numbers:
-        path, one = str(season.path), ["--inspection", str(numbers[0])]
+    field, what = season.plot.field, "the last day recorded"
+    if not (numbers := season.inspections_on(recorded)):
+        tell_not_come(recorded, field, what)
+        return
+    path, one = str(season.path), ["--inspection", str(numbers[0])]
+    dated = shlex.join(["fieldmon", "correct", path, "--who", "NAME", *one, "--date"])
+    dated = f"with: {dated} YYYY-MM-DD"
+    undone = shlex.join(["fieldmon", "undo", path, *one])
+    todo = f"correct inspection {numbers[0]} {dated}, or take it back with: {undone}"
+    if len(numbers) > 1:
         shown = ", ".join(map(str, numbers[:_NUMBERS_SHOWN]))
         more = "" if len(numbers) <= _NUMBERS_SHOWN else ", ..."
-        dated = shlex.join(["fieldmon", "correct", path, "--who", "NAME", *one, "--date"])
-        undone = shlex.join(["fieldmon", "undo", path, *one])
         todo = (
-            f"correct each of its {counted(len(numbers), 'inspection')} ({shown}{more}) with: "
-            f"{dated} YYYY-MM-DD; or take one back with: {undone}; or, if a whole recording is "
-            "wrong, "
+            f"correct each of its {len(numbers):,} inspections ({shown}{more}) {dated}, or take "
+            f"each back with: {undone}, or the last recording with: fieldmon undo {path}"
         )
-    tell_not_come(recorded, season.plot.field, "the last day recorded", todo)
+    tell_not_come(recorded, field, what, todo)
 
 
 def learnt_of_each(season: Season, on: date) -> Iterator[tuple[str, str, str]]:

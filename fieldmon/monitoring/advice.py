@@ -69,8 +69,6 @@ class AdviceSettings:
         Litres a hectare where it is sprayed.
     learnt_of
         The product of which the season learnt how well treating works; empty: it was not learnt.
-    finds_treated
-        Whether finds are taken as treated at once; a season says it itself.
 
     Examples
     --------
@@ -88,17 +86,16 @@ class AdviceSettings:
     costs: TreatmentCosts = field(default_factory=TreatmentCosts)
     rate_l_ha: float = USUAL_RATE_L_HA
     learnt_of: str = ""
-    finds_treated: bool = False
 
     def __post_init__(self) -> None:
         must_be_rate(self.rate_l_ha)
         must_hold_kinds(self, "The advice's")
         AskedVerdict(self.level, self.sure)  # refuses what cannot be
 
-    def assumed(self, units: Units | None = None) -> Worded:
+    def assumed(self, units: Units | None = None, *, finds_treated: bool = False) -> Worded:
         """Return in words what nobody measured here or set, and what was set.
 
-        `units` says of which area costs are.
+        `units` says of which area costs are; `finds_treated`: finds are taken as treated at once.
         """
         costs, usual, known = self.costs, TreatmentCosts(), units or Units()
         said = {
@@ -119,7 +116,7 @@ class AdviceSettings:
             joined(", ", [one for name, one in said.items() if (name in left) == is_left])
             for is_left in (True, False)
         )
-        if self.finds_treated:
+        if finds_treated:
             finds = worded("finds are treated at once")
             assumed = joined(", ", [finds, *[assumed] * bool(assumed)])
         both = [worded("Assumed: {what}.", what=assumed)] * bool(assumed)
@@ -312,6 +309,8 @@ class Advice:
         Plants too far from any inspection; None as above.
     few
         That few plants were inspected; None: enough were, or the plot is not below the threshold.
+    finds_treated
+        Whether finds are taken as treated at once.
     """
 
     grid: PlantGrid
@@ -324,6 +323,7 @@ class Advice:
     again: InspectAgain | None = None
     not_reached: NotReached | None = None
     few: FewInspected | None = None
+    finds_treated: bool = False
 
     def __repr__(self) -> str:
         return f"<Advice: {self.verdict}, {counted(len(self.zones), 'zone')}>"
@@ -502,7 +502,8 @@ class Advice:
             "loses a day. Where it is treated, its two faces are one plant."
         )
         has_faces = bool((self.grid.twin >= 0).any())
-        return joined(" ", [*[faces] * has_faces, self.asked.assumed(units)])
+        asked = self.asked.assumed(units, finds_treated=self.finds_treated)
+        return joined(" ", [*[faces] * has_faces, asked])
 
     def though(self, *, above: bool = True) -> list[str]:
         """Return why there are zones, where what is said of the plot does not ask for them."""

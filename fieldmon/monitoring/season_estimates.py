@@ -133,14 +133,15 @@ class SeasonEstimates(OpenSeason):
             evening = contents.history.in_hindsight(morning, day)
             told = db.execute("SELECT 1 FROM observations").fetchone()
         history, asked = contents.history, asked or AdviceSettings()
-        asked = replace(asked, finds_treated=history.belief.treated)
         done = tuple(one for one in history.treatments if one.day == day)
         found = history.found_and_left(evening, day)
         inspected = history.inspected(day)
         if not len(inspected):
             made = advice(history.grid, evening, asked, None, done, found).before_inspections()
-            return replace(made, not_reached=NotReached.of(history.grid, inspected))
+            away, treated = NotReached.of(history.grid, inspected), history.belief.treated
+            return replace(made, not_reached=away, finds_treated=treated)
         made = advice(history.grid, evening, asked, scene, done, found)
+        made = replace(made, finds_treated=history.belief.treated)
         if made.verdict != LEAVE:
             return made
         ahead = history.forecast(morning, day)  # others may plan meanwhile

@@ -129,7 +129,7 @@ def test_a_day_recorded_that_has_not_come_is_doubted(run, season, ahead, doubted
     assert (f"the last day recorded, {on}, has not come" in err) == doubted
     assert (f"seen: {on} was recorded already, and it is {today}" in err) == doubted
     for mended in (f"correct {season} --who NAME --inspection 1 --date YYYY-MM-DD",
-                   f"undo {season} --inspection 1;"):  # fmt: skip
+                   f"undo {season} --inspection 1\n"):  # fmt: skip
         assert (f"fieldmon {mended}" in err) == doubted
 
 

@@ -16,7 +16,7 @@ from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
 from fieldmon.cli.times import day
 from fieldmon.compute.working_folder import working_folder
-from fieldmon.errors import ChoiceNeeded, ContradictionError, SettingError
+from fieldmon.errors import ChoiceNeeded, ContradictionError, ObservationError, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -220,9 +220,11 @@ def _tell_others(file: str, names: list[str], what: str, who: str) -> None:
 
 @contextmanager
 def _naming(file: Path) -> Iterator[None]:
-    """Say with a question which of several files asks it."""
+    """Say with a question which of several files asks it, and of which one dates are none."""
     try:
         yield
+    except ObservationError as refused:
+        raise ObservationError(f"{file.name}: {refused}") from None
     except ChoiceNeeded as asked:
         said = f"{file.name}: {asked}"
         raise ChoiceNeeded(said, asked.option, asked.choices, "findings") from None

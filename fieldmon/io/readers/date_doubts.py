@@ -103,9 +103,8 @@ def unread_days(cells: Mapping[int, str]) -> list[ImportMessage]:
     if not cells:
         return []
     said = worded(
-        "{said} {n:It has|They have} no day, not even one that is told. {how}",
+        "{said} A day told by hand counts only for records that say none. {how}",
         said=unread_dates(cells),
-        n=len(cells),
         how=HOW_TO_WRITE,
     )
     return [UnreadDates(Severity.DOUBTFUL, said)]

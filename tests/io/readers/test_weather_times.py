@@ -48,6 +48,8 @@ def must_be_the_hours(weather):
         ("time", "202611{d}:{h:02d}00"),
         ("time", "2026-11-{d}T{h:02d}"),
         ("time", "{d}.11.2026 {h}h"),
+        ("time", "{d} November 2026 {h}"),
+        ("time", "{d} de noviembre de 2026 {h}h"),
         ("Date,Hour", "2026-11-{d},{h}:00:00"),
     ],
 )

@@ -367,7 +367,7 @@ class SeasonInspections(SeasonCorrections):
             return numbered_inspections.of_plant(db, plant)
 
     def inspections_on(self, on: date) -> tuple[int, ...]:
-        """Return the numbers (fid) in the file of a day's inspections that count, in order."""
+        """Return the numbers (fid) of the inspections `on` a day that count, in order."""
         with self.store.reading() as db:
             return numbered_inspections.of_day(db, on)
 

@@ -145,7 +145,9 @@ def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
     if n > _MOST_MEMBERS:
         raise SettingError(
             worded(
-                "A team must have {most} members at most, but it has {n}.", most=_MOST_MEMBERS, n=n
+                "A team must have {most} members at most, but their number is {n}.",
+                most=_MOST_MEMBERS,
+                n=n,
             )
         )
     return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))

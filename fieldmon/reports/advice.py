@@ -40,13 +40,14 @@ def advice_report(
 ) -> Report:
     """Return the report of what is advised after a day's work."""
     lead, *sentences = advice.sentences(units)
-    again = season.found_again(on)
+    with season.one_moment():
+        again, plot = season.found_again(on), _map(season, on, advice, units)
     blocks: list[Block] = [
         Paragraph(lead, lead=True),
         *map(Paragraph, sentences),
         *([] if again is None else [Paragraph(again.sentence())]),
         _figures(advice, product, units),
-        *_map(season, on, advice, units),
+        *plot,
         *([_zones(advice)] if len(advice.zones) else []),
         NoteLines(words.NOTES),
     ]

@@ -244,16 +244,24 @@ class FewInspected:
 
     @classmethod
     def of(
-        cls, inspected: int, asked: AdviceSettings, detects: float, background: float | None
+        cls,
+        plants: tuple[int, int],
+        asked: AdviceSettings,
+        detects: float,
+        background: float | None,
     ) -> FewInspected | None:
-        """Return it; None where enough plants were inspected.
+        """Return it; None where half as many as would be enough were inspected, or all are too few.
 
-        Enough are as many as would all be clean with a chance of 1 - `sure` at most, if as many
-        plants were infested as the threshold says, anywhere, and inspections found a share
-        `detects` of them.
+        `plants` is how many were inspected, all of them clean, and how many there are. Enough are
+        as many as would all be clean with a chance of 1 - `sure` at most, if as many plants were
+        infested as the threshold says, anywhere, and inspections found a share `detects` of them.
         """
-        enough = int(np.ceil(np.log(1.0 - asked.sure) / np.log1p(-asked.level * detects)))
-        return cls(inspected, enough, background) if inspected < enough else None
+        inspected, n = plants
+        infested = max(int(np.ceil(asked.level * n)), 1)
+        # each of them is among the inspected, and found there
+        enough = int(np.ceil(n * -np.expm1(np.log(1.0 - asked.sure) / infested) / detects))
+        few = 2 * inspected < enough <= n
+        return cls(inspected, enough, background) if few else None
 
     def sentence(self) -> str:
         """Return what the answer rests on instead."""

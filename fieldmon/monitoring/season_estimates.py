@@ -14,7 +14,7 @@ from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.decisions.sequential import LEAVE
 from fieldmon.errors import SettingError
 from fieldmon.infestation.earlier_season import EarlierSeason
-from fieldmon.infestation.inspections import SKIPPED
+from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.monitoring import day_figures
@@ -145,19 +145,28 @@ class SeasonEstimates(OpenSeason):
         if made.verdict != LEAVE:
             return made
         ahead = history.forecast(morning, day)  # others may plan meanwhile
-        background = contents.settings.prior.background_chance
-        assumed = told is None and background == PriorSettings().background_chance
         return replace(
             made,
             again=InspectAgain.of(ahead, on, asked.level * len(history.grid)),
             not_reached=NotReached.of(history.grid, inspected),
-            few=FewInspected.of(
-                len(np.unique(inspected)),
-                asked,
-                history.mean_detection(day),
-                background if assumed else None,
-            ),
+            few=self._few(contents, day, asked, records=told is not None),
         )
+
+    def _few(
+        self, contents: SeasonContents, day: int, asked: AdviceSettings, *, records: bool
+    ) -> FewInspected | None:
+        """Return that few plants were inspected; None: enough, or finds and treatments tell."""
+        history = contents.history
+        done = history.until(day)
+        treated = any(one.day <= day for one in history.treatments)
+        if treated or (done.result == FOUND).any():
+            return None
+        background = contents.settings.prior.background_chance
+        told = records or self.risk is not None or history.belief.earlier is not None
+        assumed = not told and background == PriorSettings().background_chance
+        plants = len(np.unique(history.inspected(day))), len(history.grid)
+        detects = history.mean_detection(day)
+        return FewInspected.of(plants, asked, detects, background if assumed else None)
 
     def status(self, on: date) -> Status:
         """Return where the season stands on a day."""

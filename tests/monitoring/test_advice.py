@@ -20,7 +20,7 @@ from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import MonitoringSettings, Season
-from fieldmon.monitoring.advice import Advice, AdviceSettings, _first
+from fieldmon.monitoring.advice import Advice, AdviceSettings, FewInspected, _first
 from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.samplers.decide import Decide
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
@@ -135,16 +135,44 @@ def test_a_plot_that_is_left_says_that_few_inspections_tell_little(tmp_path):
     (said,) = (one for one in made.advice(BEGINS, asked).reasons() if "By themselves" in one)
     assert said.startswith("1 plant was inspected. By themselves they do not tell: about ")
     assert "rests mostly on our default, 1 % infested where nothing is known" in said
-    few = made.advice(BEGINS, asked).few
-    detects = made.history.mean_detection(0)
-    by_chance = (1 - 0.1 * detects) ** np.array([few.enough, few.enough - 1])
+    n, few = len(made.plot.grid), made.advice(BEGINS, asked).few
+    # of a tenth infested anywhere, inspections of so many would find none with 10 %
+    infested = np.ceil(0.1 * n)
+    found = made.history.mean_detection(0) * np.array([few.enough, few.enough - 1]) / n
+    by_chance = (1 - found) ** infested
     assert by_chance[0] <= 1 - asked.sure < by_chance[1]
     told = replace(made.settings, prior=replace(made.settings.prior, background_chance=0.011))
     made.change(told, made.settings)
     assert "mostly on what was told before" in made.advice(BEGINS, asked).few.sentence()
-    clean = np.arange(few.enough), np.zeros(few.enough)
-    made.record(Inspections.of(*clean, np.datetime64(BEGINS)), "more")
+    half = -(-few.enough // 2)
+    made.record(
+        Inspections.of(np.arange(half - 1), np.zeros(half - 1), np.datetime64(BEGINS)), "more"
+    )
+    assert made.advice(BEGINS, asked).few.inspected == half - (half > 9)
+    made.record(Inspections.of([half, half + 1], [0, 0], np.datetime64(BEGINS)), "half")
     assert made.advice(BEGINS, asked).few is None
+
+
+def test_few_inspections_are_not_all_that_tells_after_finds_or_a_treatment(tmp_path):
+    season = Season.create(
+        tmp_path / "season.gpkg", a_plot(), Observations.none(), MonitoringSettings(BEGINS)
+    )
+    asked = AdviceSettings(0.3, costs=CHEAP)
+    season.record(Inspections.of([9], [0], np.datetime64(BEGINS)), "day")
+    assert season.advice(BEGINS, asked).few is not None
+    season.treat(BEGINS, 0.9, product="soap")
+    assert season.advice(BEGINS, asked).few is None
+    season.undo()
+    season.record(Inspections.of([3], [1], np.datetime64(BEGINS)), "find")
+    assert season.advice(BEGINS, asked).few is None
+
+
+@pytest.mark.parametrize(
+    ("n", "level", "enough"), [(32, 0.05, 27), (100_000, 0.05, 55), (32, 1e-7, None)]
+)
+def test_enough_clean_plants_are_no_more_than_there_are(n, level, enough):
+    few = FewInspected.of((1, n), AdviceSettings(level), 0.84, None)
+    assert (few and few.enough) == enough
 
 
 def test_of_few_plants_out_of_reach_nothing_is_said(season):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
@@ -13,13 +14,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 _BETWEEN = re.compile(r"[\s._-]+")
-# mites and mite, aphids and aphid; not Tetranychus and occidentalis
-_PLURAL = re.compile(r"(?<=[a-z]{3})(?<![isu])s$")
+# mites and mite, arañas and araña; not Tetranychus and occidentalis
+_PLURAL = re.compile(r"(?<=[^\W\d_]{3})(?<![isu])s$")
 
 
 def pest_key(name: str) -> str:
     """Return what all ways of writing one pest have in common: ``spider mite``."""
-    return _PLURAL.sub("", _BETWEEN.sub(" ", name.casefold()).strip())
+    plain = unicodedata.normalize("NFKC", name).casefold()
+    return _PLURAL.sub("", _BETWEEN.sub(" ", plain).strip())
 
 
 def usual_spellings(names: Iterable[str]) -> dict[str, str]:

@@ -429,8 +429,13 @@ class SeasonInspections(SeasonCorrections):
 
     def contents(self, numbers: Sequence[int]) -> dict[int, BatchContents]:
         """Return what batches of inspections and treatments say, by their numbers."""
+        grid = self.plot.grid
         with self.store.reading() as db:
-            return batches.contents(db, numbers)
+            said = batches.contents(db, numbers)
+            if (grid.twin < 0).all():
+                return said
+            vines = treatments.n_vines(db, numbers, self._inside, grid)
+        return {number: replace(one, n=vines.get(number, one.n)) for number, one in said.items()}
 
     def messages(self) -> tuple[KeptMessage, ...]:
         """Return what the imports had to say."""

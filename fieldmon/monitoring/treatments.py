@@ -298,6 +298,19 @@ def by_vine(done: Iterable[KeptTreatment], grid: PlantGrid) -> list[KeptTreatmen
     ]
 
 
+def n_vines(
+    db: sqlite3.Connection, numbers: Sequence[int], inside: Inside, grid: PlantGrid
+) -> dict[int, int]:
+    """Return how many vines the treatments of some batches reach, by batch; two faces are one."""
+    reached: dict[int, int] = {}
+    batches = ", ".join(f"{number:d}" for number in numbers)
+    for row in _rows(db, f"batch IN ({batches}) AND date NOTNULL"):
+        plants = _kept(row, inside, LocalClock("UTC")).place.plants
+        n = int(np.count_nonzero(grid.vines_of(plants)))
+        reached[row["batch"]] = reached.get(row["batch"], 0) + n
+    return reached
+
+
 def not_what_they_say(db: sqlite3.Connection) -> list[int]:
     """Return rows whose digest is not that of what they say."""
     found = []

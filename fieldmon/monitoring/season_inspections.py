@@ -24,6 +24,7 @@ from fieldmon.monitoring import (
     repeated_recordings,
     season_log,
     tables,
+    treatments,
 )
 from fieldmon.monitoring.batches import Recorded, Undone
 from fieldmon.monitoring.contradictions import (

@@ -36,7 +36,8 @@ _NAMES = {
     "weather": worded("weather"), "harvest": worded("harvest"), "language": worded("language"),
 }  # fmt: skip
 # by which of these a setting is said, by its path in a season's file or the beginning of that;
-# one that is not here, or which words do not tell apart, is said by its path
+# one that is not here, or which words do not tell apart, is said by its path, or by its name alone
+# where it is long
 _SAID_BY = {
     "sampler name": "sampler", "sampler settings every": "sampler", "team members": "team",
     "robot hours": "hours", "robot look_s": "look", "robot speed_m_s": "speed",
@@ -91,11 +92,16 @@ def _differing(
             continue
         if not (beside_team and name in _each_of_worker(one.robot) | _each_of_worker(other.robot)):
             yield _NAMES[name], this.get(name, _NONE), that.get(name, _NONE)
+    long = set[str]()
     for path, was, now in each_difference(*_parts_of(one, other)):
         said_by = next((name for start, name in _SAID_BY.items() if _within(path, start)), None)
         if said_by in differ or path == _WITH_TEAM or (beside_team and _within(path, "robot")):
             continue
-        yield plain_path(path), was, now
+        if said_by is None or was or now:
+            yield plain_path(path), was, now
+        elif said_by not in long:  # alike in words, and too long to be said
+            long.add(said_by)
+            yield _NAMES[said_by], "", ""
 
 
 def _within(path: str, start: str) -> bool:
@@ -190,7 +196,7 @@ def _each_of_worker(robot: Robot) -> dict[str, str]:
         "speed": f"{KM_H * robot.speed_m_s:.3g} km/h",
         "row changes, turns and stops": robot.times or times,
         "detection": str(chance_figure(robot.detects)),
-        # the ends of the ladder: of what lies between, the path of the setting says that it differs
+        # the ends of the ladder
         "detection by seconds": worded(
             "{low} in {first:g} s to {high} in over {last:g} s",
             low=chance_figure(least),

@@ -51,6 +51,12 @@ def test_what_is_taken_back_is_named_with_what_counts_again(chosen, said):
     assert taken_back(FIRST, changed) != taken_back(changed, FIRST)
 
 
+def test_what_is_long_and_alike_at_its_ends_is_said_by_its_name_alone():
+    steps = tuple((s, p + 0.01 * (s == 30.0)) for s, p in Viewpoints().steps)
+    changed = replace(FIRST, robot=Robot(viewpoints=Viewpoints(steps)))
+    assert taken_back(changed, FIRST) == "The last change was taken back: detection by seconds."
+
+
 def test_how_a_team_works_together_is_said_in_words():
     told = replace(FIRST, team=(ANN,), teamwork=Teamwork(contact_s=600.0, passing_m=5.0))
     said = "contact every 10 min (now at once again), headland to pass each other 5 m"

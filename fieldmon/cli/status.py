@@ -108,7 +108,7 @@ def _show_batches(kept: Season) -> None:
             what = f"  {counted(said.n, 'plant')}, {said.first}"
         elif said is not None and said.n == batch.rows == 1:
             row = kept.plot.grid.line_signs.get(said.row, said.row)
-            what = f"  row {row}, plant {said.plant}: {said.called}"
+            what = f"  row {row}, plant {said.number_on(kept.plot.grid)}: {said.called}"
         elif said is not None and (batch.undone or said.counting == batch.rows):
             what = f"  {said.found} found"
         elif said is not None:

@@ -10,6 +10,7 @@ from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import RESULT_NAMES, SKIPPED
 from fieldmon.io.parse.result_words import GONE, says_gone
+from fieldmon.io.writers.day_file import with_face
 from fieldmon.monitoring import rows_that_count, schema, treatments
 from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.inspection_table import number_of
@@ -18,6 +19,8 @@ from fieldmon.plot.local_clock import utc_text
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Mapping, Sequence
+
+    from fieldmon.plot.grid import PlantGrid
 
 _TABLE_OF = {
     "findings": "inspections",
@@ -110,6 +113,10 @@ class BatchContents:
     def is_gone(self) -> bool:
         """Whether the only inspection says that the plant does not stand there any more."""
         return called(self.result, self.note) == GONE
+
+    def number_on(self, grid: PlantGrid) -> str:
+        """Return the plant's number in its row, with the face where it has two, for a sentence."""
+        return with_face(grid, self.at, self.plant) if self.at >= 0 else str(self.plant)
 
     @property
     def called(self) -> str:

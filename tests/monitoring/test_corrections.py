@@ -43,6 +43,8 @@ def test_the_log_names_each_correction_and_of_two_faces_which(tmp_path, face):
     assert season.undo() == f"Undone: row 1, plant 8{named} on {BEGINS} (clean)."
     again = season.redo(season.batches()[0].number)
     assert again == f"Counts again: row 1, plant 8{named} on {BEGINS} (clean)."
+    (eighth,) = season.contents([season.batches()[0].number]).values()
+    assert eighth.number_on(grid) == f"8{named}"
     with closing(sqlite3.connect(season.path)) as db:
         db.execute("UPDATE inspections SET result = 'flown' WHERE undone = 0 AND number = 2")
         db.commit()

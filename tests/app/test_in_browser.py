@@ -1145,68 +1145,44 @@ def test_in_a_low_window_or_a_zoomed_one_all_tools_of_the_map_can_be_pressed(scr
             tools.nth(k).click(trial=True, timeout=5_000)  # nothing lies over it
 
 
-# the farthest away of all seasons that other tests keep: the map of all has it in its corner
-FAR_AWAY = {"North-west": (34.0, 32.0), "South-east": (37.0, 28.9)}
-ONE_PLOT = {"Last year": (36.0, 31.0), "This year": (36.0, 31.0)}
-
-
-@pytest.fixture(scope="module")
-def plots_tab(new_tab, address, served_seasons):
-    """Load the map of all plots once, with seasons that are far away and two of one plot."""
-    files = []
-    for name, (lon, lat) in {**FAR_AWAY, **ONE_PLOT}.items():
+def test_no_plot_lies_behind_the_legend_of_the_map_of_all(page, address, served_seasons):
+    # the farthest away of all seasons that other tests keep: the map of all has it in its corner
+    files = [served_seasons / f"{name}.gpkg" for name in ("North-west", "South-east")]
+    for file, (lon, lat) in zip(files, ((34.0, 32.0), (37.0, 28.9)), strict=True):
         area = shapely.MultiPolygon([box(lon, lat, lon + 0.0005, lat + 0.0005)])
-        files.append(served_seasons / f"{name}.gpkg")
-        field = Field("East" if name in ONE_PLOT else name, area)
-        Season.create(files[-1], Plot.of(field), begins=date(2026, 11, 16))
-    page = new_tab()
+        Season.create(file, Plot.of(Field(file.stem, area)), begins=date(2026, 11, 16))
     try:
         page.goto(f"{address}/plots")
         rest(page)
-        yield page
+        (place,) = pixels(view(page), [[37.0, 28.9]])
+        legend = page.locator(f"{MAP} .legend").bounding_box()
+        top = page.locator(MAP).bounding_box()["y"]
+        behind = place[0] > legend["x"] and top + place[1] > legend["y"]
+        assert not behind, f"it is at {place}, the legend at {legend}"
     finally:
-        page.close()
         for file in files:
             file.unlink()
 
 
-@pytest.fixture
-def plots(plots_tab):
-    """Return that tab, on that map."""
-    with awake(plots_tab) as page:
-        if urlsplit(page.url).path != "/plots":
-            open_item(page, texts.MENU["plots"])
-        yield page
-
-
-def test_no_plot_lies_behind_the_legend_of_the_map_of_all(plots):
-    page = plots
-    (place,) = pixels(view(page), [FAR_AWAY["South-east"]])
-    legend = page.locator(f"{MAP} .legend").bounding_box()
-    top = page.locator(MAP).bounding_box()["y"]
-    behind = place[0] > legend["x"] and top + place[1] > legend["y"]
-    assert not behind, f"it is at {place}, the legend at {legend}"
-
-
-def test_plots_under_one_dot_are_counted_on_it_and_each_can_be_opened(plots):
-    page = plots
-    (place,) = pixels(view(page), [np.add(ONE_PLOT["This year"], 0.00025)])
-    corner = page.locator(MAP).bounding_box()
-    on_screen = np.add(place, (corner["x"], corner["y"]))
-
-    def is_counted():
-        for one in page.locator(f"{MAP} .label.plots:visible", has_text=re.compile("^2$")).all():
-            on = one.bounding_box()
-            middle = on["x"] + on["width"] / 2, on["y"] + on["height"] / 2
-            if np.hypot(*(on_screen - middle)) < 30:
-                return True
-        return False
-
-    until(is_counted)
-    click(page, place)
-    page.locator(f"{MAP} .choice button", has_text="This year").click()
-    box_of_plots = page.locator(".st-key-season input")
-    until(lambda: box_of_plots.count() and box_of_plots.input_value() == "This year", 60.0)
+def test_plots_under_one_dot_are_counted_on_it_and_each_can_be_opened(
+    page, address, served_seasons
+):
+    area = shapely.MultiPolygon([box(36.0, 31.0, 36.0005, 31.0005)])
+    files = [served_seasons / f"{name}.gpkg" for name in ("Last year", "This year")]
+    for file in files:
+        Season.create(file, Plot.of(Field("East", area)), begins=date(2026, 11, 16))
+    try:
+        page.goto(f"{address}/plots")
+        rest(page)
+        page.locator(f"{MAP} .label.plots", has_text="2").wait_for()
+        (place,) = pixels(view(page), [[36.00025, 31.00025]])
+        click(page, place)
+        page.locator(f"{MAP} .choice button", has_text="This year").click()
+        box_of_plots = page.locator(".st-key-season input")
+        until(lambda: box_of_plots.count() and box_of_plots.input_value() == "This year", 60.0)
+    finally:
+        for file in files:
+            file.unlink()
 
 
 @pytest.fixture(scope="module")

@@ -26,6 +26,9 @@ class Trees:
     def __len__(self):
         return 20
 
+    def vines_of(self, plants):
+        return plants
+
 
 def inspected(day, plants, second=np.nan, who="Ana", result=CLEAN):
     k = len(plants)

@@ -33,7 +33,7 @@ def test_a_clear_winner_is_said_with_its_interval():
     )
     assert "Naive · 12 h · 40 s" in said
     low, high = summary_statistics(np.array([40.0, 41.0, 42.0])).low, 43.48
-    assert f"({low:,.0f} to {high:,.0f} more" in said
+    assert f"({low:,.0f} to {high:,.0f} plant-days more, 95 % interval)" in said
 
 
 def test_where_the_interval_holds_nothing_nobody_is_called_better():

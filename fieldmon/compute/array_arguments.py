@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from fieldmon.compute.arguments import shown
 from fieldmon.errors import SettingError
 
@@ -13,6 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from typing import TypeVar
 
+    import numpy as np
     from numpy.typing import NDArray
 
     K = TypeVar("K", np.float64, np.bool_)
@@ -40,6 +39,8 @@ def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDAr
     >>> array_of(np.bool_, "What was treated", [True, False])
     array([ True, False])
     """
+    import numpy as np  # noqa: PLC0415 - a command's help is there without it
+
     held = "True or False" if kind is np.bool_ else "numbers"
     try:
         array = np.asarray(given)
@@ -69,6 +70,8 @@ def plants_marked(
     wrong
         What to say where so many are marked or not, instead of n.
     """
+    import numpy as np  # noqa: PLC0415 - as above
+
     marked = array_of(
         np.bool_, what, given, f"Of plants by their numbers give np.isin(np.arange({n}), numbers)."
     )
@@ -94,6 +97,8 @@ def entries_of(what: str, which: Any, n: int) -> Any:  # noqa: ANN401 - an array
     >>> entries_of("Records", [True, False], 2)
     array([ True, False])
     """
+    import numpy as np  # noqa: PLC0415 - as above
+
     if isinstance(which, slice):
         return which
     try:
@@ -176,6 +181,8 @@ def chances_of(given: object, n: int) -> NDArray[np.float64]:
     ...
     fieldmon.errors.SettingError: A plot's chance map must have the shape (2,), but it has (1,).
     """
+    import numpy as np  # noqa: PLC0415 - as above
+
     chance = array_of(np.float64, "A chance map", given)
     must_be_shaped("A plot's", {"chance map": (chance, (n,))})
     must_be_chances("A chance map", chance)

@@ -426,14 +426,18 @@ def said_in(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> t
         said["count"] = None if said["count"] == before.get("count") else said["count"]
     stood = before.get("plant")
     if isinstance(row[0], bytes) and isinstance(stood, int) and 0 <= stood < len(grid):
-        said["plant"] = _plant_there(row[0], said["plant"], stood, _faced(db, change), grid)
+        said["plant"] = _plant_there(db, (row[0], said["plant"], stood), change, grid)
     return tuple(said.values())
 
 
 def _plant_there(
-    place: bytes, named: object, stood: int, change: OutsideChange, grid: PlantGrid
+    db: sqlite3.Connection, row: tuple[bytes, object, int], change: OutsideChange, grid: PlantGrid
 ) -> object:
-    """Return the plant of a row that `stood` at one and names one; by its place if it was moved."""
+    """Return the plant of a row; by its place if it was moved.
+
+    `row` is its place, the plant that it names, and the one at which it stood.
+    """
+    place, named, stood = row
     try:
         point = geometry(place)
         moved = np.array([[point.x, point.y]]), grid.lonlat(np.array([stood]))
@@ -445,7 +449,7 @@ def _plant_there(
             worded(
                 "A finding that is moved must come to stand at a plant, but {change} and does "
                 "not: {error} Move it there with the program that changed it; nothing was taken.",
-                change=change.sentence(),
+                change=_faced(db, change).sentence(),
                 error=error,
             )
         ) from error

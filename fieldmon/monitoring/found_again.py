@@ -68,8 +68,8 @@ def found_again(history: History, day: int) -> FoundAgain | None:
     total, n = int(inspected.sum()), int((again & inspected).sum())
     if not n or 2 * n < total:
         return None
-    begun = int(first[inspected].min())
-    left = np.cumsum([0.0, *(_left_clean(history, night) for night in range(begun, day))])
+    begun, last = int(first[inspected].min()), int(again_on[inspected].max())
+    left = np.cumsum([0.0, *(_left_clean(history, night) for night in range(begun, last))])
     anew = -np.expm1(left[again_on[inspected] - begun] - left[first[inspected] - begun])
     anew = np.maximum(anew, others[again_on[inspected]])
     return FoundAgain(n, total) if bdtrc(n - 1, total, anew.mean()) < _CHANCE else None

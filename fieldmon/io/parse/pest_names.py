@@ -11,7 +11,7 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.io.import_report import ImportMessage, guessed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
 _BETWEEN = re.compile(r"[\s._-]+")
 # mites and mite, arañas and araña; not Tetranychus and occidentalis
@@ -24,8 +24,11 @@ def pest_key(name: str) -> str:
     return _PLURAL.sub("", _BETWEEN.sub(" ", plain).strip())
 
 
-def usual_spellings(names: Iterable[str]) -> dict[str, str]:
-    """Return the spelling of each pest that is most often written, by every one that is."""
+def usual_spellings(names: Iterable[str] | Mapping[str, int]) -> dict[str, str]:
+    """Return the spelling of each pest that is most often written, by every one that is.
+
+    `names` are all that are written, or how often each is.
+    """
     often = Counter(names)
     spelt = defaultdict[str, list[str]](list)
     for name in often:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import first_few, worded
@@ -17,7 +18,9 @@ if TYPE_CHECKING:
 
 def spelt_in(cells: Iterable[str]) -> dict[str, str]:
     """Return the usual spelling of each species, by every one in cells; "none" is none."""
-    return usual_spellings(c for c in cells if not is_missing(c) and meaning(c) != ABSENT)
+    often = Counter(cells)
+    named = (c for c in often if not is_missing(c) and meaning(c) != ABSENT)
+    return usual_spellings({c: often[c] for c in named})
 
 
 def species_in(cells: Iterable[str]) -> list[str]:

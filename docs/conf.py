@@ -45,7 +45,7 @@ myst_heading_anchors = 3
 # the notebooks are run anew at each build: what they show is what the library does
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 240
+nb_execution_timeout = 1200  # seconds a cell; the first ones wait for loops to be compiled
 nb_merge_streams = True
 # no widgets, and so no script from elsewhere for them
 nb_ipywidgets_js = {}

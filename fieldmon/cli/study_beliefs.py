@@ -10,9 +10,9 @@ import typer
 
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
+from fieldmon.cli.scenario_names import beginning_so
 from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.compute.ranges import SEASONS, AllowedRange
-from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from fieldmon.infestation.pest_in_weather import PestInWeather
@@ -54,6 +54,9 @@ def beliefs(
 ) -> None:
     """Compare chance maps with what came true: reliability, scores, intervals, cost.
 
+    Each map sends the sampler through seasons of its own. Intervals are counted on mornings with
+    infested plants, but for the first, whose number is told.
+
     With --pest only the map of traced pairs is run, as the others do not follow pests.
 
     Example: fieldmon study beliefs --seeds 20 --sampler naive -o study
@@ -90,10 +93,7 @@ def _scenario(begins: str, pest: PestInWeather | None) -> Scenario:
 
     known = [Scenario(), *all_scenarios(), *in_worlds()]
     known = known if pest is None else with_pest(known, pest)
-    chosen = next((each for each in known if each.name.startswith(begins)), None)
-    if chosen is None:
-        raise SettingError(f"A scenario must begin with {begins!r}, but none does.")
-    return chosen
+    return beginning_so([begins], known)[0]
 
 
 def _scores(of: Calibration) -> str:
@@ -110,4 +110,5 @@ def _held(of: Calibration) -> str:
     if not of.mornings:
         return "no morning: none but the first had infested plants"
     shares = f"{100 * of.covered:.0f} and {100 * of.half_covered:.0f} %"
-    return f"{shares} of {of.mornings} morning{'s' * (of.mornings != 1)}"
+    mornings = f"morning{'s' * (of.mornings != 1)}"
+    return f"{shares} of {of.mornings} {mornings} with infested plants"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +14,7 @@ from fieldmon.cli.options import VisitEvery
 from fieldmon.cli.pest_options import PestName, pest_in_weather_of
 from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import OWN
+from fieldmon.cli.scenario_names import beginning_so
 from fieldmon.cli.study_output import can_be_folder, going_on, tell_not_read, write_all
 from fieldmon.compute.ranges import PAIRED
 from fieldmon.errors import SettingError
@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from fieldmon.studies.samplers.seasons import SeasonOutcome
 
 
-# names of scenarios that a sentence has room for
-_NAMED = 5
 _SEEDS = 10
 
 
@@ -161,28 +159,7 @@ def _scenarios(
         return scenarios
     if pest_in_weather is None:
         scenarios = [*scenarios, *in_worlds()]
-    meant = [each for each in scenarios if each.name.startswith(tuple(beginnings))]
-    if not meant:
-        raise SettingError(_none_begins_so(beginnings, scenarios, full=full))
-    return meant
-
-
-def _none_begins_so(beginnings: list[str], known: list[Scenario], *, full: bool) -> str:
-    """Return what is said where no scenario is meant: the names that begin most alike."""
-
-    def alike(name: str) -> int:
-        pairs = [zip(name, beginning, strict=False) for beginning in beginnings]
-        return max(sum(1 for _ in takewhile(lambda two: two[0] == two[1], each)) for each in pairs)
-
-    # sorted keeps the order of those that are equally alike
-    names = sorted((each.name for each in known), key=alike, reverse=True)
-    near = ", ".join(f'"{name}"' for name in names[:_NAMED])
-    said = " or ".join(f'"{beginning}"' for beginning in beginnings)
-    more = "" if full else ", and more with --full"
-    return (
-        f"--scenario must be how a scenario's name begins, but none begins with {said}. There are "
-        f"{len(names)}, for instance {near}{more}."
-    )
+    return beginning_so(beginnings, scenarios, "" if full else ", and more with --full")
 
 
 def _outcomes(

@@ -31,6 +31,8 @@ _IN_LINE = 0.3
 NO_ROWS = 0.2
 # directions with lines as wide apart as the best, and as straight as this, are rows as well
 _AS_WIDE, _IN_ROWS, _LONGER = 0.93, 0.05, 1.15
+# and are another direction from here on
+_OTHER_DEG = 1.0
 _MOST_PAIRS = 200_000
 # rows are found from this many plants in the middle of the plot; others only repeat them
 _MOST_PLANTS = 10_000
@@ -55,7 +57,8 @@ class RowDirection:
     row_spacing_m: float
 
     def __str__(self) -> str:
-        return f"{counted(self.n_rows, 'row')} along {self.bearing_deg:.0f} degrees"
+        # 179.7 is along 0, as are its rows
+        return f"{counted(self.n_rows, 'row')} along {round(self.bearing_deg) % 180} degrees"
 
 
 @dataclass(frozen=True)
@@ -187,7 +190,15 @@ def _longest(seen: list[_LinesSeen], best: _LinesSeen) -> tuple[_LinesSeen, list
     # hardly longer ones are no reason to leave the best
     if best.n_lines < _LONGER * longest.n_lines:
         longest = best
-    return longest, [lines for lines in good if lines is not longest]
+    kept = [longest]
+    for lines in good:  # several bearings may have been made exact to one
+        if all(_between_deg(lines.bearing_deg, other.bearing_deg) > _OTHER_DEG for other in kept):
+            kept.append(lines)
+    return longest, kept[1:]
+
+
+def _between_deg(a_deg: float, b_deg: float) -> float:
+    return abs((a_deg - b_deg + 90.0) % 180.0 - 90.0)
 
 
 def distinct(lonlat: Float, apart_m: float = SAME_PLANT_M) -> NDArray[np.intp]:

@@ -32,6 +32,8 @@ _OFF = 0.25
 _WORTH_A_WORD = 0.01
 # so much nearer to one other than to a third, a plant is in a pair; so many are worth a word
 _CLOSE, _PAIRED, _FEW = 0.6, 0.4, 6
+# where so many have a third as near as that one, give or take, some of a line are missing instead
+_AS_NEAR, _IN_LINE = 1.25, 0.1
 # plants of a double row stand about as far from its middle, much unlike plants that stray, and
 # mostly by turns: the greatest spread of how far, the least share of changes of side, the least
 # distance and the least number
@@ -378,8 +380,11 @@ def _paired_share(xy_m: NDArray[np.float64]) -> float:
         return 0.0
     from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
 
-    near_m = cKDTree(xy_m).query(xy_m, k=3)[0]
-    return float(np.mean(near_m[:, 1] < _CLOSE * near_m[:, 2]))
+    near_m, third_m = cKDTree(xy_m).query(xy_m, k=3)[0][:, 1:].T
+    paired = near_m < _CLOSE * third_m
+    if paired.any() and np.mean(third_m < _AS_NEAR * np.median(near_m[paired])) > _IN_LINE:
+        return 0.0
+    return float(np.mean(paired))
 
 
 def _zigzag(left_m: Float, row: NDArray[np.integer]) -> tuple[float, float]:

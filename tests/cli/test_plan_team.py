@@ -75,7 +75,7 @@ def test_a_table_that_makes_no_team_is_a_sentence(run, tmp_path, table, says):
         (("--robots", 2, "--all"), "leave out --all"),
         (("--robots", 0), "1 member or more"),
         (("--robots", 10**30), "1000 members at most"),
-        (("--robots", "nobody.csv"), "must be a readable table"),
+        (("--robots", "nobody.csv"), "but there is none. Check the name."),
     ],
 )
 def test_what_does_not_go_with_a_team_is_a_sentence(run, words, says):

@@ -18,7 +18,7 @@ from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot, plot_around
 from fieldmon.plot.projection import Frame
-from fieldmon.plot.row_detection import row_ends, rows_from_plants
+from fieldmon.plot.row_detection import RowDirection, row_ends, rows_from_plants
 from tests.bent import right_share
 
 FRAME = Frame(8.0, 47.0)
@@ -154,6 +154,27 @@ def test_a_triangular_planting_has_rows_three_ways():
     rows = rows_from_plants(Frame(8.0, 47.0, 10.0).lonlat(xy_m))
     ways = sorted(round(one.bearing_deg) for one in rows.directions)
     assert ways == [10, 70, 130]
+
+
+@pytest.mark.parametrize(("n_rows", "way_deg"), [(3, 37.0), (2, 0.0), (4, 90.0)])
+def test_a_few_rows_have_one_direction_only(n_rows, way_deg, n_plants=4):
+    k, j = np.divmod(np.arange(n_rows * n_plants), n_plants)
+    xy_m = np.stack([3.0 * j, 4.0 * k], axis=1)
+    plot = plot_around("small", Frame(8.0, 47.0, way_deg).lonlat(xy_m))
+    assert not any("directions" in said for said in plot.rows.doubts)
+
+
+def test_rows_to_the_north_run_along_0_degrees_and_not_along_180():
+    assert str(RowDirection(179.7, 3, 4.0)) == "3 rows along 0 degrees"
+
+
+@pytest.mark.parametrize("missing", [0.3, 0.4, 0.6])
+def test_plants_that_are_missing_make_no_pairs_of_those_left(missing):
+    k, j = np.divmod(np.arange(20 * 60), 60)
+    xy_m = np.stack([1.5 * j, 3.0 * k], axis=1)
+    left = np.random.default_rng(3).random(len(xy_m)) > missing
+    plot = plot_around("gaps", FRAME.lonlat(xy_m[left]))
+    assert plot.rows.paired_share == 0.0
 
 
 def in_blocks(spacings_m):

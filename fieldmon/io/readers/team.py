@@ -57,6 +57,10 @@ def read_team(path: Path) -> tuple[StatedMember, ...]:
     """
     try:
         text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise FileProblem(
+            worded("{path} must be a table (CSV), but there is none. Check the name.", path=path)
+        ) from None
     except (OSError, UnicodeDecodeError) as error:
         raise FileProblem(
             worded(

@@ -157,8 +157,8 @@ def test_a_triangular_planting_has_rows_three_ways():
 
 
 @pytest.mark.parametrize(("n_rows", "way_deg"), [(3, 37.0), (2, 0.0), (4, 90.0)])
-def test_a_few_rows_have_one_direction_only(n_rows, way_deg, n_plants=4):
-    k, j = np.divmod(np.arange(n_rows * n_plants), n_plants)
+def test_a_few_rows_have_one_direction_only(n_rows, way_deg):
+    k, j = np.divmod(np.arange(n_rows * 4), 4)
     xy_m = np.stack([3.0 * j, 4.0 * k], axis=1)
     plot = plot_around("small", Frame(8.0, 47.0, way_deg).lonlat(xy_m))
     assert not any("directions" in said for said in plot.rows.doubts)

@@ -123,6 +123,7 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
         detects=detects_in(layer, columns, file or layer.name),
         plot_called=texts_in(layer, plot := plot_column(layer, columns, options)),
         plot_column=np.full(len(layer), plot or ""),
+        mark=_marks(layer),
     )
     kept = whole.take(said)
     spelt = _of_one_pest(columns.species, texts_in(layer, columns.species)[said])
@@ -240,9 +241,19 @@ def _each_point(layer: Layer, messages: list[ImportMessage]) -> tuple[Layer, lis
     return replace(layer.take(which), geometry=each), [*messages, said]
 
 
+def _marks(layer: Layer) -> NDArray[np.str_] | None:
+    """Return by which digest a season's file knows each record ``(n,)``; None: it is of none."""
+    name = _of_season("digest", layer)
+    return None if name is None or _of_season("undone", layer) is None else texts_in(layer, name)
+
+
+def _of_season(column: str, layer: Layer) -> str | None:
+    return next((name for name in layer.columns if plain(name) == column), None)
+
+
 def _without_undone(layer: Layer) -> Layer:
     """Return the layer without what a season's file keeps, but marks as taken back."""
-    name = next((n for n in layer.columns if plain(n) == "undone"), None)
+    name = _of_season("undone", layer)
     if name is None:
         return layer
     return layer.take(np.flatnonzero([text(v) in {"", "0", "False"} for v in layer.column(name)]))

@@ -106,8 +106,7 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
     options = chosen(options, flags.finding_option).on(kept.plot.field)
     tell_drafts(kept.drafts)
     with working_folder() as folder:
-        read = _read(kept, files, options, Path(folder))
-        _refuse_changed(kept, files, read, confirmed=flags.contradicting)
+        read = _read(kept, files, options, Path(folder), confirmed=flags.contradicting)
         last = _record(kept, [one for one in read if one.saved is None], flags)
     saved = [(one.name, one.saved) for one in read if one.saved is not None]
     for name, one in saved:
@@ -120,7 +119,7 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
 
 
 def _read(
-    season: Season, files: list[Path], options: InspectionOptions, folder: Path
+    season: Season, files: list[Path], options: InspectionOptions, folder: Path, *, confirmed: bool
 ) -> list[BroughtFile]:
     """Return what is in files, all of them before any is recorded: nothing is left half-done."""
     from fieldmon.io.readers.other_plots import left_out
@@ -131,6 +130,8 @@ def _read(
         (own := folder / str(k)).mkdir()
         with Terminal().answering(), _naming(file):
             read.append(read_brought(season, file, options, own))
+    if not confirmed:
+        _refuse_changed(season, files, read)
     for one in read:
         for message in one.messages:
             typer.echo(f"{one.name}: {message.line(FLAGS['findings'])}", err=True)
@@ -145,12 +146,10 @@ def _read(
     return read
 
 
-def _refuse_changed(
-    season: Season, files: list[Path], read: list[BroughtFile], *, confirmed: bool
-) -> None:
+def _refuse_changed(season: Season, files: list[Path], read: list[BroughtFile]) -> None:
     """Refuse inspections of the season itself that were changed: no file says what is meant."""
     for file, one in zip(files, read, strict=True):
-        if one.changed and not confirmed:
+        if one.changed:
             n, s = one.changed, "" if one.changed == 1 else "s"
             raise ContradictionError(
                 f"What is recorded must be new, but {n} inspection{s} in {one.name} "

@@ -122,10 +122,22 @@ def read_brought(
     rows = read_inspection_rows(source, options)
     read = _dated_on_plot(season, rows, options)
     changed = [] if copy is not None else changed_in(season, rows.value, options)[0]
-    return BroughtFile(
-        name, read.value, (*read.messages, *treated), None, copy, len(corrected),
-        sum(one.is_seen_otherwise for one in changed),
-    )  # fmt: skip
+    n_changed = sum(one.is_seen_otherwise for one in changed)
+    messages = (*read.messages, *treated, *_about_changed(n_changed))
+    return BroughtFile(name, read.value, messages, None, copy, len(corrected), n_changed)
+
+
+def _about_changed(n: int) -> list[ImportMessage]:
+    """Return a doubt about so many inspections of the season itself that were changed."""
+    if not n:
+        return []
+    said = worded(
+        "{n} {n:inspection was|inspections were} exported from this season and changed: recorded, "
+        "{n:it counts|they count} beside what stands there. As corrections {n:it comes|they come} "
+        "with: fieldmon correct",
+        n=n,
+    )
+    return [doubtful(said)]
 
 
 def read_findings(

@@ -100,3 +100,4 @@ def test_a_changed_export_is_told_from_plants_inspected_anew_on_another_day(seas
     (tmp_path / "new").mkdir()
     read = read_brought(season, tmp_path / "edited.gpkg", OPTIONS, tmp_path / "new")
     assert read.changed == 1
+    assert "1 inspection was exported from this season and changed" in read.messages[-1].sentence

@@ -49,8 +49,9 @@ class BroughtFile:
     corrections
         How many inspections another program corrected or deleted in that copy. Who did is asked.
     changed
-        How many inspections exported from the season say otherwise of their plant and day: whether
-        as corrections, or made again, no file says. See `exported_inspections`.
+        How many inspections exported from the season say otherwise of their plant and day, or not
+        for sure of which: whether as corrections, or made again, no file says. See
+        `exported_inspections`.
     """
 
     name: str
@@ -121,8 +122,8 @@ def read_brought(
         source = counting_copy(copy, folder / "new", corrected)
     rows = read_inspection_rows(source, options)
     read = _dated_on_plot(season, rows, options)
-    changed = [] if copy is not None else changed_in(season, rows.value, options)[0]
-    n_changed = sum(one.is_seen_otherwise for one in changed)
+    changed, _, unsure = changed_in(season, rows.value, options) if copy is None else ([], [], {})
+    n_changed = sum(one.is_seen_otherwise for one in changed) + len(unsure)
     messages = (*read.messages, *treated, *_about_changed(n_changed))
     return BroughtFile(name, read.value, messages, None, copy, len(corrected), n_changed)
 

@@ -101,3 +101,8 @@ def test_a_changed_export_is_told_from_plants_inspected_anew_on_another_day(seas
     read = read_brought(season, tmp_path / "edited.gpkg", OPTIONS, tmp_path / "new")
     assert read.changed == 1
     assert "1 inspection was exported from this season and changed" in read.messages[-1].sentence
+    layer.loc[layer["plant"] == 300, "geometry"] = layer.geometry.iloc[0]
+    pyogrio.write_dataframe(layer, tmp_path / "moved.gpkg")
+    (tmp_path / "moved").mkdir()
+    read = read_brought(season, tmp_path / "moved.gpkg", OPTIONS, tmp_path / "moved")
+    assert read.changed == 2

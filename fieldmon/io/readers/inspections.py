@@ -128,7 +128,9 @@ def exported(
         np.flatnonzero(moved).tolist(), worded("it stands elsewhere than its plant")
     )
     doubts |= dict.fromkeys(np.flatnonzero(np.isnat(rows.day)).tolist(), worded("it has no date"))
-    doubts |= placed.doubts | placed.problems
+    # of a day to come the season may have them itself
+    ahead = amid_past(rows.day).keys() - _own_doubts(rows).keys()
+    doubts |= {k: why for k, why in placed.doubts.items() if k not in ahead} | placed.problems
     sure = np.setdiff1d(np.arange(len(rows)), np.array([*doubts], np.intp))
     marks = [] if placed.rows.mark is None else placed.rows.mark[sure].tolist()
     why = {int(rows.source_row[k]): doubts[k] for k in sorted(doubts)}

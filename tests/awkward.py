@@ -1093,7 +1093,7 @@ def two_counts_of_one_plant_and_day():
     return table("lon,lat,date,count\n" + rows)
 
 
-@case("records", says="doubtful: 2 species are mixed")
+@case("records", asks=("where", "species=T. urticae"), refuses="must be of one pest")
 def two_species_in_one_file():
     rows = f"35.15013,30.36013,{DAY},3,T. urticae\n35.15023,30.36013,{DAY},3,B. tabaci\n"
     return table("lon,lat,date,count,species\n" + rows)

@@ -184,38 +184,18 @@ Robots = Annotated[
         "look_s, detection, width_m and more: docs, teams). Each has a route file of its own."
     ),
 ]
-_contact_within = within(0, 24 * 60, unit=" minutes")
-_gain_within = within(TEAMWORK["least_gain"])
-Contact = Annotated[
-    float,
-    typer.Option(
-        help="Minutes between contacts; 0: the team learns of finds at once.",
-        callback=_contact_within,
-    ),
-]
-LeastGain = Annotated[
-    float,
-    typer.Option(
-        help="Least gain, in finds, for which somebody is sent elsewhere.", callback=_gain_within
-    ),
-]
-# of a season's team, which may be told anew
-_SeasonContact = Annotated[
-    float | None,
-    typer.Option(
-        "--contact",
-        help="Minutes between contacts of a team; 0, the usual: it learns of finds at once.",
-        callback=_contact_within,
-    ),
-]
-_SeasonLeastGain = Annotated[
-    float | None,
-    typer.Option(
-        "--least-gain",
-        help="Least gain, in finds, for which somebody of a team is sent elsewhere; usual: 0.5.",
-        callback=_gain_within,
-    ),
-]
+_CONTACT = typer.Option(
+    "--contact",
+    help="Minutes between contacts of a team; 0, usual in a season: it learns of finds at once.",
+    callback=within(0, 24 * 60, unit=" minutes"),
+)
+_LEAST_GAIN = typer.Option(
+    "--least-gain",
+    help="Least gain, in finds, for which somebody of a team is sent elsewhere; usual: 0.5.",
+    callback=within(TEAMWORK["least_gain"]),
+)
+Contact = Annotated[float, _CONTACT]
+LeastGain = Annotated[float, _LEAST_GAIN]
 Passing = Annotated[
     float | None,
     typer.Option(
@@ -395,8 +375,8 @@ class WorkerOptions(RobotOptions):
 class TeamworkOptions:
     """How a season's team works together, as it may be said anew."""
 
-    contact: _SeasonContact = None
-    least_gain: _SeasonLeastGain = None
+    contact: Annotated[float | None, _CONTACT] = None
+    least_gain: Annotated[float | None, _LEAST_GAIN] = None
     passing: Passing = None
 
     def said_of(self, teamwork: Teamwork, team: Sequence[TeamMember]) -> Teamwork:

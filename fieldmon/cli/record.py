@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -105,7 +106,7 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
     options = chosen(options, flags.finding_option).on(kept.plot.field)
     tell_drafts(kept.drafts)
     with working_folder() as folder:
-        read = _read(kept, files, options, Path(folder))
+        read = _read(kept, files, options, Path(folder), confirmed=flags.contradicting)
         last = _record(kept, [one for one in read if one.saved is None], flags)
     saved = [(one.name, one.saved) for one in read if one.saved is not None]
     for name, one in saved:
@@ -118,7 +119,7 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
 
 
 def _read(
-    season: Season, files: list[Path], options: InspectionOptions, folder: Path
+    season: Season, files: list[Path], options: InspectionOptions, folder: Path, *, confirmed: bool
 ) -> list[BroughtFile]:
     """Return what is in files, all of them before any is recorded: nothing is left half-done."""
     from fieldmon.io.readers.other_plots import left_out
@@ -129,6 +130,8 @@ def _read(
         (own := folder / str(k)).mkdir()
         with Terminal().answering(), _naming(file):
             read.append(read_brought(season, file, options, own))
+    if not confirmed:
+        _refuse_changed(season, files, read)
     for one in read:
         for message in one.messages:
             typer.echo(f"{one.name}: {message.line(FLAGS['findings'])}", err=True)
@@ -141,6 +144,20 @@ def _read(
                 f"are of this plot: {FLAGS['findings']} columns=plot="
             )
     return read
+
+
+def _refuse_changed(season: Season, files: list[Path], read: list[BroughtFile]) -> None:
+    """Refuse inspections of the season itself that were changed: no file says what is meant."""
+    for file, one in zip(files, read, strict=True):
+        if one.changed:
+            n, s = one.changed, "" if one.changed == 1 else "s"
+            raise ContradictionError(
+                f"What is recorded must be new, but {n} inspection{s} in {one.name} "
+                f"{'was' if n == 1 else 'were'} exported from {season.path.name} and changed, and "
+                "nothing was recorded. Take what was changed as corrections with: fieldmon correct "
+                f"{shlex.quote(str(season.path))} {shlex.quote(str(file))} --who NAME. Where "
+                "plants were inspected again, both hold with: --contradicting"
+            )
 
 
 def _record(season: Season, read: list[BroughtFile], flags: RecordFlags) -> date | None:

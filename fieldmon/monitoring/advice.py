@@ -265,19 +265,20 @@ class FewInspected:
 
     def sentence(self) -> str:
         """Return what the answer rests on instead."""
-        if self.background is None:
-            return worded(
-                "{plants} {n:was|were} inspected. By themselves they do not tell: about {enough} "
-                "clean ones would. The answer rests mostly on what was told before.",
-                plants=counted(self.inspected, "plant"), n=self.inspected, enough=self.enough,
-            )  # fmt: skip
-        return worded(
-            "{plants} {n:was|were} inspected. By themselves they do not tell: about {enough} clean "
-            "ones would. The answer rests mostly on our default, {share} infested where nothing "
-            "is known, which nobody measured here.",
+        alone = worded(
+            "{plants} {n:was|were} inspected. By themselves they do not tell: about {enough} "
+            "clean ones would.",
             plants=counted(self.inspected, "plant"), n=self.inspected, enough=self.enough,
-            share=share_figure(self.background),
         )  # fmt: skip
+        if self.background is None:
+            rests = worded("The answer rests mostly on what was told before.")
+        else:
+            rests = worded(
+                "The answer rests mostly on our default, {share} infested where nothing is known, "
+                "which nobody measured here.",
+                share=share_figure(self.background),
+            )
+        return joined(" ", (alone, rests))
 
 
 def _days(days: float) -> Worded:

@@ -13,6 +13,7 @@ from fieldmon.io.import_report import doubtful
 from fieldmon.io.options import Upload, source_name
 from fieldmon.monitoring import findings, repeated_recordings
 from fieldmon.monitoring.batches import Recorded
+from fieldmon.monitoring.exported_inspections import changed_in
 from fieldmon.monitoring.transactions import MAGIC, connect, copy_season, is_season
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from fieldmon.io.import_report import Imported, ImportMessage
     from fieldmon.io.options import Source
+    from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring import Season
@@ -46,6 +48,10 @@ class BroughtFile:
         A copy of the file to read where it is a season, else None.
     corrections
         How many inspections another program corrected or deleted in that copy. Who did is asked.
+    changed
+        How many inspections exported from the season say otherwise of their plant and day, or not
+        for sure of which: whether as corrections, or made again, no file says. See
+        `exported_inspections`.
     """
 
     name: str
@@ -54,6 +60,7 @@ class BroughtFile:
     saved: PhoneFile | None = None
     copy: Path | None = None
     corrections: int = 0
+    changed: int = 0
 
 
 def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Path:
@@ -98,7 +105,7 @@ def read_brought(
         If it is a season that looks for another pest, among others.
     """
     # what reads files is half a second to import
-    from fieldmon.io.read import read_phone_file  # noqa: PLC0415
+    from fieldmon.io.read import read_inspection_rows, read_phone_file  # noqa: PLC0415
     from fieldmon.io.readers.phone_file import is_phone_file  # noqa: PLC0415
 
     name = source_name(source)
@@ -113,8 +120,25 @@ def read_brought(
     if copy is not None:
         (folder / "new").mkdir()
         source = counting_copy(copy, folder / "new", corrected)
-    read = read_findings(season, source, options)
-    return BroughtFile(name, read.value, (*read.messages, *treated), None, copy, len(corrected))
+    rows = read_inspection_rows(source, options)
+    read = _dated_on_plot(season, rows, options)
+    changed, _, unsure = changed_in(season, rows.value, options) if copy is None else ([], [], {})
+    n_changed = sum(one.is_seen_otherwise for one in changed) + len(unsure)
+    messages = (*read.messages, *treated, *_about_changed(n_changed))
+    return BroughtFile(name, read.value, messages, None, copy, len(corrected), n_changed)
+
+
+def _about_changed(n: int) -> list[ImportMessage]:
+    """Return a doubt about so many inspections of the season itself that were changed."""
+    if not n:
+        return []
+    said = worded(
+        "{n} {n:inspection was|inspections were} exported from this season and changed: recorded, "
+        "{n:it counts|they count} beside what stands there. As corrections {n:it comes|they come} "
+        "with: fieldmon correct",
+        n=n,
+    )
+    return [doubtful(said)]
 
 
 def read_findings(
@@ -124,10 +148,20 @@ def read_findings(
 
     Dates, and what is raised, as in `read_brought` and `read_inspections`.
     """
-    from fieldmon.io.readers.inspections import dated, read_inspections  # noqa: PLC0415
+    from fieldmon.io.read import read_inspection_rows  # noqa: PLC0415 - as above
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
+
+    options = options or InspectionOptions()
+    return _dated_on_plot(season, read_inspection_rows(source, options), options)
+
+
+def _dated_on_plot(
+    season: Season, rows: Imported[InspectionRows], options: InspectionOptions
+) -> Imported[Inspections]:
+    from fieldmon.io.readers.inspections import dated, on_plot  # noqa: PLC0415 - as above
 
     called = (season.plot.field.name, season.path.stem)
-    return dated(read_inspections(source, season.plot.grid, options, called))
+    return dated(on_plot(rows, season.plot.grid, options, called))
 
 
 def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hashlib import sha256
 from itertools import repeat
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -61,14 +61,7 @@ def rows(
     _check(inspections, grid)
     plants, dates = inspections.plant, inspections.date.tolist()
     number = {day: _day(day, dates, plants, grid, settings) for day in sorted(set(dates))}
-    said: dict[str, Sequence[object]] = {
-        "plant": plants.tolist(),
-        "date": [on.isoformat() for on in dates],
-        "time": [*map(time_text, inspections.second.tolist())],
-        "result": [RESULT_NAMES[code] for code in inspections.result.tolist()],
-        "count": COUNT.to_file(inspections.count),
-    }
-    said |= {one.kept: one.to_file(getattr(inspections, one.name)) for one in BESIDE}
+    said = kept_columns(inspections)
     marks = [_digest(*one) for one in zip(*(said[name] for name in IDENTIFIED_BY), strict=True)]
     columns: dict[str, Iterable[object]] = said | {
         "geom": point_blobs(grid.lonlat(plants)),
@@ -81,6 +74,18 @@ def rows(
         "undone": repeat(COUNTS, len(plants)),
     }
     return [*zip(*(columns[name] for name in schema.INSPECTIONS.names), strict=True)]
+
+
+def kept_columns(inspections: Inspections) -> dict[str, Sequence[Any]]:
+    """Return what inspections say as the season's file keeps it, by its names of columns."""
+    said: dict[str, Sequence[Any]] = {
+        "plant": inspections.plant.tolist(),
+        "date": [on.isoformat() for on in inspections.date.tolist()],
+        "time": [*map(time_text, inspections.second.tolist())],
+        "result": [RESULT_NAMES[code] for code in inspections.result.tolist()],
+        "count": COUNT.to_file(inspections.count),
+    }
+    return said | {one.kept: one.to_file(getattr(inspections, one.name)) for one in BESIDE}
 
 
 def _day(

@@ -1,10 +1,12 @@
 """`fieldmon correct`: what another program changed is somebody's correction."""
 
+import shlex
 import sqlite3
 from contextlib import closing
 from datetime import UTC, date, datetime, time, timedelta
 
 import numpy as np
+import pyogrio
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
@@ -180,3 +182,25 @@ def test_the_day_of_an_inspection_is_corrected_and_days_stay_in_order(run, seaso
     assert Season(season).verify() == ()
     run("undo", season)
     assert Season(season).history.inspections.date.tolist() == before.date.tolist()
+
+
+def test_an_exported_layer_that_was_changed_is_recorded_as_corrections_or_not_at_all(
+    run, season, tmp_path
+):
+    Season(season).record(Inspections.of(np.arange(2), np.array([0, 1]), BEGINS), "taps")
+    layer = pyogrio.read_dataframe(season, layer="inspections")
+    layer.loc[0, ["result", "count"]] = ["found", 3]
+    layer.loc[1, "count"] = 5
+    pyogrio.write_dataframe(layer, tmp_path / "edited.gpkg")
+    code, _, err, _ = run("record", season, "edited.gpkg")
+    assert (code, Season(season).history.inspections.result.tolist()) == (2, [0, 1])
+    assert "2 inspections in edited.gpkg were exported from" in err
+    words = shlex.split(err.split("corrections with: fieldmon ")[1].split(". Where")[0])
+    assert words == ["correct", str(season), "edited.gpkg", "--who", "NAME"]
+    code, out, err, _ = run(*words)
+    assert (code, out.splitlines()[0]) == (0, "2 corrections taken, by NAME."), err
+    assert Season(season).history.inspections.count.tolist() == [3, 5]
+    code, out, err, _ = run("record", season, "edited.gpkg")
+    assert (code, "0 new, 2 known" in out, "exported" in err) == (0, True, False), err
+    assert "are given. Give one of them" in run(*words, "--inspection", 1, "--time", "07:00")[2]
+    assert "is a season" in run("correct", season, season, "--who", "Ann")[2]

@@ -161,6 +161,17 @@ def is_score(name: str) -> bool:
     return is_confidence(name) or plain(name).endswith(("score", "scores"))
 
 
+_AVERAGE = re.compile(
+    r"mean|average|^avg|avg$|mittel|durchschnitt|promedi|^media|media$|moyenne|ממוצע|متوسط|"
+    r"per(leaf|leaves|plant|sample)$|(pro|je)(blatt|pflanze)$|por(hoja|planta)$"
+)
+
+
+def is_average(name: str) -> bool:
+    """Return whether a column holds averages by its name, which may have any decimals."""
+    return bool(_AVERAGE.search(plain(name)))
+
+
 _IDS = frozenset(
     {"id", "fid", "gid", "oid", "objectid", "ogcfid", "nr", "no", "num", "number", "nummer"}
     | {"numero", "index", "idx", "key", "code", "uuid", "guid", "serial", "lfdnr", "feature", "pk"}

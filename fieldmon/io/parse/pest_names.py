@@ -13,15 +13,26 @@ from fieldmon.io.import_report import ImportMessage, guessed
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+# over and under letters of Latin, Greek and Cyrillic: arana is araña
+_ACCENTS = re.compile(r"[\u0300-\u036f]")
 _BETWEEN = re.compile(r"[\s._-]+")
-# mites and mite, arañas and araña; not Tetranychus and occidentalis
-_PLURAL = re.compile(r"(?<=[^\W\d_]{3})(?<![isu])s$")
+# mites and mite, arañas rojas and araña roja; not Tetranychus and occidentalis
+_PLURAL = re.compile(r"(?<=[^\W\d_]{3})(?<![isu])s\b")
+# kinds of visits, which a German column "Art" may hold as well as species
+_VISIT = re.compile(
+    r"kontroll|begehung|bonitur|stichprobe|besuch|routine|inspektion|behandlung|überwachung"
+)
 
 
 def pest_key(name: str) -> str:
     """Return what all ways of writing one pest have in common: ``spider mite``."""
-    plain = unicodedata.normalize("NFKC", name).casefold()
+    plain = _ACCENTS.sub("", unicodedata.normalize("NFKD", name)).casefold()
     return _PLURAL.sub("", _BETWEEN.sub(" ", plain).strip())
+
+
+def is_visit(name: str) -> bool:
+    """Return whether a word is no pest's name, but a kind of visit: ``Nachkontrolle``."""
+    return bool(_VISIT.search(unicodedata.normalize("NFKC", name).casefold()))
 
 
 def usual_spellings(names: Iterable[str] | Mapping[str, int]) -> dict[str, str]:

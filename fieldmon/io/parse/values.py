@@ -55,19 +55,21 @@ def decimal_mark(cells: Iterable[str]) -> str | None:
     return None if commas == points == 0 else "," if commas > points else "."
 
 
-def mark_of_counts(cells: Iterable[str], others: Iterable[str]) -> tuple[str, str | None]:
+def mark_of_counts(
+    cells: Iterable[str], others: Iterable[str], *, averages: bool = False
+) -> tuple[str, str | None]:
     """Return the decimal mark of counts, and a cell for which it was guessed; None: for none.
 
     1,234 and 1.234 are thousands where no other count of theirs has decimals: nobody counts to a
-    thousandth. That is a guess, and so is what the `others` of the table tell where a column has
-    both.
+    thousandth, unless they are `averages`. That is a guess, and so is what the `others` of the
+    table tell where a column has both.
     """
     each = list(cells)
     either = [cell for cell in each if could_be_thousands(cell)]
     own = decimal_mark(cell for cell in each if not could_be_thousands(cell))
     used = {mark for cell in either for mark in ",." if mark in cell}
     if own is None and len(used) == 1:
-        return ("." if "," in used else ","), either[0]
+        return ("." if ("," in used) != averages else ","), either[0]
     told = own or decimal_mark(others)
     mark = told or "."
     thousands = [cell for cell in either if mark not in cell]

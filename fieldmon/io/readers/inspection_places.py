@@ -87,7 +87,7 @@ def by_number(rows: InspectionRows, grid: PlantGrid) -> PlantsFound:
 def misplaced(rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64]) -> dict[int, str]:
     """Return which records name a plant ``(m,)`` that stands elsewhere than their position."""
     here = np.flatnonzero(plant >= 0)
-    far_m = _away_m(rows, grid, here, plant[here])
+    far_m = from_plants_m(rows, grid, here, plant[here])
     spacing_m = max(grid.row_spacing_m, grid.plant_spacing_m)
     reach_m = spacing_m + 3 * np.nan_to_num(rows.accuracy_m[here])
     return {
@@ -102,7 +102,7 @@ def misplaced(rows: InspectionRows, grid: PlantGrid, plant: NDArray[np.int64]) -
     }
 
 
-def _away_m(
+def from_plants_m(
     rows: InspectionRows, grid: PlantGrid, records: NDArray[np.intp], plant: NDArray[np.int64]
 ) -> NDArray[np.float64]:
     """Return how far records lie from plants, NaN without a position, infinity beyond a degree."""

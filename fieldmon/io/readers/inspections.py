@@ -50,6 +50,7 @@ from fieldmon.io.readers.inspection_places import (
     by_name,
     by_number,
     by_position,
+    from_plants_m,
     from_zero,
     misplaced,
 )
@@ -95,10 +96,45 @@ def read_inspections(
         Where the file leaves open which layer or column is meant.
     """
     chosen = options or InspectionOptions()
-    rows = read_inspection_rows(source, chosen)
-    here, of_others = of_this_plot(rows.value, grid, called, chosen)
-    inspections, more = look_up(here, grid, chosen)
+    return on_plot(read_inspection_rows(source, chosen), grid, chosen, called)
+
+
+def on_plot(
+    rows: Imported[InspectionRows],
+    grid: PlantGrid,
+    options: InspectionOptions,
+    called: tuple[str, ...] = (),
+) -> Imported[Inspections]:
+    """Return the inspections of rows that were read, as `read_inspections` does."""
+    here, of_others = of_this_plot(rows.value, grid, called, options)
+    inspections, more = look_up(here, grid, options)
     return rows.having(inspections, (*of_others, *more))
+
+
+def exported(
+    rows: InspectionRows, grid: PlantGrid, options: InspectionOptions
+) -> tuple[Inspections, list[str], dict[int, str]]:
+    """Return inspections exported from a season one by one, and the digest of each there.
+
+    And of records whose plant is not sure, which are left out, why, by their number in the file.
+    """
+    if rows.mark is None:
+        return Inspections.none(), [], {}
+    rows = rows.take(rows.mark != "")
+    placed = _placed(rows, grid, options)
+    off_m = from_plants_m(rows, grid, np.arange(len(rows)), placed.plant)
+    moved = (off_m > grid.plant_spacing_m / 2) & (placed.plant >= 0)
+    doubts: dict[int, str] = dict.fromkeys(
+        np.flatnonzero(moved).tolist(), worded("it stands elsewhere than its plant")
+    )
+    doubts |= dict.fromkeys(np.flatnonzero(np.isnat(rows.day)).tolist(), worded("it has no date"))
+    # of a day to come the season may have them itself
+    ahead = amid_past(rows.day).keys() - _own_doubts(rows).keys()
+    doubts |= {k: why for k, why in placed.doubts.items() if k not in ahead} | placed.problems
+    sure = np.setdiff1d(np.arange(len(rows)), np.array([*doubts], np.intp))
+    marks = [] if placed.rows.mark is None else placed.rows.mark[sure].tolist()
+    why = {int(rows.source_row[k]): doubts[k] for k in sorted(doubts)}
+    return _inspections(placed.rows, placed.plant, sure), marks, why
 
 
 def dated(read: Imported[Inspections]) -> Imported[Inspections]:

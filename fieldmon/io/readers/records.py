@@ -33,6 +33,7 @@ from fieldmon.io.parse.clock import (
 )
 from fieldmon.io.parse.columns import (
     find,
+    is_average,
     is_confidence,
     is_id,
     is_of_writing,
@@ -71,7 +72,7 @@ from fieldmon.io.readers.inspection_file.columns import names_in, own_column
 from fieldmon.io.readers.inspection_file.results import results_in_names
 from fieldmon.io.readers.other_counts import about_other_counts
 from fieldmon.io.readers.placed_twice import placed_twice
-from fieldmon.io.readers.species import mixed_species, spelt_in
+from fieldmon.io.readers.species import one_pest
 from fieldmon.io.readers.visits import VISIT_S, first_of_visits, same_places, telling
 from fieldmon.io.readers.wide_tables import by_day
 from fieldmon.plot.local_clock import clock_at
@@ -128,6 +129,7 @@ def _records_and_plots(
     table = _Table(found.layer, options)
     day, at_s, day_messages = _days(table, found.lonlat, record)
     counts = _counts(table)
+    species, of_species = _species(table)
     accuracy_m, unread = _accuracy_m(table, found, options)
     twice = placed_twice(found, accuracy_m, options)
     observations = Observations.of(
@@ -136,7 +138,7 @@ def _records_and_plots(
         day,
         count=counts.number,
         accuracy_m=accuracy_m,
-        species=_species(table),
+        species=species,
         stage=table.texts("stage"),
         leaves_sampled=table.numbers("leaves"),
     )
@@ -151,18 +153,21 @@ def _records_and_plots(
     visits = _Visits(np.flatnonzero(known), place, at_s)
     first, counted_once = _each_visit_once(observations, table, visits)
     once = observations.take(first)
-    species = table.named("species")
-    mixed = [] if species is None else mixed_species(species, table.cells(species))
-    more = (*mixed, *counted_once, *_same_visit(once, place[first]))
+    more = (*of_species, *counted_once, *_same_visit(once, place[first]))
     messages += (*about_confidences(layer.columns, table.used()),)
     return Imported(once, (*messages, *more)), None if found.plot is None else found.plot[first]
 
 
-def _species(table: _Table) -> NDArray[np.str_]:
-    """Return the pest of each record ``(n,)``, each in one spelling."""
-    told = table.texts("species").tolist()
-    usual = spelt_in(told)
-    return np.array([usual.get(name, name) for name in told], dtype=np.str_)
+def _species(table: _Table) -> tuple[NDArray[np.str_], list[ImportMessage]]:
+    """Return the pest of each record ``(n,)`` in one spelling, and what is said of the others.
+
+    Ask which one is meant where there are several.
+    """
+    if (name := table.named("species")) is None:
+        return np.full(len(table), "", dtype=np.str_), []
+    cells = table.cells(name)
+    usual, messages = one_pest(name, cells)
+    return np.array([usual.get(cell, "") for cell in cells], dtype=np.str_), messages
 
 
 def _accuracy_m(
@@ -187,7 +192,10 @@ class _Table:
         return len(self.layer)
 
     def named(self, role: str, taken: frozenset[str] = frozenset()) -> str | None:
-        return self.options.column(role) or find(role, self.layer.columns, taken)
+        told = self.options.column(role)
+        if told == "" and role == "species":  # none says it
+            return None
+        return told or find(role, self.layer.columns, taken)
 
     def used(self) -> set[str | None]:
         """Return the columns that play a role."""
@@ -530,7 +538,7 @@ def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[ImportM
         return table.options.decimal, []
     others = (values for column, values in table.layer.columns.items() if column != name)
     looked_at = (text(v) for values in others for v in values[:_LOOKED_AT])
-    mark, unsure = mark_of_counts(cells, looked_at)
+    mark, unsure = mark_of_counts(cells, looked_at, averages=is_average(name))
     return mark, about_mark(unsure, name, mark)
 
 

@@ -1,4 +1,4 @@
-"""What to say where a file mixes species."""
+"""Which pests a file names, and the question which one is meant."""
 
 from __future__ import annotations
 
@@ -6,39 +6,47 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import first_few, worded
+from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import ABSENT
-from fieldmon.io.import_report import ImportMessage, Remedy, doubtful
-from fieldmon.io.parse.pest_names import about_spellings, usual_spellings
+from fieldmon.io.parse.pest_names import about_spellings, is_visit, usual_spellings
 from fieldmon.io.parse.result_words import meaning
 from fieldmon.io.parse.values import is_missing
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-
-def spelt_in(cells: Iterable[str]) -> dict[str, str]:
-    """Return the usual spelling of each species, by every one in cells; "none" is none."""
-    often = Counter(cells)
-    named = (c for c in often if not is_missing(c) and meaning(c) != ABSENT)
-    return usual_spellings({c: often[c] for c in named})
+    from fieldmon.io.import_report import ImportMessage
 
 
-def species_in(cells: Iterable[str]) -> list[str]:
-    """Return the species that cells name, each once, however it is spelt; "none" is none."""
-    return sorted(set(spelt_in(cells).values()))
+def one_pest(name: str, cells: Iterable[str]) -> tuple[dict[str, str], list[ImportMessage]]:
+    """Return the usual spelling of the one pest that column `name` names, by every one in cells.
 
+    And what was taken for another spelling of it. What says that there is none, a figure and a kind
+    of visit name no pest.
 
-def mixed_species(name: str, cells: Iterable[str]) -> list[ImportMessage]:
-    """Return a doubt where the cells of column `name` hold several species, each to be chosen.
-
-    What was taken for another spelling of one is said.
+    Raises
+    ------
+    ChoiceNeeded
+        Where it names several: what was found is of one.
     """
-    spelt = spelt_in(cells)
-    kinds, said = sorted(set(spelt.values())), about_spellings(name, spelt)
+    often = Counter(cells)
+    spelt = usual_spellings({cell: n for cell, n in often.items() if _names_pest(cell)})
+    kinds = sorted(set(spelt.values()))
     if len(kinds) < 2:
-        return said
-    shown = first_few(kinds, 5)
-    only = tuple(f"{name}={kind}" for kind in kinds)
-    remedy = Remedy("where", only[0], worded("Only {species}", species=kinds[0]), only[1:])
-    mixed = worded("{n} species are mixed: {shown}.", n=len(kinds), shown=shown)
-    return [*said, doubtful(mixed, name, remedy)]
+        return spelt, about_spellings(name, spelt)
+    raise ChoiceNeeded(
+        worded(
+            "What was found must be of one pest, but column {name!r} names {n}: {shown}. Choose "
+            "one, or let no column name pests (columns=species=): then all count as one.",
+            name=name,
+            n=len(kinds),
+            shown=first_few(kinds, 5),
+        ),
+        "where",
+        tuple(f"{name}={kind}" for kind in kinds),
+    )
+
+
+def _names_pest(cell: str) -> bool:
+    is_figure = cell.replace(".", "", 1).isdecimal()
+    return not (is_figure or is_missing(cell) or meaning(cell) == ABSENT or is_visit(cell))

@@ -10,7 +10,8 @@ from fieldmon.io.parse.pest_names import pest_key, usual_spellings
     [("Spider Mite", "spider  mites", "spider-mite"), ("T. urticae", "T.Urticae"),
      ("Frankliniella occidentalis", "FRANKLINIELLA OCCIDENTALIS"),
      # a file of a Mac writes letter and tilde apart
-     ("Araña", "arañas", "ARAN\u0303A")],
+     ("Araña", "arañas", "ARAN\u0303A", "arana"), ("araña roja", "Arañas Rojas", "aranas rojas"),
+     ("Läuse", "LAUSE")],
 )  # fmt: skip
 def test_ways_of_writing_one_pest_have_one_key(alike):
     assert len({pest_key(name) for name in alike}) == 1

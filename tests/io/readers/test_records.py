@@ -143,6 +143,8 @@ def test_a_comma_is_what_the_rest_of_the_table_says_it_is_and_else_a_guess():
     both = read(count=["2,5", "1,234", "3.000"])
     assert both.value.count.tolist() == [2.5, 1.234, 3000.0]
     assert "Counts such as 3.000 were read as thousands" in said(both, Severity.GUESSED)
+    average = RecordOptions(columns=(("count", "average"),))
+    assert read(average, average=["1.250", "2.333"]).value.count.tolist() == [1.25, 2.333]
     layer, places = table(plant=["1", "2"], count=["1,234", "7"]), NamedPlaces(plants=vines(5.0))
     alone = records_of(layer, ANY, places)
     assert alone.value.count.tolist() == [1234.0, 7.0]
@@ -258,15 +260,19 @@ def test_results_that_could_be_confidences_are_doubted():
     assert "confidences" not in sentences(read(result=[0, 1, "yes"]))
 
 
-def test_several_species_are_doubted_and_each_can_be_chosen_alone():
-    records = read(count=[1, 2, 3], species=["mite", "aphid", "mite"])
-    (doubt,) = [m for m in records.messages if "species are mixed" in m.sentence]
-    assert doubt.remedy.choices == ("species=aphid", "species=mite")
-    assert "mixed" not in sentences(read(count=[1, 2], species=["mite", ""]))
+def test_several_species_are_asked_about_and_each_can_be_chosen_alone():
+    several = {"count": [1, 2, 3], "species": ["mite", "aphid", "mite"]}
+    with pytest.raises(ChoiceNeeded, match="names 2: aphid, mite") as asked:
+        read(**several)
+    assert (asked.value.option, asked.value.choices) == ("where", ("species=aphid", "species=mite"))
+    as_one = read(**several, options=RecordOptions(columns=(("species", ""),)))
+    assert as_one.value.species.tolist() == [""] * 3
+    assert read(count=[1, 2], species=["mite", ""]).value.species.tolist() == ["mite", ""]
     one = read(count=[1, 2, 3], species=["mite", "Mite", "mite"])
-    assert "mixed" not in sentences(one)
     assert "Mite and mite were taken for one pest" in sentences(one)
     assert one.value.species.tolist() == ["mite"] * 3
+    visits = read(count=[1, 2], Art=["Kontrolle", "Nachkontrolle"])
+    assert visits.value.species.tolist() == ["", ""]
 
 
 def test_what_else_a_record_knows_comes_with_it():

@@ -61,6 +61,9 @@ class InspectionRows:
     plot_called, plot_column
         What is named as the plot, empty where nothing is, and the column that does so. None: none
         does.
+    mark
+        The digest by which a season's file knows it, where it was exported from one; else empty.
+        None: all empty.
     """
 
     plant: NDArray[np.int64]
@@ -87,6 +90,7 @@ class InspectionRows:
     detects: NDArray[np.float64] | None = None
     plot_called: NDArray[np.str_] | None = None
     plot_column: NDArray[np.str_] | None = None
+    mark: NDArray[np.str_] | None = None
 
     def __len__(self) -> int:
         """Return the number of records."""

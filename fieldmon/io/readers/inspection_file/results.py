@@ -11,7 +11,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
-from fieldmon.io.parse.columns import recognised
+from fieldmon.io.parse.columns import is_average, recognised
 from fieldmon.io.parse.result_words import (
     MAYBE_GONE,
     MINUS,
@@ -153,7 +153,7 @@ def _mark(
         return options.decimal, []
     others = (values for column, values in layer.columns.items() if column != name)
     looked_at = (text(v) for values in others for v in values[:_LOOKED_AT])
-    mark, unsure = mark_of_counts(cells, looked_at)
+    mark, unsure = mark_of_counts(cells, looked_at, averages=is_average(name))
     return mark, about_mark(unsure, name, mark)
 
 

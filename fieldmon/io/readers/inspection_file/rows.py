@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from fieldmon.compute.wording import first_few, worded
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.io.formats.layer import Layer, text
@@ -19,7 +19,6 @@ from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, guessed, seen
 from fieldmon.io.options import source_name
 from fieldmon.io.parse.columns import is_position, plain
-from fieldmon.io.parse.pest_names import about_spellings
 from fieldmon.io.parse.result_words import gone_note
 from fieldmon.io.readers.inspection_file.columns import (
     columns_of,
@@ -34,7 +33,7 @@ from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
 from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in, unknown_faces
 from fieldmon.io.readers.inspection_file.results import results_in
 from fieldmon.io.readers.inspection_file.times import times_in
-from fieldmon.io.readers.species import spelt_in
+from fieldmon.io.readers.species import one_pest
 from fieldmon.io.readers.visits import telling
 from fieldmon.io.readers.wide_tables import by_day, by_plant
 
@@ -123,9 +122,11 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
         detects=detects_in(layer, columns, file or layer.name),
         plot_called=texts_in(layer, plot := plot_column(layer, columns, options)),
         plot_column=np.full(len(layer), plot or ""),
+        mark=_marks(layer),
     )
     kept = whole.take(said)
-    spelt = _of_one_pest(columns.species, texts_in(layer, columns.species)[said])
+    pests = texts_in(layer, columns.species)[said].tolist()
+    spelt = one_pest(columns.species, pests)[1] if columns.species else []
     every = (*layer.messages, *messages, *results.messages, *more, *times.messages, *spelt)
     return Imported(kept, every)
 
@@ -181,28 +182,6 @@ def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) 
     return np.array(cells or [""] * len(layer), dtype=np.str_)
 
 
-def _of_one_pest(name: str | None, species: NDArray[np.str_]) -> list[ImportMessage]:
-    """Ask for one pest where a column names several: a season is of one."""
-    if not name:
-        return []
-    # a figure is no pest's name
-    spelt = spelt_in(c for c in species.tolist() if not c.replace(".", "", 1).isdecimal())
-    kinds = sorted(set(spelt.values()))
-    if len(kinds) < 2:
-        return about_spellings(name, spelt)
-    raise ChoiceNeeded(
-        worded(
-            "Inspections must be of one pest, but column {name!r} names {n}: {shown}. Choose one, "
-            "or let no column name pests (columns=species=): then all count as one.",
-            name=name,
-            n=len(kinds),
-            shown=first_few(kinds, 5),
-        ),
-        "where",
-        tuple(f"{name}={kind}" for kind in kinds),
-    )
-
-
 def _without_lines(layer: Layer) -> tuple[Layer, list[ImportMessage]]:
     """Return the layer without the driven line that files given out hold beside the stops."""
     if layer.geometry is None:
@@ -240,9 +219,19 @@ def _each_point(layer: Layer, messages: list[ImportMessage]) -> tuple[Layer, lis
     return replace(layer.take(which), geometry=each), [*messages, said]
 
 
+def _marks(layer: Layer) -> NDArray[np.str_]:
+    """Return by which digest a season's file knows each record ``(n,)``; empty: it is of none."""
+    name = None if _of_season("undone", layer) is None else _of_season("digest", layer)
+    return texts_in(layer, name)
+
+
+def _of_season(column: str, layer: Layer) -> str | None:
+    return next((name for name in layer.columns if plain(name) == column), None)
+
+
 def _without_undone(layer: Layer) -> Layer:
     """Return the layer without what a season's file keeps, but marks as taken back."""
-    name = next((n for n in layer.columns if plain(n) == "undone"), None)
+    name = _of_season("undone", layer)
     if name is None:
         return layer
     return layer.take(np.flatnonzero([text(v) in {"", "0", "False"} for v in layer.column(name)]))

@@ -165,6 +165,15 @@ def test_a_decimal_mark_told_by_hand_is_taken():
     assert read(options, plant=[1], count=["1,5"]).how_many[0] == 1.5
 
 
+@pytest.mark.parametrize("column", ["Mittelwert", "mites per leaf", "Promedio"])
+def test_averages_that_could_be_thousands_are_decimals_and_that_is_said(column):
+    options = InspectionOptions(columns=(("count", column),))
+    seen = read(options, plant=[7, 8], **{column: ["1.250", "2.333"]})
+    assert seen.how_many.tolist() == [1.25, 2.333]
+    (guess,) = [m for m in seen.messages if m.severity == Severity.GUESSED]
+    assert "1.250 were read as decimals" in guess.sentence
+
+
 @pytest.mark.parametrize(
     ("cells", "more", "first", "said"),
     [

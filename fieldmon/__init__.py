@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from fieldmon.io.plot_request import PlantingChoices
     from fieldmon.monitoring.advice import AdviceSettings
     from fieldmon.monitoring.applications import Application
-    from fieldmon.monitoring.history import BeliefSettings
+    from fieldmon.monitoring.belief_settings import BeliefSettings
     from fieldmon.monitoring.monitor import Monitor, MonitorDay, PlantToInspect
     from fieldmon.monitoring.season_file import Season
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -107,7 +107,7 @@ _MODULES = {
         "read_weather",
     ),
     "monitoring.applications": ("Application",),
-    "monitoring.history": ("BeliefSettings",),
+    "monitoring.belief_settings": ("BeliefSettings",),
     "monitoring.monitor": ("Monitor", "MonitorDay", "PlantToInspect"),
     "monitoring.season_file": ("Season",),
     "monitoring.settings": ("MonitoringSettings",),

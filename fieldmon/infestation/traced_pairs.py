@@ -26,7 +26,7 @@ from fieldmon.infestation.traced_map import MOST_UNKNOWN, SENT, TracedMap
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.belief import Learning
+    from fieldmon.infestation.belief import Belief, Learning
     from fieldmon.infestation.spread import Spread
     from fieldmon.infestation.uninspected_days import Since
 
@@ -140,3 +140,13 @@ class TracedPairs(TracedMap):
         """Return what is believed after a treatment, `left` ``(n,)`` the share that outlives it."""
         others = self.others and tuple(one.treated(left) for one in self.others)
         return replace(super().treated(left), others=others)
+
+
+def in_sight(belief: Belief) -> Belief:
+    """Return what is believed of what inspections can see: a day is planned by it."""
+    return belief.in_sight if isinstance(belief, TracedPairs) else belief
+
+
+def in_hindsight(evening: Belief, night: Spread) -> Belief:
+    """Return what is believed of an evening as its finds say of others, before a night."""
+    return evening.in_hindsight(night) if isinstance(evening, TracedPairs) else evening

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.zones import Zones
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.forecast import Forecast
-    from fieldmon.monitoring.history import Treatment
+    from fieldmon.monitoring.treatment import Treatment
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.samplers.base import Scene

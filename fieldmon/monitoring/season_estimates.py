@@ -16,7 +16,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.earlier_season import EarlierSeason
 from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.traced_pairs import TracedPairs, in_sight
 from fieldmon.monitoring import day_figures
 from fieldmon.monitoring.advice import (
     AdviceSettings,
@@ -27,7 +27,6 @@ from fieldmon.monitoring.advice import (
 )
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.found_again import found_again
-from fieldmon.monitoring.history import in_sight
 from fieldmon.monitoring.mornings import rules
 from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.status import Status

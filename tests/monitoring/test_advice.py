@@ -21,7 +21,7 @@ from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.monitoring.advice import Advice, AdviceSettings, FewInspected, _first
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.samplers.decide import Decide
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
 

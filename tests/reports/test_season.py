@@ -15,7 +15,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import Application, Season
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.plant_states import finds_apart
 from fieldmon.plot.grid import plant_numbers
 from fieldmon.reports import season as season_module

@@ -13,8 +13,8 @@ import pytest
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.monitoring import Season, batches, treatments
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.merging.merge import merge_copies
+from fieldmon.monitoring.treatment import Treatment
 from fieldmon.monitoring.treatments import TreatedPlace
 from fieldmon.plot import local_clock
 from tests.monitoring.merging.copies import (

@@ -135,12 +135,12 @@ class SeasonEstimates(OpenSeason):
         done = tuple(one for one in history.treatments if one.day == day)
         found = history.found_and_left(evening, day)
         inspected = history.inspected(day)
-        if not len(inspected):
-            made = advice(history.grid, evening, asked, None, done, found).before_inspections()
-            away, treated = NotReached.of(history.grid, inspected), history.belief.treated
-            return replace(made, not_reached=away, finds_treated=treated)
-        made = advice(history.grid, evening, asked, scene, done, found)
+        seen = scene if len(inspected) else None
+        made = advice(history.grid, evening, asked, seen, done, found)
         made = replace(made, finds_treated=history.belief.treated)
+        if seen is None:
+            away = NotReached.of(history.grid, inspected)
+            return replace(made.before_inspections(), not_reached=away)
         if made.verdict != LEAVE:
             return made
         ahead = history.forecast(morning, day)  # others may plan meanwhile

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
         read_weather,
     )
     from fieldmon.io.plot_request import PlantingChoices
-    from fieldmon.monitoring.advice import AdviceSettings
+    from fieldmon.monitoring.advice_settings import AdviceSettings
     from fieldmon.monitoring.applications import Application
     from fieldmon.monitoring.belief_settings import BeliefSettings
     from fieldmon.monitoring.monitor import Monitor, MonitorDay, PlantToInspect
@@ -127,7 +127,7 @@ _MODULES = {
     "infestation.forecast": ("Forecast",),
     "infestation.plot_estimate": ("PlotEstimate",),
     "infestation.prior_settings": ("PriorSettings",),
-    "monitoring.advice": ("AdviceSettings",),
+    "monitoring.advice_settings": ("AdviceSettings",),
     "monitoring.status": ("Status",),
     "planning.members": ("TeamMember", "Teamwork", "team_of"),
     "planning.team": ("TeamPlan", "plan_team"),

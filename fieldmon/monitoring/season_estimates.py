@@ -18,15 +18,11 @@ from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.traced_pairs import TracedPairs, in_sight
 from fieldmon.monitoring import day_figures
-from fieldmon.monitoring.advice import (
-    AdviceSettings,
-    FewInspected,
-    InspectAgain,
-    NotReached,
-    advice,
-)
+from fieldmon.monitoring.advice import advice
+from fieldmon.monitoring.advice_settings import AdviceSettings
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.found_again import found_again
+from fieldmon.monitoring.left_plot import FewInspected, InspectAgain, NotReached
 from fieldmon.monitoring.mornings import rules
 from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.status import Status

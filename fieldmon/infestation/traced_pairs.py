@@ -11,13 +11,7 @@ from fieldmon.infestation import traced_doubt, traced_night
 from fieldmon.infestation.calibration_slope import finds_noted
 from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE
 from fieldmon.infestation.clustering import CLUSTERING
-from fieldmon.infestation.heavier_priors import (
-    TOLD,
-    heavier_than,
-    likeliest,
-    odds_times,
-    refuted,
-)
+from fieldmon.infestation.heavier_priors import TOLD, heavier_than, likeliest, odds_times, refuted
 from fieldmon.infestation.pairs import pair_chances
 from fieldmon.infestation.prior import odds_ratio
 from fieldmon.infestation.traced_evening import inspected

@@ -13,13 +13,7 @@ from fieldmon.infestation.origins import (
     OriginCounts,
 )
 from fieldmon.infestation.traced_pairs import TracedPairs
-from tests.infestation.traced_maps import (
-    FLAT,
-    GRID,
-    LEARNING,
-    QUIET,
-    mid_season,
-)
+from tests.infestation.traced_maps import FLAT, GRID, LEARNING, QUIET, mid_season
 
 
 def test_the_number_infested_is_as_sure_as_what_origins_bring_and_as_groups_are_large():

@@ -6,23 +6,11 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.origins import (
-    AT_START,
-    JUMPED,
-    N_ORIGINS,
-    OVERLOOKED,
-)
+from fieldmon.infestation.origins import AT_START, JUMPED, N_ORIGINS, OVERLOOKED
 from fieldmon.infestation.traced_evening import counting, lowered
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.plot.layout import rectangle
-from tests.infestation.traced_maps import (
-    FLAT,
-    GRID,
-    LEARNING,
-    QUIET,
-    day_of,
-    mid_season,
-)
+from tests.infestation.traced_maps import FLAT, GRID, LEARNING, QUIET, day_of, mid_season
 
 
 def test_a_day_moves_the_chance_of_jumping_as_bayes_rule_does_and_counts_it_once():

@@ -6,18 +6,9 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.chance_bounds import bounded_pair_chance
-from fieldmon.infestation.origins import (
-    ANYWHERE,
-    BY_EDGE,
-)
+from fieldmon.infestation.origins import ANYWHERE, BY_EDGE
 from fieldmon.infestation.traced_pairs import TracedPairs
-from tests.infestation.traced_maps import (
-    FEW,
-    FLAT,
-    GRID,
-    N,
-    mid_season,
-)
+from tests.infestation.traced_maps import FEW, FLAT, GRID, N, mid_season
 
 
 def test_a_treatment_leaves_its_share():

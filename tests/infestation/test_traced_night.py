@@ -8,13 +8,7 @@ import pytest
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.chance_bounds import AS_GOOD_AS_CLEAN
 from fieldmon.infestation.clustering import leaning
-from fieldmon.infestation.origins import (
-    ANYWHERE,
-    BY_ADJACENT,
-    BY_EDGE,
-    JUMPED,
-    N_ORIGINS,
-)
+from fieldmon.infestation.origins import ANYWHERE, BY_ADJACENT, BY_EDGE, JUMPED, N_ORIGINS
 from fieldmon.infestation.pair_changes import pairs_after_arrivals
 from fieldmon.infestation.pair_nights import night_of_pairs
 from fieldmon.infestation.pest_in_weather import PestInWeather, PestSpread
@@ -23,15 +17,7 @@ from fieldmon.infestation.traced_evening import inspected
 from fieldmon.infestation.traced_night import _of_late, brought_from_afar, by_origins
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Movement, Pest
-from tests.infestation.traced_maps import (
-    FEW,
-    FLAT,
-    GRID,
-    LEARNING,
-    N,
-    mid_season,
-    seen,
-)
+from tests.infestation.traced_maps import FEW, FLAT, GRID, LEARNING, N, mid_season, seen
 
 
 @pytest.mark.parametrize(

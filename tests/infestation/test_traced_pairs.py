@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.infestation.origins import (
-    ANYWHERE,
-    BY_EDGE,
-)
+from fieldmon.infestation.origins import ANYWHERE, BY_EDGE
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs

@@ -5,10 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.origins import (
-    N_ORIGINS,
-    OriginCounts,
-)
+from fieldmon.infestation.origins import N_ORIGINS, OriginCounts
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_day import TracedDay
 from fieldmon.infestation.traced_pairs import TracedPairs

@@ -48,9 +48,9 @@ if TYPE_CHECKING:
         read_weather,
     )
     from fieldmon.io.plot_request import PlantingChoices
-    from fieldmon.monitoring.advice import AdviceSettings
+    from fieldmon.monitoring.advice_settings import AdviceSettings
     from fieldmon.monitoring.applications import Application
-    from fieldmon.monitoring.history import BeliefSettings
+    from fieldmon.monitoring.belief_settings import BeliefSettings
     from fieldmon.monitoring.monitor import Monitor, MonitorDay, PlantToInspect
     from fieldmon.monitoring.season_file import Season
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -107,7 +107,7 @@ _MODULES = {
         "read_weather",
     ),
     "monitoring.applications": ("Application",),
-    "monitoring.history": ("BeliefSettings",),
+    "monitoring.belief_settings": ("BeliefSettings",),
     "monitoring.monitor": ("Monitor", "MonitorDay", "PlantToInspect"),
     "monitoring.season_file": ("Season",),
     "monitoring.settings": ("MonitoringSettings",),
@@ -127,7 +127,7 @@ _MODULES = {
     "infestation.forecast": ("Forecast",),
     "infestation.plot_estimate": ("PlotEstimate",),
     "infestation.prior_settings": ("PriorSettings",),
-    "monitoring.advice": ("AdviceSettings",),
+    "monitoring.advice_settings": ("AdviceSettings",),
     "monitoring.status": ("Status",),
     "planning.members": ("TeamMember", "Teamwork", "team_of"),
     "planning.team": ("TeamPlan", "plan_team"),

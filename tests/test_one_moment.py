@@ -8,7 +8,7 @@ import pytest
 from fieldmon.cli.status import status as status_command
 from fieldmon.compute.units import Units
 from fieldmon.monitoring import Season, transactions
-from fieldmon.monitoring.advice import AdviceSettings
+from fieldmon.monitoring.advice_settings import AdviceSettings
 from fieldmon.monitoring.certifier_tables import treatments_table
 from fieldmon.reports.advice import advice_report
 from fieldmon.reports.certification import certification_report

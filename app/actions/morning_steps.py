@@ -73,7 +73,7 @@ def _visit(choices: Choices, _: DayPlan) -> str:
         return texts.STEP_NO_VISIT
     was = chosen_day.figures(choices, str(on))
     said = choices.units.said_day(on, choices.on)
-    what = _recorded(choices, str(on), was.found, was.inspected)
+    what = _recorded(choices, str(on), was.found_today, was.inspected_today)
     return texts.VISIT_ON.format(day=said, what=what)
 
 

@@ -276,9 +276,9 @@ def _counts(name: str, title: str, side: Side, table: pd.DataFrame) -> alt.Y:
 
 def _work_by_day(days: list[DayFigures], named: DayName) -> pd.DataFrame:
     """Return plants inspected and found by every day's name; of a day without work, nothing."""
-    worked = {one.on: one for one in days if one.inspected}
+    worked = {one.on: one for one in days if one.inspected_today}
     table = pd.DataFrame(
-        [(named(on), one and one.inspected, one and one.found)
+        [(named(on), one and one.inspected_today, one and one.found_today)
          for on in _dates(days) for one in [worked.get(on)]],
         columns=["day", "inspected", "found"],
     )  # fmt: skip

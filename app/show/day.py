@@ -227,7 +227,7 @@ def changes(choices: Choices) -> tuple[str, list[str]]:
         return title, [texts.CHANGED_NONE, *_changed(choices, since)]
     before = chosen_day.figures(choices, str(visit))
     finds = texts.CHANGED_FINDS.format(
-        found=before.found, inspected=before.inspected, day=said_day(visit)
+        found=before.found_today, inspected=before.inspected_today, day=said_day(visit)
     )
     return title, [finds, *_changed(choices, since)]
 

@@ -42,7 +42,8 @@ if TYPE_CHECKING:
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.monitoring import DayFigures, KeptMessage, PlannedAndDone, Progress, Season
-    from fieldmon.monitoring.advice import Advice, AdviceSettings
+    from fieldmon.monitoring.advice import Advice
+    from fieldmon.monitoring.advice_settings import AdviceSettings
     from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn
     from fieldmon.monitoring.told_detection import ToldOtherwise
     from fieldmon.monitoring.treatment_effect import TreatmentEffect

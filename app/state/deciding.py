@@ -8,7 +8,7 @@ import streamlit as st
 
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.thresholds import in_order_for, published
-from fieldmon.monitoring.advice import AdviceSettings
+from fieldmon.monitoring.advice_settings import AdviceSettings
 
 from . import cached, widget_memory
 from .chosen_units import units

@@ -8,15 +8,9 @@ from typing import TYPE_CHECKING
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.recording import Recording
 from fieldmon.drive.simulated_robots import simulated_robot
-from fieldmon.drive.trace import (
-    Trace,
-    believed_on_the_way,
-    trace_of,
-    trace_of_bag,
-    trace_of_stops,
-)
+from fieldmon.drive.trace import Trace, believed_on_the_way, trace_of, trace_of_bag, trace_of_stops
 from fieldmon.errors import FieldmonError
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.monitor import Monitor
 
 from .background_work import BackgroundWork

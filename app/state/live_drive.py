@@ -12,7 +12,7 @@ import numpy as np
 from fieldmon.drive.trace import Trace
 from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard, RobotWatcher
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 
 from .background_work import BackgroundWork
 from .driving import DayInTime

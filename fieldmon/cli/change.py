@@ -28,7 +28,7 @@ from fieldmon.samplers import EVERY
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings, Season
-    from fieldmon.monitoring.history import BeliefSettings
+    from fieldmon.monitoring.belief_settings import BeliefSettings
     from fieldmon.planning.members import TeamMember
     from fieldmon.plot.field import Field
 

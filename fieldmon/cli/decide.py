@@ -235,7 +235,7 @@ def decide(
     """
     from fieldmon.decisions.thresholds import threshold_of
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.advice import AdviceSettings
+    from fieldmon.monitoring.advice_settings import AdviceSettings
 
     threshold = threshold_of(asked.threshold, _own(asked.thresholds))
     for path in files.output or []:

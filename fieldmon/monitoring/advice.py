@@ -2,32 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from datetime import timedelta
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from fieldmon.compute.kinds import must_hold_kinds
-from fieldmon.compute.ranges import USUAL_SURE
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import chance_figure, counted, figure, joined, share_figure, worded
 from fieldmon.decisions.map_verdict import AskedVerdict, verdict_of, zone_verdicts
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
-from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import best_zones, outlines
-from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.jump_reach import RADIUS
-from fieldmon.io.spray_rate import USUAL_RATE_L_HA, litres_figure, must_be_rate
+from fieldmon.io.spray_rate import litres_figure
 from fieldmon.io.writers.treatment_map import TreatmentMap
-from fieldmon.samplers.decide import Decide
+from fieldmon.monitoring.more_inspections import MoreInspections, inspections_to_verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from datetime import date
-
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
@@ -36,256 +26,17 @@ if TYPE_CHECKING:
     from fieldmon.decisions.sequential import Verdict
     from fieldmon.decisions.zones import Zones
     from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.forecast import Forecast
-    from fieldmon.monitoring.history import Treatment
+    from fieldmon.monitoring.advice_settings import AdviceSettings
+    from fieldmon.monitoring.left_plot import FewInspected, InspectAgain, NotReached
+    from fieldmon.monitoring.treatment import Treatment
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.samplers.base import Scene
 
-# nobody looks at more plants than this for a verdict
-_MOST_LOOKS = 1000
-_LONG_DAY_S = 1e7
 # zones of so much of a plot are called the plot
 _WHOLE = 0.995
-# plants out of reach of all inspections are said from this share on
-_FEW = 0.1
 # from here on a sum is said without its hundredths
 _ROUND_FROM = 100.0
-
-
-@dataclass(frozen=True)
-class AdviceSettings:
-    """What is asked of the season, and what is assumed for the answer.
-
-    Parameters
-    ----------
-    level
-        Share of the plants from which on treating pays.
-    sure
-        How sure a verdict must be, between 0.5 and 1.
-    sprayer, costs
-        What can be switched, and what it costs.
-    rate_l_ha
-        Litres a hectare where it is sprayed.
-    learnt_of
-        The product of which the season learnt how well treating works; empty: it was not learnt.
-
-    Examples
-    --------
-    >>> import fieldmon as fm
-    >>> asked = fm.AdviceSettings(level=0.08, sure=0.95)
-    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
-    >>> season = fm.Season.create("of_advice.gpkg", plot, begins="2026-11-18")
-    >>> season.advice("2026-11-18", asked).verdict  # nobody has inspected yet
-    'look on'
-    """
-
-    level: float = 0.05
-    sure: float = USUAL_SURE
-    sprayer: Sprayer = field(default_factory=Sprayer)
-    costs: TreatmentCosts = field(default_factory=TreatmentCosts)
-    rate_l_ha: float = USUAL_RATE_L_HA
-    learnt_of: str = ""
-
-    def __post_init__(self) -> None:
-        must_be_rate(self.rate_l_ha)
-        must_hold_kinds(self, "The advice's")
-        AskedVerdict(self.level, self.sure)  # refuses what cannot be
-
-    def assumed(self, units: Units | None = None, *, finds_treated: bool = False) -> Worded:
-        """Return in words what nobody measured here or set, and what was set.
-
-        `units` says of which area costs are; `finds_treated`: finds are taken as treated at once.
-        """
-        costs, usual, known = self.costs, TreatmentCosts(), units or Units()
-        said = {
-            "per_ha": worded(
-                "to treat {area} costs {cost:,.10g}",
-                area=known.one_area, cost=known.by_area(costs.per_ha),
-            ),
-            "per_zone": worded("a zone costs {cost:,.10g}", cost=costs.per_zone),
-            "infested_plant_day": worded(
-                "an infested plant loses {loss:,.10g} a day", loss=costs.infested_plant_day
-            ),
-            "days": worded("it stays infested for {days}", days=_days(costs.days)),
-            "works": worded("treating cleans {works:.0%}", works=costs.works),
-        }  # fmt: skip
-        learnt = said.pop("works") if self.learnt_of else ""
-        left = {name for name in said if getattr(costs, name) == getattr(usual, name)}
-        assumed, told = (
-            joined(", ", [one for name, one in said.items() if (name in left) == is_left])
-            for is_left in (True, False)
-        )
-        if finds_treated:
-            finds = worded("finds are treated at once")
-            assumed = joined(", ", [finds, *[assumed] * bool(assumed)])
-        both = [worded("Assumed: {what}.", what=assumed)] * bool(assumed)
-        both += [worded("As you said: {what}.", what=told)] * bool(told)
-        of = worded(
-            "As this season learnt of {product}: {what}.", product=self.learnt_of, what=learnt
-        )
-        return joined(" ", [*both, *[of] * bool(learnt)])
-
-
-@dataclass(frozen=True)
-class MoreInspections:
-    """After how many looks more a verdict can come, at the earliest.
-
-    Parameters
-    ----------
-    if_clean
-        Looks after which it need not be treated if all of them are clean; None: too many.
-    if_found
-        Looks after which it must be treated if all of them find something; None: too many.
-    """
-
-    if_clean: int | None
-    if_found: int | None
-
-
-@dataclass(frozen=True)
-class InspectAgain:
-    """Until when a plot stays below its threshold with a chance of 95 %, if nobody inspects it.
-
-    Parameters
-    ----------
-    by
-        The first day on which it may be above; None: none of those that are foretold.
-    nights
-        How many nights are foretold.
-    """
-
-    by: date | None
-    nights: int
-
-    @classmethod
-    def of(cls, ahead: Forecast, on: date, infested: float) -> InspectAgain:
-        """Return it by what is foretold from a day on, of so many infested plants."""
-        (above,) = np.nonzero(ahead.high[1:] > infested)
-        by = on + timedelta(days=int(above[0]) + 1) if len(above) else None
-        return cls(by, ahead.nights)
-
-    def sentence(self, units: Units | None = None) -> Worded:
-        """Return it in words."""
-        if self.by is None:
-            return worded(
-                "Without inspections it stays below the threshold for {nights} at least, with a "
-                "chance of 95 %.",
-                nights=counted(self.nights, "night"),
-            )
-        return worded(
-            "Inspect again by {day}: before, it stays below the threshold with a chance of 95 %.",
-            day=(units or Units()).day(self.by),
-        )
-
-
-@dataclass(frozen=True)
-class NotReached:
-    """Plants of which no inspection says anything, as all were too far away.
-
-    Parameters
-    ----------
-    share
-        So many of all plants.
-    reach_m
-        Farther from any inspected plant than this.
-    """
-
-    share: float
-    reach_m: float
-
-    @classmethod
-    def of(cls, grid: PlantGrid, inspected: NDArray[np.integer]) -> NotReached:
-        """Return them where these plants were inspected in the season, some perhaps often.
-
-        An inspection reaches as far as insects are thought to jump otherwise than anywhere.
-        """
-        reach_m = RADIUS * float(np.sqrt(grid.row_spacing_m * grid.plant_spacing_m))
-        if not len(inspected):
-            return cls(1.0, reach_m)
-        near = cKDTree(grid.xy_m[np.unique(inspected)])
-        away_m, _ = near.query(grid.xy_m, distance_upper_bound=reach_m)
-        return cls(float(np.mean(np.isinf(away_m))), reach_m)
-
-    def sentences(self, units: Units | None = None) -> list[str]:
-        """Return it in words; nothing where few are meant."""
-        if self.share < _FEW:
-            return []
-        if self.share == 1.0:
-            return [worded("Nobody has inspected yet: the answer rests on what was told before.")]
-        return [
-            worded(
-                "{share:.0%} of the plants are more than {reach} from any inspection of the "
-                "season: of them the answer rests on what was told before. Inspect there before "
-                "you rely on it.",
-                share=self.share, reach=(units or Units()).metres(self.reach_m),
-            )
-        ]  # fmt: skip
-
-
-@dataclass(frozen=True)
-class FewInspected:
-    """So few plants were inspected that they alone would not tell whether treating pays.
-
-    Parameters
-    ----------
-    inspected
-        How many plants were.
-    enough
-        If so many were, all of them clean, they would tell it by themselves.
-    background
-        The chance of a plant of which nothing is known, where nobody told it nor gave records;
-        None: something was told.
-    """
-
-    inspected: int
-    enough: int
-    background: float | None
-
-    @classmethod
-    def of(
-        cls,
-        plants: tuple[int, int],
-        asked: AdviceSettings,
-        detects: float,
-        background: float | None,
-    ) -> FewInspected | None:
-        """Return it; None where half as many as would be enough were inspected, or all are too few.
-
-        `plants` is how many were inspected, all of them clean, and how many there are. Enough are
-        as many as would all be clean with a chance of 1 - `sure` at most, if as many plants were
-        infested as the threshold says, anywhere, and inspections found a share `detects` of them.
-        """
-        inspected, n = plants
-        infested = max(int(np.ceil(asked.level * n)), 1)
-        # each of them is among the inspected, and found there
-        enough = int(np.ceil(n * -np.expm1(np.log(1.0 - asked.sure) / infested) / detects))
-        few = 2 * inspected < enough <= n
-        return cls(inspected, enough, background) if few else None
-
-    def sentence(self) -> str:
-        """Return what the answer rests on instead."""
-        alone = worded(
-            "{plants} {n:was|were} inspected. By themselves they do not tell: about {enough} "
-            "clean ones would.",
-            plants=counted(self.inspected, "plant"), n=self.inspected, enough=self.enough,
-        )  # fmt: skip
-        if self.background is None:
-            rests = worded("The answer rests mostly on what was told before.")
-        else:
-            rests = worded(
-                "The answer rests mostly on our default, {share} infested where nothing is known, "
-                "which nobody measured here.",
-                share=share_figure(self.background),
-            )
-        return joined(" ", (alone, rests))
-
-
-def _days(days: float) -> Worded:
-    """Return so many days in words; some languages have a form for some numbers."""
-    if days == int(days):
-        return counted(int(days), "day")
-    return worded("{days:g} days", days=days)
 
 
 def _money(value: float) -> str:
@@ -614,40 +365,3 @@ def advice(
     if scene is not None and plot.verdict == LOOK_ON:
         more = inspections_to_verdict(evening, scene, asked, found)
     return Advice(grid, asked, plot, zones, said, more, done)
-
-
-def inspections_to_verdict(
-    evening: Belief, scene: Scene, asked: AdviceSettings, found: NDArray[np.bool_] | None = None
-) -> MoreInspections:
-    """Return after how many looks, driven as Decide drives, a verdict can come at the earliest."""
-    n = len(scene.chance)
-    known = np.zeros(n, np.bool_) if found is None else found
-    day = replace(scene, seconds_left=min(_LONG_DAY_S, 1e4 * n))
-    order = Decide().walk(day, np.zeros(n, np.bool_)).plant[:_MOST_LOOKS]
-    learning = Learning(scene.robot.detects, treated=False)
-
-    def verdict(looks: int, *, all_found: bool) -> Verdict:
-        after = evening.learn(order[:looks], np.full(looks, all_found), learning)
-        now = known.copy()
-        now[order[:looks]] |= all_found
-        return verdict_of(scene.grid, after, asked.level, asked.sure, now).verdict
-
-    return MoreInspections(
-        _first(lambda looks: verdict(looks, all_found=False) == LEAVE, len(order)),
-        _first(lambda looks: verdict(looks, all_found=True) == TREAT, len(order)),
-    )
-
-
-def _first(clear: Callable[[int], bool], most: int) -> int | None:
-    """Return the fewest looks at which it is clear, by doubling and halving; None: not within."""
-    high = 1
-    while high < most and not clear(high):
-        high *= 2
-    high = min(high, most)
-    if most == 0 or not clear(high):
-        return None
-    low = high // 2
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if clear(middle) else (middle, high)
-    return high

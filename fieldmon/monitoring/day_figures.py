@@ -74,8 +74,8 @@ class DayFigures:
     ----------
     on
         Its date.
-    inspected, found
-        Plants inspected and found infested on it.
+    inspected_today, found_today
+        Plants inspected and found infested on it, as `Progress` has them.
     expected
         Plants infested and not found yet, as expected.
     low, high
@@ -85,8 +85,8 @@ class DayFigures:
     """
 
     on: date
-    inspected: int
-    found: int
+    inspected_today: int
+    found_today: int
     expected: float
     low: int
     high: int

@@ -6,36 +6,28 @@ import threading
 from dataclasses import dataclass, field, replace
 from datetime import timedelta
 from functools import cached_property
-from numbers import Real
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be
-from fieldmon.compute.array_arguments import must_be_shaped
-from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.belief import Learning
+from fieldmon.errors import ObservationError
 from fieldmon.infestation.chance_bounds import KNOWN
-from fieldmon.infestation.earlier_season import Believed, EarlierSeason
 from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
-from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections, after_their_find
+from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.infestation.learnt import learnt_from, with_start
 from fieldmon.infestation.level_range import level_range
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.origins import Estimate
-from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_of
-from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.traced_pairs import in_hindsight, in_sight
 from fieldmon.io.parse.result_words import says_gone
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.shift_work import ShiftWork
-from fieldmon.pests.pest import USUAL_PER_DAY
+from fieldmon.monitoring.still_infested import infested_in_all, not_found_yet, still_certain
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.skips import Skips, without_flagged, without_skipped
 from fieldmon.plot.local_clock import grid_clock
-from fieldmon.plot.robot import Robot
 from fieldmon.samplers.base import NEVER, Scene
 
 if TYPE_CHECKING:
@@ -49,8 +41,9 @@ if TYPE_CHECKING:
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
+    from fieldmon.infestation.spread import Spread
     from fieldmon.monitoring.shift_work import Besides, Shift
-    from fieldmon.pests.pest import Pest
+    from fieldmon.monitoring.treatment import Treatment
     from fieldmon.plot.grid import PlantGrid
 
 
@@ -78,142 +71,6 @@ class _Last(Generic[_T]):
     def keep(self, morning: Belief, day: int, made: _T) -> None:
         """Take this for what was made of them."""
         self._made = morning, day, made
-
-
-@checked
-@dataclass(frozen=True)
-class BeliefSettings:
-    """How the chance map follows from what is done and found on a real plot.
-
-    Parameters
-    ----------
-    spread
-        What the insects are taken to do in a night. The default is our choice for a plot whose
-        pest nobody measured: each infested plant infests each of its neighbours with 2 % a night
-        (8 % a night altogether: doubling in nine days), and 1 plant in 5 000 is infested from
-        outside. The thesis's 30 to 80 % are meant for its simulator.
-    treated
-        Whether plants found infested are treated at once (the thesis's rule), or only flagged.
-    traces
-        Whether finds are traced beyond the plants next to them, and the season's own inspections
-        tell how far insects jump, how many arrive and how many are overlooked. Seasons begun
-        before that was known go on without.
-    earlier
-        What an earlier season of the plot or the estate learnt; None: nothing is known of one.
-
-    Examples
-    --------
-    >>> import fieldmon as fm
-    >>> flagged = fm.BeliefSettings(treated=False)
-    >>> flagged.spread.rate_per_day
-    0.02
-    """
-
-    spread: Spread = field(
-        default_factory=lambda: Spread(rate_per_day=USUAL_PER_DAY, arrivals_per_day=0.0002)
-    )
-    treated: bool = True
-    traces: bool = True
-    earlier: EarlierSeason | None = None
-
-    def __post_init__(self) -> None:
-        must_hold_kinds(self, "The belief's")
-
-    def first_morning(
-        self,
-        grid: PlantGrid,
-        chance: NDArray[np.float64],
-        pest: Pest | None = None,
-        detection: float = Robot().detects,
-    ) -> Belief:
-        """Return what is believed at first, from the `chance` ``(n,)`` of each plant of a `grid`.
-
-        Only where finds are traced is anything made of a `pest`, and of an earlier season: of what
-        it learnt of the detection only if the same `detection` is told.
-        """
-        must_be_shaped("The first morning's", {"chance": (chance, (len(grid),))})
-        if not self.traces:
-            return PairApproximation.of(grid, chance)
-        traced = TracedPairs.of(grid, chance)
-        if pest is not None:
-            traced = traced.of_pest(pest)
-        if self.earlier is None:
-            return traced
-        return self.earlier.begin(traced, self.believed(grid, pest, detection))
-
-    def believed(self, grid: PlantGrid, pest: Pest | None, detection: float) -> Believed:
-        """Return what the numbers that are learnt on a `grid` are multiples of.
-
-        With a `pest`, by which nights go, and the `detection` that is told.
-        """
-        name = "" if pest is None else pest.name
-        return Believed.of(grid, name, self.spread.rate_per_day, detection)
-
-    def evening(
-        self,
-        morning: Belief,
-        plants: NDArray[np.int32],
-        found: NDArray[np.bool_],
-        detection: float | NDArray[np.float64],
-    ) -> Belief:
-        """Return what is believed after a day's inspections.
-
-        Where finds are treated at once, what is inspected again after its find that day is no news.
-
-        Parameters
-        ----------
-        morning
-            What was believed before.
-        plants, found
-            ``(k,)`` plants in the order in which they were inspected, and whether each was found
-            infested.
-        detection
-            Chance that an inspection finds what is there: one for all, or ``(k,)``.
-        """
-        if self.treated and (again := after_their_find(plants, found)).any():
-            plants, found = plants[~again], found[~again]
-            detection = detection if np.ndim(detection) == 0 else np.asarray(detection)[~again]
-        if not len(plants):
-            return morning
-        return morning.learn(plants, found, Learning(detection, treated=self.treated))
-
-    def overnight(self, evening: Belief) -> Belief:
-        """Return what is believed the morning after an `evening`."""
-        return evening.overnight(self.spread)
-
-
-@dataclass(frozen=True, eq=False)
-class Treatment:
-    """A spraying, or whatever else kills insects, on some plants on some day.
-
-    Parameters
-    ----------
-    day
-        Day of the season.
-    plants
-        ``(n,)`` whether each plant was treated.
-    efficacy
-        Chance that an infested plant is clean afterwards.
-    second
-        Seconds since that day's midnight at which it was over: what was inspected later on that day
-        counts after it. Infinite where nobody said: it works after all of the day's inspections.
-    """
-
-    day: int
-    plants: NDArray[np.bool_]
-    efficacy: float
-    second: float = np.inf
-
-    def __post_init__(self) -> None:
-        must_be("The efficacy of a treatment must be a chance in 0..1", self.efficacy, Real,
-                "Give 0.8, for instance.")  # fmt: skip
-        if not 0.0 <= self.efficacy <= 1.0:
-            raise SettingError(
-                worded(
-                    "The efficacy of a treatment must be a chance in 0..1, but it is {efficacy}.",
-                    efficacy=self.efficacy,
-                )
-            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -627,49 +484,3 @@ def say_gone(inspections: Inspections) -> NDArray[np.bool_]:
     gone: NDArray[np.bool_] = inspections.result == SKIPPED
     gone[gone] = [says_gone(str(note)) for note in inspections.notes[gone]]
     return gone
-
-
-def in_sight(belief: Belief) -> Belief:
-    """Return what is believed of what inspections can see: a day is planned by it."""
-    return belief.in_sight if isinstance(belief, TracedPairs) else belief
-
-
-def in_hindsight(evening: Belief, night: Spread) -> Belief:
-    """Return what is believed of an evening as its finds say of others, before a night."""
-    return evening.in_hindsight(night) if isinstance(evening, TracedPairs) else evening
-
-
-def still_certain(believed: Belief, flagged: NDArray[np.bool_] | None) -> NDArray[np.bool_] | None:
-    """Return of which `flagged` plants ``(n,)`` it is certain that they are infested (None: none).
-
-    A treatment, or a clean inspection, leaves them in doubt.
-    """
-    return None if flagged is None else flagged & (believed.chance > KNOWN)
-
-
-def infested_in_all(
-    grid: PlantGrid, believed: Belief, flagged: NDArray[np.bool_] | None, sure: float = 0.9
-) -> PlotEstimate:
-    """Return how many plants are infested: not found yet, and `flagged` ``(n,)`` (None: none).
-
-    With one of which it is certain the plot is not clean. A treatment leaves them in doubt.
-    """
-    made = estimate_of(grid, believed, sure, still_certain(believed, flagged))
-    return made.beside(made.found)
-
-
-def not_found_yet(
-    grid: PlantGrid, believed: Belief, flagged: NDArray[np.bool_] | None, sure: float = 0.9
-) -> PlotEstimate:
-    """Return how many plants are infested beside the `flagged`; all is as in `infested_in_all`.
-
-    The chance that the plot is clean is of all plants, those that are flagged among them.
-    """
-    # what was found is known: it is not out there any more
-    made = estimate_of(grid, believed, sure, flagged)
-    if flagged is None or not made.found:
-        return made
-    if (believed.chance[flagged] > KNOWN).any():
-        return replace(made, chance_clean=0.0)
-    clean = infested_in_all(grid, believed, flagged, sure).chance_clean
-    return replace(made, chance_clean=clean)

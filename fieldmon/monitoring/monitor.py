@@ -26,13 +26,9 @@ from fieldmon.infestation.pest_in_weather import seen_in_weather
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.monitoring.history import (
-    BeliefSettings,
-    in_hindsight,
-    in_sight,
-    not_found_yet,
-    still_certain,
-)
+from fieldmon.infestation.traced_pairs import in_hindsight, in_sight
+from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.still_infested import not_found_yet, still_certain
 from fieldmon.planning.plan import plan_in
 from fieldmon.planning.skips import Skips, without_flagged, without_skipped
 from fieldmon.plot.grid import plant_numbers

@@ -54,9 +54,9 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.closures import Closure, EntryWait
-    from fieldmon.monitoring.history import Treatment
     from fieldmon.monitoring.season_log import LogEntry
     from fieldmon.monitoring.shift_work import ShiftWork
+    from fieldmon.monitoring.treatment import Treatment
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.travel import Aisles
     from fieldmon.samplers.base import Scene

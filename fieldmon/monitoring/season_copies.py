@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import cautions, label_table, scouts, season_log, treatments
-from fieldmon.monitoring.batches import more_in_words
 from fieldmon.monitoring.contradictions import contradictions
 from fieldmon.monitoring.merging import same_season
-from fieldmon.monitoring.merging.merge import Merged, merge_copies
+from fieldmon.monitoring.merging.merge import merge_copies
 from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.transactions import Store
 from fieldmon.plot.local_clock import local_clock
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from fieldmon.monitoring.merging.merge import MergedCopy
+    from fieldmon.monitoring.merging.merge import Merged, MergedCopy
     from fieldmon.monitoring.treatments import KeptTreatment
 
 #: why treatments do not count any more after merging, as `MergedCopy` has them
@@ -100,21 +100,15 @@ class SeasonCopies(OpenSeason):
         no_more = (
             cautions.counts_no_more(one, cautions.label_of(one, labels), why) for one, why in ended
         )
-        return Merged(
-            new=taken.new,
+        return replace(
+            taken.merged,
             contradictions=(
                 *contradict.sentences(self.plot.grid),
-                *taken.differing,
+                *taken.merged.contradictions,
                 *twice,
                 *no_more,
             ),
-            taken_back=taken.taken_back,
-            moved=bool(taken.numbers),
-            treatments=taken.treatments,
-            codes=taken.codes,
             overlaps=overlaps,
-            chosen=taken.chosen,
-            noted=taken.noted,
         )
 
 
@@ -147,14 +141,14 @@ def _log_merged(
         db,
         "merged",
         states=states,
-        new=taken.new,
+        new=taken.merged.new,
         entries=len(told),
         theirs=told,
-        moved=bool(taken.numbers),
+        moved=taken.merged.moved,
         numbers=taken.numbers,
         undone=undone,
-        chosen=taken.chosen,
-        more=str(more_in_words(taken.noted)),
+        chosen=taken.merged.chosen,
+        more=str(taken.merged.more),
     )
 
 

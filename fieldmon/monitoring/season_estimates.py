@@ -16,18 +16,13 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.earlier_season import EarlierSeason
 from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.traced_pairs import TracedPairs, in_sight
 from fieldmon.monitoring import day_figures
-from fieldmon.monitoring.advice import (
-    AdviceSettings,
-    FewInspected,
-    InspectAgain,
-    NotReached,
-    advice,
-)
+from fieldmon.monitoring.advice import advice
+from fieldmon.monitoring.advice_settings import AdviceSettings
 from fieldmon.monitoring.day_figures import DayFigures, Progress
 from fieldmon.monitoring.found_again import found_again
-from fieldmon.monitoring.history import in_sight
+from fieldmon.monitoring.left_plot import FewInspected, InspectAgain, NotReached
 from fieldmon.monitoring.mornings import rules
 from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.status import Status
@@ -136,12 +131,12 @@ class SeasonEstimates(OpenSeason):
         done = tuple(one for one in history.treatments if one.day == day)
         found = history.found_and_left(evening, day)
         inspected = history.inspected(day)
-        if not len(inspected):
-            made = advice(history.grid, evening, asked, None, done, found).before_inspections()
-            away, treated = NotReached.of(history.grid, inspected), history.belief.treated
-            return replace(made, not_reached=away, finds_treated=treated)
-        made = advice(history.grid, evening, asked, scene, done, found)
+        seen = scene if len(inspected) else None
+        made = advice(history.grid, evening, asked, seen, done, found)
         made = replace(made, finds_treated=history.belief.treated)
+        if seen is None:
+            away = NotReached.of(history.grid, inspected)
+            return replace(made.before_inspections(), not_reached=away)
         if made.verdict != LEAVE:
             return made
         ahead = history.forecast(morning, day)  # others may plan meanwhile

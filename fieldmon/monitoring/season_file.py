@@ -24,7 +24,7 @@ from fieldmon.monitoring import (
     settings_log,
     tables,
 )
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.mornings import Mornings
 from fieldmon.monitoring.open_season import (
     FileRevision,

@@ -134,8 +134,10 @@ def _days(season: SeasonEstimates) -> DataFrame:
     import pandas as pd  # noqa: PLC0415 - as above
 
     days = season.days()
+    # a line is of its day
     columns = {
-        field.name: [getattr(day, field.name) for day in days] for field in fields(DayFigures)
+        field.name.removesuffix("_today"): [getattr(day, field.name) for day in days]
+        for field in fields(DayFigures)
     }
     dates = pd.Series(np.array(columns.pop("on"), "datetime64[s]"))
     return pd.DataFrame({"date": dates} | columns)

@@ -23,7 +23,7 @@ from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.pest_prior import prior_of_now
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.pest_json import kept_weather, pest_json, pest_of_json, weather_json
 from fieldmon.pests.pest import (
     Citation,

@@ -17,8 +17,8 @@ from fieldmon.decisions.labels import irac_groups
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.geopackage import beside_plot, blob, geometry, touch, unpacked
-from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.rows_that_count import COUNTS, STANDS_BACK, TAKEN_BACK
+from fieldmon.monitoring.treatment import Treatment
 from fieldmon.monitoring.waiting_periods import WaitingPeriod, end_of
 from fieldmon.plot.local_clock import LocalClock
 

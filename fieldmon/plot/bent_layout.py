@@ -16,6 +16,7 @@ from fieldmon.plot import adjacency
 from fieldmon.plot.bent_pieces import bent_pieces
 from fieldmon.plot.ends_within import lanes_within
 from fieldmon.plot.grid import PlantGrid
+from fieldmon.plot.polygons import polygons_of
 from fieldmon.plot.row_lines import LEFT, RIGHT, blocked_by, row_aisles
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def bent_grid(
         aisle=pieces.aisle[shut], lane_m=pieces.lane_m[shut], spacing_m=pieces.spacing_m[shut]
     )
     reach = _about(rows, np.unique(pieces.row[shut]), (aisles, some), ground, planting)
-    return replace(grid, beyond_m=_polygons(shapely.difference(reach, ground.area)))
+    return replace(grid, beyond_m=polygons_of(shapely.difference(reach, ground.area)))
 
 
 def _within(
@@ -102,7 +103,7 @@ def _about(
     """Return where some rows with their pieces, aisles and headlands reach."""
     reach = _reach(rows, some, planting)
     reach = shapely.union(reach, _beyond(reach, *lanes))
-    return _polygons(shapely.difference(reach, ground.obstacles))
+    return polygons_of(shapely.difference(reach, ground.obstacles))
 
 
 def _assembled(
@@ -219,7 +220,3 @@ def _beyond(reach: shapely.Geometry, aisles: RowAisles, pieces: BentPieces) -> s
         shapely.buffer(shapely.points(ends_m[beyond]), half_m, quad_segs=2)
     )
     return ground
-
-
-def _polygons(area: shapely.Geometry) -> MultiPolygon:
-    return MultiPolygon([part for part in shapely.get_parts(area) if part.geom_type == "Polygon"])

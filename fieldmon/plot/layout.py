@@ -30,6 +30,7 @@ from fieldmon.plot.measured_rows import (
 from fieldmon.plot.outline_bearing import bearing_of
 from fieldmon.plot.plant_names import PlantNames
 from fieldmon.plot.planting import Planting
+from fieldmon.plot.polygons import polygons_of
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.row_detection import (
     distinct,
@@ -200,14 +201,14 @@ def grid_from_plants(
     pieces = _pieces(xy_m, line, _aisles(xy_m[:, 1], line, planting), obstacles, planting)
     if field is None:
         reach = shapely.difference(_reach(pieces, planting), obstacles)
-        return assemble(frame, pieces, _polygons(reach), planting)
+        return assemble(frame, pieces, polygons_of(reach), planting)
     area = held_area(field, frame, xy_m)
     pieces, shut = _within(pieces, area, planting)
     grid = measured_clear(assemble(frame, pieces, area, planting), obstacles)
     if not shut.any():
         return grid
     reach = shapely.difference(_reach(pieces, planting, shut), obstacles)
-    return replace(grid, beyond_m=_polygons(shapely.difference(reach, area)))
+    return replace(grid, beyond_m=polygons_of(shapely.difference(reach, area)))
 
 
 def held_area(field: Field, frame: Frame, xy_m: Float) -> MultiPolygon:
@@ -471,7 +472,3 @@ def _reach(
 
 def _boxes(x_m: Float, y_m: Float) -> NDArray[np.object_]:
     return shapely.box(x_m[:, 0], y_m[:, 0], x_m[:, 1], y_m[:, 1])
-
-
-def _polygons(area: shapely.Geometry) -> MultiPolygon:
-    return MultiPolygon([part for part in shapely.get_parts(area) if part.geom_type == "Polygon"])

@@ -15,6 +15,8 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon
 
+from fieldmon.plot.polygons import polygons_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -227,5 +229,4 @@ def zone_outline(zone: str, rough_deg: float) -> MultiPolygon:
     (feature,) = found.get("features", [found])
     shape = shapely.from_geojson(json.dumps(feature["geometry"]))
     # the zones' own outlines cross themselves here and there
-    parts = shapely.get_parts(shapely.make_valid(shapely.simplify(shape, rough_deg)))
-    return MultiPolygon([part for part in parts if part.geom_type == "Polygon"])
+    return polygons_of(shapely.make_valid(shapely.simplify(shape, rough_deg)))

@@ -25,6 +25,7 @@ from fieldmon.plot.outline_bearing import doubt_of_bearing
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, numbered
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plants_outside import PlantsOutside
+from fieldmon.plot.polygons import polygons_of
 from fieldmon.plot.positions import lonlat_of
 from fieldmon.plot.row_detection import frame_around, rows_from_plants
 from fieldmon.plot.row_lines import Ground
@@ -426,9 +427,7 @@ def _outline(grid: PlantGrid) -> MultiPolygon:
     outline = grid.frame.geometry_lonlat(grid.drivable_m)
     if outline.is_valid:
         return outline
-    mended = shapely.make_valid(outline, method="structure", keep_collapsed=False)
-    areas = shapely.get_parts(mended)
-    return MultiPolygon([part for part in areas if part.geom_type == "Polygon"])
+    return polygons_of(shapely.make_valid(outline, method="structure", keep_collapsed=False))
 
 
 def plot_of(field: Field, planting: Planting | None = None) -> Plot:

@@ -13,6 +13,7 @@ from fieldmon.errors import PlotError
 from fieldmon.plot import adjacency
 from fieldmon.plot.grid import PlantGrid
 from fieldmon.plot.layout import held_area
+from fieldmon.plot.polygons import polygons_of
 from fieldmon.plot.row_detection import frame_around
 
 if TYPE_CHECKING:
@@ -111,4 +112,4 @@ def _ground(xy_m: Float, usual_m: float, field: Field | None) -> MultiPolygon:
             return area
         no_go = frame.geometry_m(field.no_go)
         about = shapely.difference(shapely.union(area, about), no_go)
-    return MultiPolygon([p for p in shapely.get_parts(about) if p.geom_type == "Polygon"])
+    return polygons_of(about)

@@ -101,7 +101,7 @@ class _Facts:
     def in_force(self) -> list[tuple[date, WorkSettings]]:
         """What counted on each day that was worked and, if it lies ahead, on the last one."""
         season = self.season
-        worked = [one.on for one in self.days if one.inspected]
+        worked = [one.on for one in self.days if one.inspected_today]
         recorded = season.inspections.date
         is_ahead = not len(recorded) or np.datetime64(self.on, "D") > recorded[-1]
         if not season.was_changed:
@@ -191,7 +191,7 @@ def _left_out(all_of: Sized, most: int, rest: str) -> tuple[str, ...]:
 
 def _figures(facts: _Facts) -> KeyFigures:
     status, ahead, still = facts.status, facts.status.estimate, facts.status.infested
-    finds = sum(one.found for one in facts.days)
+    finds = sum(one.found_today for one in facts.days)
     twice = worded(words.FOUND_TWICE, n=finds) if finds != status.found else ""
     return KeyFigures(
         (
@@ -249,8 +249,8 @@ def _went(facts: _Facts) -> Iterator[Block]:
         np.array([found_pct(f, e) for f, e in zip(facts.found_by.tolist(), left, strict=True)])
         for left in (still.tolist(), high.tolist(), low.tolist())
     )
-    found = np.array([one.found for one in facts.days], np.float64)
-    inspected = np.array([one.inspected for one in facts.days], np.float64)
+    found = np.array([one.found_today for one in facts.days], np.float64)
+    inspected = np.array([one.inspected_today for one in facts.days], np.float64)
     share[np.cumsum(inspected) == 0] = np.nan  # of no inspections none is known
     charts = {
         words.CHART_FOUND: DayChart(on, found, facts.units),
@@ -264,7 +264,7 @@ def _went(facts: _Facts) -> Iterator[Block]:
         del charts[words.CHART_SHARE]
     for title, chart in charts.items():
         yield Illustration(title, worded(words.CHART_ALT, title=title), chart.draw, (28.0, 46.0))
-    plans = [facts.season.planned_and_done(one.on) for one in facts.days if one.inspected]
+    plans = [facts.season.planned_and_done(one.on) for one in facts.days if one.inspected_today]
     if held := [one for one in plans if one is not None]:
         days = counted(len(held), "day")
         said = worded(words.PLANNED_DONE, **held_in_words(held))
@@ -283,10 +283,10 @@ def _treated(facts: _Facts) -> tuple[tuple[date, str], ...]:
 
 
 def _days(facts: _Facts) -> Table:
-    so_far = np.cumsum([one.inspected for one in facts.days]).tolist()
+    so_far = np.cumsum([one.inspected_today for one in facts.days]).tolist()
     rows = [
         (
-            facts.units.day(one.on), figure(one.inspected), figure(one.found),
+            facts.units.day(one.on), figure(one.inspected_today), figure(one.found_today),
             worded("{n} ({low:,}–{high:,})", n=estimate(one.expected), low=one.low, high=one.high),
             chance_figure(found_pct(found, one.expected) / 100) if inspected else NO_ROW,
         )

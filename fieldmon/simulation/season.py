@@ -14,7 +14,7 @@ from fieldmon.compute.ranges import DAYS, AllowedRange
 from fieldmon.errors import PlotError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.spread import Spread, night
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.traced_pairs import TracedPairs, in_sight
 from fieldmon.planning.workday import Workday, draw_detections, work_day
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 from fieldmon.simulation.insects import NightInsects, PestInsects
@@ -451,8 +451,7 @@ class RunningSeason:
     def scene(self, number: int, key: np.uint64) -> Scene:
         """Return the scene of a morning."""
         belief = self.mornings.on(number) if self.sampler.reads_chance else None
-        if isinstance(belief, TracedPairs):
-            belief = belief.in_sight
+        belief = belief and in_sight(belief)
         return Scene(
             aisles=self.aisles,
             robot=self.robot,

@@ -19,7 +19,7 @@ from fieldmon.drive.trace import (
     trace_of_stops,
 )
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.monitor import Monitor
 
 

@@ -22,7 +22,7 @@ from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Pest
 from fieldmon.plot.layout import rectangle
-from tests.infestation.test_traced_pairs import mid_season
+from tests.infestation.traced_maps import mid_season
 
 GRID = rectangle(9, 9)
 FIRST = TracedPairs.of(GRID, np.full(81, 0.02))

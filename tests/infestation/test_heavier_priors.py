@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fieldmon.infestation import traced_evening
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.heavier_priors import (
     TOLD,
@@ -35,7 +36,9 @@ def inspected(belief, infested, plants, learning=None):
 def by_itself(belief, infested, plants, learning=None):
     """Return what a map believes that thinks of no others."""
     plants = np.asarray(plants, np.int32)
-    return belief._inspected(plants, infested[plants], learning or Learning(0.84)).settled()
+    return traced_evening.inspected(
+        belief, plants, infested[plants], learning or Learning(0.84)
+    ).settled()
 
 
 def scattered(share, seed=3):

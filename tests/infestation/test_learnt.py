@@ -24,7 +24,7 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Entry, Movement, Pest
 from fieldmon.plot.layout import rectangle
-from tests.infestation.test_traced_pairs import mid_season
+from tests.infestation.traced_maps import mid_season
 
 GRID = rectangle(9, 9)
 FLAT = np.full(81, 0.02)

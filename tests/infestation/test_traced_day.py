@@ -4,14 +4,21 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.origins import BY_ADJACENT, N_ORIGINS, OVERLOOKED
+from fieldmon.infestation.origins import BY_ADJACENT, JUMPED, N_ORIGINS, OVERLOOKED
 from fieldmon.infestation.pairs import Neighbourhood
 from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_day import KernelRoom, TracedDay, learn_day
+from fieldmon.infestation.traced_day import (
+    KernelRoom,
+    TracedDay,
+    _count,
+    _share,
+    _share_traced,
+    learn_day,
+)
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.infestation.tracing import Raised
 from fieldmon.plot.layout import rectangle
-from tests.infestation.test_traced_pairs import EVERY, FEW, FLAT, GRID, LEARNING, mid_season
+from tests.infestation.traced_maps import EVERY, FEW, FLAT, GRID, LEARNING, day_of, mid_season
 
 
 def test_known_finds_looked_at_again_tell_the_detection():
@@ -73,3 +80,51 @@ def test_what_inspections_raise_plants_by_came_from_beside_them_one_after_the_ot
         assert day.shares == pytest.approx(shares, abs=1e-5)
         before = chance
     assert raised > 5
+
+
+@pytest.mark.parametrize("found", [False, True])
+def test_finds_are_counted_by_origin_and_known_ones_tell_nothing(found):
+    day = day_of(mid_season())
+    _count.py_func(day, 5, found, 0.3)
+    assert day.found == pytest.approx(found * day.shares[5])
+    assert day.expected == pytest.approx(0.3 * day.shares[5])
+    assert np.exp(day.likely[0]) == pytest.approx(0.3 if found else 0.7)
+    day = day_of(mid_season())
+    day.before[5] = 0.995
+    _count.py_func(day, 5, found, 0.8)
+    assert not day.found.any()
+    assert not day.expected.any()
+    assert day.likely[0] == 0.0
+
+
+def test_what_a_chance_rises_by_came_from_the_plant_beside_and_what_falls_tells_no_origin():
+    belief = mid_season()
+    for now in (1.5, 0.5):
+        day, chance = day_of(belief), belief.chance * now
+        _share.py_func(day, chance, 5)
+        parts = belief.shares[5] * belief.chance[5]
+        if now > 1.0:
+            parts[BY_ADJACENT] += 0.5 * belief.chance[5]
+            assert day.shares[5] == pytest.approx(parts / chance[5], rel=1e-5)
+        else:
+            assert day.shares[5] == pytest.approx(belief.shares[5])
+        assert day.before[5] == chance[5]
+
+
+@pytest.mark.parametrize(("i", "j"), [(5, 6), (5, 8), (0, 11), (11, 0), (2, 4)])
+def test_what_a_find_raises_a_plant_by_is_shared_among_the_kernels_that_reach_it(i, j):
+    belief = mid_season()
+    rng, n_kernels = np.random.default_rng(1), 6
+    day, traces = day_of(belief), belief.traces.own()
+    each = rng.random((n_kernels, 7, 7))
+    room = KernelRoom(each, None, Raised.of(12))
+    room.raised.plant[3], room.raised.by[3] = j, 0.07
+    p, unseen, q = 0.1, 1.3, belief.chance[j]
+    _share_traced.py_func(day, traces, room, (i, p, unseen), 3)
+    (y, x), (to_y, to_x) = np.transpose(np.divmod([i, j], 4))
+    away = np.array([to_y - y, to_x - x])
+    to, back = each[:, 3 + away[0], 3 + away[1]], each[:, 3 - away[0], 3 - away[1]]
+    ways = belief.unseen[j] * to + min(q / p, 1.0) * unseen * back
+    parts = belief.shares[j] * q
+    parts[JUMPED:] += 0.07 * ways / ways.sum()
+    assert day.shares[j] == pytest.approx(parts / (q + 0.07), rel=1e-5)

@@ -12,6 +12,7 @@ from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import start_infested
 from fieldmon.infestation.spread import night
 from fieldmon.monitoring import MonitoringSettings, Season, season_log
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot import local_clock
 from fieldmon.plot.field import Field
@@ -78,6 +79,16 @@ def a_season(path, plot=None, **choices):
     plot = plot or a_plot()
     settings = MonitoringSettings(BEGINS, **({"robot": ROBOT} | choices))
     return Season.create(path, plot, some_records(plot), settings)
+
+
+def of_a_corner(path):
+    """Begin a season in which a corner of the plot was found infested and left, nothing else."""
+    made = a_season(path, belief=BeliefSettings(treated=False))
+    plants = np.arange(0, len(made.plot.grid), 3)
+    corner = made.plot.grid.xy_m[plants] - made.plot.grid.xy_m.min(axis=0)
+    found = (corner < 16).all(axis=1)
+    made.record(Inspections.of(plants, found.astype(int), np.datetime64(BEGINS)), "day")
+    return made
 
 
 class Insects:

@@ -3,27 +3,22 @@
 import re
 from dataclasses import replace
 from datetime import timedelta
-from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from fieldmon.cli.report_languages import spoken
-from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted
-from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
-from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.infestation.observations import Observations
 from fieldmon.monitoring import MonitoringSettings, Season
-from fieldmon.monitoring.advice import Advice, AdviceSettings, FewInspected, _first
-from fieldmon.monitoring.history import BeliefSettings
-from fieldmon.samplers.decide import Decide
-from tests.monitoring.seasons import BEGINS, a_plot, a_season
+from fieldmon.monitoring.advice import Advice
+from fieldmon.monitoring.advice_settings import AdviceSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
+from tests.monitoring.seasons import BEGINS, a_plot, a_season, of_a_corner
 
 CHEAP = TreatmentCosts(per_ha=20.0, per_zone=0.1)
 
@@ -31,13 +26,7 @@ CHEAP = TreatmentCosts(per_ha=20.0, per_zone=0.1)
 @pytest.fixture(scope="module")
 def season(tmp_path_factory):
     """Return a season in which a corner of the plot was found infested, and nothing else."""
-    path = tmp_path_factory.mktemp("advice") / "season.gpkg"
-    made = a_season(path, belief=BeliefSettings(treated=False))
-    plants = np.arange(0, len(made.plot.grid), 3)
-    corner = made.plot.grid.xy_m[plants] - made.plot.grid.xy_m.min(axis=0)
-    found = (corner < 16).all(axis=1)
-    made.record(Inspections.of(plants, found.astype(int), np.datetime64(BEGINS)), "day")
-    return made
+    return of_a_corner(tmp_path_factory.mktemp("advice") / "season.gpkg")
 
 
 def test_where_nobody_has_inspected_there_is_no_verdict(tmp_path):
@@ -168,14 +157,6 @@ def test_few_inspections_are_not_all_that_tells_after_finds_or_a_treatment(tmp_p
     assert season.advice(BEGINS, asked).few is None
 
 
-@pytest.mark.parametrize(
-    ("n", "level", "enough"), [(32, 0.05, 27), (100_000, 0.05, 55), (32, 1e-7, None)]
-)
-def test_enough_clean_plants_are_no_more_than_there_are(n, level, enough):
-    few = FewInspected.of((1, n), AdviceSettings(level), 0.84, None)
-    assert (few and few.enough) == enough
-
-
 def test_of_few_plants_out_of_reach_nothing_is_said(season):
     advice = season.advice(BEGINS, AdviceSettings(0.9, costs=CHEAP))
     assert advice.not_reached.share == 0.0
@@ -215,29 +196,6 @@ def test_a_rate_that_cannot_be_is_refused(season):
         AdviceSettings(rate_l_ha=0.0)
     with pytest.raises(SettingError, match="between 0 and 1"):
         season.advice(BEGINS + timedelta(days=1), AdviceSettings(0.0))
-
-
-def test_the_fewest_looks_are_those_that_trying_one_after_another_finds():
-    for most, fewest in product(range(24), range(1, 30)):
-        asked = []
-        found = _first(lambda k, seen=asked, least=fewest: seen.append(k) or k >= least, most)
-        assert found == (fewest if fewest <= most else None)
-        assert all(1 <= k <= most for k in asked)
-        assert len(asked) <= 2 * most.bit_length() + 2
-
-
-def test_one_look_less_would_not_decide(season):
-    level = float(season.evening(BEGINS).mean())
-    asked, scene = AdviceSettings(level, costs=CHEAP), season.scene(BEGINS)
-    more = season.advice(BEGINS, asked).more
-    evening = season.history.in_hindsight(season.history.first_morning, 0)
-    order = Decide().walk(replace(scene, seconds_left=1e6), np.zeros(len(scene.chance), bool)).plant
-    learning = Learning(scene.robot.detects, treated=False)
-    for looks, found, verdict in ((more.if_clean, False, LEAVE), (more.if_found, True, TREAT)):
-        for k in (looks - 1, looks):
-            after = evening.learn(order[:k], np.full(k, found), learning)
-            said = verdict_of(scene.grid, after, level, asked.sure)
-            assert (said.verdict == verdict) == (k == looks)
 
 
 def test_what_was_treated_that_day_is_not_proposed_anew_and_said(tmp_path):
@@ -319,33 +277,6 @@ def test_one_zone_that_is_the_whole_plot_is_compared_with_nothing(season):
     said = " ".join(advice.said_of_zones())
     assert "It takes 158 l. " in said
     assert "elsewhere lose" not in said
-
-
-@pytest.mark.parametrize(
-    ("days", "said"), [(14.0, "14 يومًا"), (3.0, "3 أيام"), (2.0, "يومان"), (1.5, "1.5")]
-)
-def test_days_in_arabic_have_the_form_of_their_number(days, said):
-    assumed = AdviceSettings(costs=TreatmentCosts(days=days)).assumed()
-    assert said in spoken("ar", "")[0].say(assumed)
-
-
-def test_what_was_set_is_not_called_assumed():
-    usual = AdviceSettings().assumed()
-    assert usual.startswith("Assumed: to treat 1 ha costs 100, a zone costs 0.5, ")
-    assert "As you said" not in usual
-    some = AdviceSettings(costs=TreatmentCosts(per_ha=50.0, days=10.0)).assumed()
-    assert some == (
-        "Assumed: a zone costs 0.5, an infested plant loses 0.1 a day, treating cleans 90 %. "
-        "As you said: to treat 1 ha costs 50, it stays infested for 10 days."
-    )
-    learnt = AdviceSettings(costs=TreatmentCosts(works=0.15), learnt_of="soap").assumed()
-    assert "As you said" not in learnt
-    assert learnt.endswith("14 days. As this season learnt of soap: treating cleans 15 %.")
-    dear = AdviceSettings(costs=TreatmentCosts(per_ha=120_000.0)).assumed()
-    assert "to treat 1 ha costs 120,000" in dear
-    everything = TreatmentCosts(50.0, 1.0, 0.2, 10.0, 0.8)
-    said = AdviceSettings(costs=everything).assumed(Units(area="dunam"))
-    assert said.startswith("As you said: to treat 1 dunam costs 5, a zone costs 1, ")
 
 
 def test_a_small_zone_is_not_nothing(season):

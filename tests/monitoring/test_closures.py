@@ -11,9 +11,9 @@ from fieldmon.compute.units import Units
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.closures import closed_in_words, closed_on, closed_plants, entry_waits
 from fieldmon.monitoring.day_ahead import WorkPart, planned_again, route_ahead
-from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.planning.members import team_of
 from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.local_clock import local_clock

@@ -44,7 +44,7 @@ def test_kept_figures_are_those_worked_out_anew_by_another_program(worked):
     again = Season(worked.path)
     for kept in worked.days():
         day = again.settings.day(kept.on)
-        assert Progress.of(again.history, day).inspected_today == kept.inspected
+        assert Progress.of(again.history, day).inspected_today == kept.inspected_today
         assert again.day_figures(kept.on) == kept
 
 
@@ -91,7 +91,7 @@ def test_the_days_finds_sum_to_all_finds_though_plants_are_found_again(tmp_path)
     now = season.status(BEGINS + timedelta(days=3))
     assert (now.found, now.finds) == (4, 7)
     assert now.inspected_today == now.found_today == 1
-    assert sum(one.found for one in season.days()) == now.finds
+    assert sum(one.found_today for one in season.days()) == now.finds
 
 
 def test_the_share_found_is_least_where_most_is_left():

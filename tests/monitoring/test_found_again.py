@@ -7,8 +7,10 @@ import pytest
 
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.found_again import FoundAgain, found_again
-from fieldmon.monitoring.history import BeliefSettings, History, Treatment
+from fieldmon.monitoring.history import History
+from fieldmon.monitoring.treatment import Treatment
 from tests.monitoring.seasons import BEGINS, a_plot, a_season, on
 
 PLANTS = np.arange(100, 120)

@@ -7,15 +7,17 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fieldmon.errors import ObservationError, SettingError
+from fieldmon.errors import ObservationError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.level_range import LevelRange
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.monitoring.history import BeliefSettings, History, Treatment
+from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.history import History
 from fieldmon.monitoring.shift_work import Shift
+from fieldmon.monitoring.treatment import Treatment
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers.base import NEVER
@@ -221,11 +223,6 @@ def test_nobody_is_sent_again_on_that_day_or_the_next_to_a_plant_that_could_not_
     assert [scene.last_inspected[7] for scene in days] == [0, 1, NEVER]
     assert days[0].skipped is days[2].skipped is None
     assert np.flatnonzero(days[1].skipped).tolist() == [7]
-
-
-def test_an_impossible_efficacy_is_refused():
-    with pytest.raises(SettingError, match="efficacy"):
-        Treatment(0, np.ones(N, np.bool_), 1.5)
 
 
 def random_history(seed):

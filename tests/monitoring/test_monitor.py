@@ -14,7 +14,7 @@ from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.io.readers.pest_file import shipped_pest
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.monitor import Monitor
 from fieldmon.monitoring.season_file import Season
 from fieldmon.pests.weather import DAY_S, weather_of

@@ -17,8 +17,9 @@ from fieldmon.infestation.spread import Spread
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season, day_figures
-from fieldmon.monitoring.history import BeliefSettings, Treatment
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.mornings import Mornings, _arrays_in, _causes, _packed, _unpacked
+from fieldmon.monitoring.treatment import Treatment
 from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.layout import rectangle
 from tests.monitoring.seasons import BEGINS, a_season, a_small_plot, some_results
@@ -201,14 +202,16 @@ def test_a_kept_estimate_is_believed_only_as_it_was_kept(path, damage):
 
 
 def test_the_last_estimate_is_not_drawn_again(path, monkeypatch):
-    from fieldmon.monitoring import history
+    from fieldmon.monitoring import still_infested
 
     before, draw, drawn = (
         Season(path).status(BEGINS + timedelta(days=LAST)).estimate,
-        history.estimate_of,
+        still_infested.estimate_of,
         [],
     )
-    monkeypatch.setattr(history, "estimate_of", lambda *args: drawn.append(args) or draw(*args))
+    monkeypatch.setattr(
+        still_infested, "estimate_of", lambda *args: drawn.append(args) or draw(*args)
+    )
     assert Season(path).status(BEGINS + timedelta(days=LAST)).estimate == before
     assert len(drawn) == 1, "that of the first evening"
     Season(path).status(BEGINS + timedelta(days=LAST - 1))

@@ -9,7 +9,8 @@ import pytest
 
 from fieldmon.infestation.spread import Spread
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.history import BeliefSettings, History
+from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.history import History
 from fieldmon.plot.robot import Robot
 from tests.monitoring.seasons import BEGINS, a_season, a_small_plot, on, some_results, three_results
 

@@ -9,7 +9,7 @@ import pytest
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.history import History, Treatment
+from fieldmon.monitoring.history import History
 from fieldmon.monitoring.plant_states import (
     TREATED_SINCE,
     finds_apart,
@@ -18,6 +18,7 @@ from fieldmon.monitoring.plant_states import (
     shown_apart,
     shown_states,
 )
+from fieldmon.monitoring.treatment import Treatment
 from tests.monitoring.seasons import a_plot, a_season, on
 
 PLOT = a_plot()

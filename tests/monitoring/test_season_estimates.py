@@ -9,16 +9,10 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.pests.weather import weather_of
 from fieldmon.planning.skips import left_out_in_words
-from tests.monitoring.seasons import (
-    BEGINS,
-    a_season,
-    clock_on,
-    on,
-    some_results,
-)
+from tests.monitoring.seasons import BEGINS, a_season, clock_on, on, some_results
 
 
 def test_a_find_raises_its_neighbours_and_a_clean_look_lowers(season):

@@ -13,7 +13,7 @@ from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.io.readers.pest_file import shipped_pest
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.settings import (
     MonitoringSettings,
     as_json,

@@ -10,7 +10,7 @@ from shapely import MultiPolygon, box
 from fieldmon.decisions.doses import Dose
 from fieldmon.monitoring import treatments
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.history import Treatment
+from fieldmon.monitoring.treatment import Treatment
 from fieldmon.monitoring.treatments import TreatedPlace
 from fieldmon.plot.local_clock import LocalClock
 

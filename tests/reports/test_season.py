@@ -15,7 +15,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.observations import PRESENT
 from fieldmon.monitoring import Application, Season
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.plant_states import finds_apart
 from fieldmon.plot.grid import plant_numbers
 from fieldmon.reports import season as season_module
@@ -64,8 +64,8 @@ def test_every_day_with_work_has_its_line_the_newest_first(of_season, worked):
     rows = table(of_season, "Day by day").rows
     kept = worked.days()
     assert [row[0] for row in rows] == [str(one.on) for one in reversed(kept)]
-    assert [int(row[1]) for row in rows] == [one.inspected for one in reversed(kept)]
-    assert [int(row[2]) for row in rows] == [one.found for one in reversed(kept)]
+    assert [int(row[1]) for row in rows] == [one.inspected_today for one in reversed(kept)]
+    assert [int(row[2]) for row in rows] == [one.found_today for one in reversed(kept)]
 
 
 def test_the_charts_show_finds_share_expected_and_inspected(of_season):
@@ -250,7 +250,7 @@ def test_what_no_page_has_room_for_is_counted(worked, last, monkeypatch):
 
 
 def test_all_days_are_held_to_their_plans(of_season, worked):
-    planned = sum(len(worked.kept_route(one.on)) for one in worked.days() if one.inspected)
+    planned = sum(len(worked.kept_route(one.on)) for one in worked.days() if one.inspected_today)
     (said,) = on_sheet(of_season, 1, Paragraph)
     assert said.text == (
         f"On 5 days planned and worked: Stops planned: {planned:,}; done: {planned:,}; "

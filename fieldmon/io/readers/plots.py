@@ -40,6 +40,7 @@ from fieldmon.io.readers.walked_outline import (
 )
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
+from fieldmon.plot.polygons import polygons_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -208,8 +209,7 @@ def _block(part: Field, name: str) -> Block:
 def _of_blocks(name: str, blocks: list[Block]) -> Field:
     """Return the plot that blocks make up."""
     whole = shapely.union_all([block.area for block in blocks])
-    areas = [part for part in shapely.get_parts(whole) if part.geom_type == "Polygon"]
-    return Field(name, MultiPolygon(areas), blocks=tuple(blocks))
+    return Field(name, polygons_of(whole), blocks=tuple(blocks))
 
 
 def blocks_of(layer: Layer, options: PlotOptions) -> Imported[tuple[Block, ...]]:

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import first_few, worded
-from fieldmon.errors import ChoiceNeeded, ObservationError
-from fieldmon.infestation.observations import PRESENT, UNKNOWN, Observations
+from fieldmon.compute.wording import worded
+from fieldmon.errors import ObservationError
+from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import (
     Imported,
     ImportMessage,
@@ -22,7 +19,6 @@ from fieldmon.io.import_report import (
     guessed,
     seen,
 )
-from fieldmon.io.options import ROLES
 from fieldmon.io.parse.clock import (
     as_clocks,
     clock_time,
@@ -31,35 +27,11 @@ from fieldmon.io.parse.clock import (
     without_midnights,
     zone_of,
 )
-from fieldmon.io.parse.columns import (
-    find,
-    is_average,
-    is_confidence,
-    is_id,
-    is_of_writing,
-    is_position,
-    recognised,
-)
+from fieldmon.io.parse.columns import is_of_writing
 from fieldmon.io.parse.lengths import accuracies
 from fieldmon.io.parse.positions import located
-from fieldmon.io.parse.result_words import (
-    ResultWords,
-    about_confidences,
-    about_fractions,
-    about_mark,
-    about_minus,
-    are_fractions,
-    remedy_of_words,
-)
-from fieldmon.io.parse.values import (
-    counted,
-    dates,
-    dates_of_parts,
-    is_missing,
-    mark_of_counts,
-    numbers,
-    presence,
-)
+from fieldmon.io.parse.result_words import about_confidences
+from fieldmon.io.parse.values import dates, dates_of_parts, is_missing, numbers
 from fieldmon.io.readers.date_doubts import (
     HOW_TO_WRITE,
     broken_times,
@@ -68,30 +40,24 @@ from fieldmon.io.readers.date_doubts import (
     mixed_dates,
     unread_dates,
 )
-from fieldmon.io.readers.inspection_file.columns import names_in, own_column
-from fieldmon.io.readers.inspection_file.results import results_in_names
-from fieldmon.io.readers.other_counts import about_other_counts
+from fieldmon.io.readers.inspection_file.columns import own_column
 from fieldmon.io.readers.placed_twice import placed_twice
 from fieldmon.io.readers.species import one_pest
-from fieldmon.io.readers.visits import VISIT_S, first_of_visits, same_places, telling
 from fieldmon.io.readers.wide_tables import by_day
 from fieldmon.plot.local_clock import clock_at
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.projection import M_PER_DEGREE
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
     from numpy.typing import NDArray
 
+    from fieldmon.io.formats.layer import Layer
     from fieldmon.io.options import RecordOptions
     from fieldmon.io.parse.positions import LocatedFeatures
     from fieldmon.io.parse.values import DatedColumn
     from fieldmon.io.readers.places import NamedPlaces
-
-_LOOKED_AT, _FEW_WORDS = 200, 12
-# roles of columns that say where a record lies
-_LIES = frozenset({"lon", "lat", "position", "x", "y", "crs", "accuracy"})
+from fieldmon.io.readers.record_columns import RecordColumns
+from fieldmon.io.readers.record_counts import counts_of
+from fieldmon.io.readers.record_visits import RecordVisits, disagreeing, each_visit_once, places_of
 
 
 def records_of(
@@ -126,9 +92,9 @@ def _records_and_plots(
         )
     layer, record, repeated = _once_each(by_day(layer, options))
     found = located(layer, options, places)
-    table = _Table(found.layer, options)
+    table = RecordColumns(found.layer, options)
     day, at_s, day_messages = _days(table, found.lonlat, record)
-    counts = _counts(table)
+    counts = counts_of(table)
     species, of_species = _species(table)
     accuracy_m, unread = _accuracy_m(table, found, options)
     twice = placed_twice(found, accuracy_m, options)
@@ -146,19 +112,19 @@ def _records_and_plots(
         *layer.messages, *repeated, *found.messages, *unread, *twice, *day_messages,
         *counts.messages,
     )  # fmt: skip
-    place = _places(observations)
+    place = places_of(observations)
     half_m = (apart_m or Planting().plant_spacing_m) / 2
     known = ~np.isnat(day) & np.isfinite(found.lonlat).all(axis=1)
     known &= ~(observations.accuracy_m >= half_m) & (found.step_m < half_m)
-    visits = _Visits(np.flatnonzero(known), place, at_s)
-    first, counted_once = _each_visit_once(observations, table, visits)
+    visits = RecordVisits(np.flatnonzero(known), place, at_s)
+    first, counted_once = each_visit_once(observations, table, visits)
     once = observations.take(first)
-    more = (*of_species, *counted_once, *_same_visit(once, place[first]))
+    more = (*of_species, *counted_once, *disagreeing(once, place[first]))
     messages += (*about_confidences(layer.columns, table.used()),)
     return Imported(once, (*messages, *more)), None if found.plot is None else found.plot[first]
 
 
-def _species(table: _Table) -> tuple[NDArray[np.str_], list[ImportMessage]]:
+def _species(table: RecordColumns) -> tuple[NDArray[np.str_], list[ImportMessage]]:
     """Return the pest of each record ``(n,)`` in one spelling, and what is said of the others.
 
     Ask which one is meant where there are several.
@@ -171,7 +137,7 @@ def _species(table: _Table) -> tuple[NDArray[np.str_], list[ImportMessage]]:
 
 
 def _accuracy_m(
-    table: _Table, found: LocatedFeatures, options: RecordOptions
+    table: RecordColumns, found: LocatedFeatures, options: RecordOptions
 ) -> tuple[NDArray[np.float64], list[ImportMessage]]:
     """Return how far off the places of records may be ``(n,)``, NaN where that is not known."""
     name = table.named("accuracy")
@@ -179,50 +145,6 @@ def _accuracy_m(
         return found.accuracy_m, []
     stated_m, unread = accuracies(table.layer.column(name), name, options.decimal)
     return np.fmax(stated_m, found.accuracy_m), unread
-
-
-@dataclass(frozen=True, eq=False)
-class _Table:
-    """Columns by what they hold."""
-
-    layer: Layer
-    options: RecordOptions
-
-    def __len__(self) -> int:
-        return len(self.layer)
-
-    def named(self, role: str, taken: frozenset[str] = frozenset()) -> str | None:
-        told = self.options.column(role)
-        if told == "" and role == "species":  # none says it
-            return None
-        return told or find(role, self.layer.columns, taken)
-
-    def used(self) -> set[str | None]:
-        """Return the columns that play a role."""
-        return {self.named(role) for role in ROLES}
-
-    def cells(self, name: str) -> list[str]:
-        return [text(v) for v in self.layer.column(name)]
-
-    def numbers(self, role: str) -> NDArray[np.float64]:
-        name = self.named(role)
-        if name is None:
-            return np.full(len(self), np.nan)
-        return numbers(self.layer.column(name), self.options.decimal)
-
-    def texts(self, role: str) -> NDArray[np.str_]:
-        name = self.named(role)
-        if name is None:
-            return np.full(len(self), "", dtype=np.str_)
-        cells = self.cells(name)
-        known = {cell: "" if is_missing(cell) else cell for cell in set(cells)}
-        return np.array([known[cell] for cell in cells], dtype=np.str_)
-
-
-class _Counts(NamedTuple):
-    number: NDArray[np.float64]
-    present: NDArray[np.int8]
-    messages: list[ImportMessage]
 
 
 def _once_each(layer: Layer) -> tuple[Layer, NDArray[np.int64], list[ImportMessage]]:
@@ -253,7 +175,7 @@ class _Days(NamedTuple):
     messages: list[ImportMessage]
 
 
-def _days(table: _Table, lonlat: NDArray[np.float64], record: NDArray[np.int64]) -> _Days:
+def _days(table: RecordColumns, lonlat: NDArray[np.float64], record: NDArray[np.int64]) -> _Days:
     """Return the local days of records ``(n,)`` at positions ``(n, 2)``, and their times."""
     parts = tuple(name for role in ("year", "month", "day") if (name := table.named(role)))
     by_hand = table.options.column("date")
@@ -268,7 +190,7 @@ def _days(table: _Table, lonlat: NDArray[np.float64], record: NDArray[np.int64])
         if name is None:
             unknown = np.full(len(table), "NaT", dtype="datetime64[D]")
             said = worded("No column was recognised as the date of the records.")
-            offer = [doubtful(said, remedy=_offer(table, "date", _are_dates))]
+            offer = [doubtful(said, remedy=table.offer("date", _are_dates))]
             return _Days(unknown, np.full(len(table), np.nan), offer)
         read = dates(table.layer.column(name), table.options.date_order)
         where, quoted = name, repr(name)
@@ -287,7 +209,7 @@ def _days(table: _Table, lonlat: NDArray[np.float64], record: NDArray[np.int64])
 
 
 def _times(
-    table: _Table, day: NDArray[np.datetime64], name: str | None
+    table: RecordColumns, day: NDArray[np.datetime64], name: str | None
 ) -> tuple[NDArray[np.float64], list[str]]:
     """Return when each record was made, seconds from anywhere, and what times are none.
 
@@ -371,317 +293,6 @@ def _about_dates(read: DatedColumn, where: str, record: NDArray[np.int64]) -> li
     return messages
 
 
-def _counts(table: _Table) -> _Counts:
-    """Return how many, whether, and what was found."""
-    count_name = table.named("count")
-    present_name = table.named("present", frozenset({count_name} if count_name else ()))
-    all_are_finds = table.options.column("present") == ""
-    counts = _Counts(np.full(len(table), np.nan), np.full(len(table), UNKNOWN, np.int8), [])
-    if count_name is not None:
-        counts = _numbers_of(table, count_name)
-    if present_name is not None and not all_are_finds:
-        counts = _with_presence(table, present_name, counts)
-    elif all_are_finds and count_name is None:
-        counts.present[:] = PRESENT
-        counts.messages.append(seen(worded("Every record was taken as a find, as told.")))
-    elif count_name is None:
-        counts = _by_names(table)
-    others = about_other_counts(
-        table.layer, table.options, count_name, table.used(), counts.present
-    )
-    return counts._replace(messages=[*counts.messages, *others.messages])
-
-
-def _by_names(table: _Table) -> _Counts:
-    """Return what the names of waypoints say; ask what was found where fewer than half say it."""
-    name = names_in(table.layer)
-    said = [] if name is None else results_in_names(table.layer, name, table.options)
-    if not said or 2 * sum(one.is_said for one in said) < len(said):
-        raise _what_was_found(table)
-    every = Remedy("columns", "present=", worded("Take every record as a find"))
-    read = guessed(worded("What was found was read from the names."), name, every)
-    number = np.array([one.how_many for one in said], dtype=np.float64)
-    return _Counts(number, np.array([one.result for one in said], dtype=np.int8), [read])
-
-
-def _what_was_found(table: _Table) -> ChoiceNeeded:
-    """Return the question which column says what was found, with those that could."""
-    words = [*_fitting(table, _are_results), *_fitting(table, _hold_results)]
-    numbers = [name for name in _fitting(table, _are_numbers) if _could_count(table, name)]
-    could = dict.fromkeys((*(f"present={n}" for n in words), *(f"count={n}" for n in numbers)))
-    return ChoiceNeeded(
-        worded(
-            "{name} must have a column that says what was found (count, "
-            "found, result), but none was recognised among: {value}. Say which one it is, or that "
-            "every record is a find.",
-            name=table.layer.name,
-            value=", ".join(table.layer.columns) or "none",
-        ),
-        "columns",
-        (*could, "present="),
-    )
-
-
-def _offer(table: _Table, role: str, fits: Callable[[list[str]], bool]) -> Remedy | None:
-    """Return the columns of unknown name that hold what could play a role, if there are any."""
-    choices = tuple(f"{role}={name}" for name in _fitting(table, fits))
-    if not choices:
-        return None
-    one = worded(
-        "Take the {role} from {other}",
-        role=role,
-        other=choices[0].partition("=")[2],
-    )
-    label = (
-        one
-        if len(choices) == 1
-        else worded(
-            "Name the column of the {role}",
-            role=role,
-        )
-    )
-    return Remedy("columns", choices[0], label, choices[1:])
-
-
-def _fitting(table: _Table, fits: Callable[[list[str]], bool]) -> list[str]:
-    """Return the columns of unknown name whose cells fit."""
-    unknown = [name for name in table.layer.columns if not recognised([name])]
-    some = {name: [c for c in table.cells(name)[:_LOOKED_AT] if c] for name in unknown}
-    return [name for name, cells in some.items() if cells and fits(cells)]
-
-
-def _are_results(cells: list[str]) -> bool:
-    read = [presence(cell) for cell in cells if not is_missing(cell)]
-    return bool(read) and all(one != UNKNOWN for one in read) and not _are_numbers(cells)
-
-
-def _hold_results(cells: list[str]) -> bool:
-    """Return whether cells are a few words, one of which says what was found."""
-    words = {cell for cell in cells if not is_missing(cell)}
-    some = any(presence(word) != UNKNOWN for word in words)
-    return len(words) <= _FEW_WORDS and some and not _are_numbers(cells)
-
-
-def _could_count(table: _Table, name: str) -> bool:
-    """Return whether a column of numbers could count pests: no ids, no confidences."""
-    cells = table.cells(name)
-    if is_id(name, cells) or is_confidence(name):
-        return False
-    return not are_fractions(counted(cell).number for cell in cells[:_LOOKED_AT])
-
-
 def _are_dates(cells: list[str]) -> bool:
     column = np.array(cells, dtype=object)
     return not np.isnat(dates(column).day).all()
-
-
-def _are_numbers(cells: list[str]) -> bool:
-    read = [counted(cell) for cell in cells if not is_missing(cell)]
-    return bool(read) and all(np.isfinite(one.number) for one in read)
-
-
-def _some(cells: Iterable[str]) -> str:
-    """Return how a sentence shows cells: the first three that differ."""
-    return ", ".join(repr(cell) for cell in list(dict.fromkeys(cells))[:3])
-
-
-def _numbers_of(table: _Table, name: str) -> _Counts:
-    cells = table.cells(name)
-    mark, messages = _mark(table, name, cells)
-    known = {cell: counted(cell, mark) for cell in set(cells)}
-    count = np.array([known[cell].number for cell in cells])
-    present = np.array([known[cell].present for cell in cells], dtype=np.int8)
-    messages.append(seen(worded("Counts are in column {name!r}.", name=name)))
-    messages += about_fractions(name, count.tolist(), is_usual=bool(recognised([name])))
-    odd = [cell for cell in cells if known[cell].is_rough]
-    rough = [cell for cell in odd if known[cell].present != UNKNOWN]
-    none = [cell for cell in odd if known[cell].present == UNKNOWN]
-    if none:
-        messages.append(
-            doubtful(
-                worded(
-                    "{n} {n:count says|counts say} neither how many nor whether any ({shown}); "
-                    "left open.",
-                    n=len(none),
-                    shown=_some(none),
-                ),
-                name,
-            )
-        )
-    if rough:
-        messages.append(
-            doubtful(
-                worded(
-                    "{n} {n:count is|counts are} no plain number ({shown}); read roughly.",
-                    n=len(rough),
-                    shown=_some(rough),
-                ),
-                name,
-            )
-        )
-    n_missing = int(np.count_nonzero(present == UNKNOWN)) - len(none)
-    if n_missing:
-        messages.append(
-            seen(
-                worded(
-                    "{n} {n:record has|records have} no count: not known, not zero.", n=n_missing
-                ),
-                name,
-            )
-        )
-    return _Counts(count, present, messages)
-
-
-def _mark(table: _Table, name: str, cells: list[str]) -> tuple[str, list[ImportMessage]]:
-    """Return the decimal mark of the counts: 1,234 alone is told by the rest of the table."""
-    if table.options.decimal is not None:
-        return table.options.decimal, []
-    others = (values for column, values in table.layer.columns.items() if column != name)
-    looked_at = (text(v) for values in others for v in values[:_LOOKED_AT])
-    mark, unsure = mark_of_counts(cells, looked_at, averages=is_average(name))
-    return mark, about_mark(unsure, name, mark)
-
-
-def _with_presence(table: _Table, name: str, counts: _Counts) -> _Counts:
-    cells = table.cells(name)
-    words = ResultWords(cells, table.options)
-    known = {cell: _present(cell, words) for cell in set(cells)}
-    stated = np.array([known[cell] for cell in cells], dtype=np.int8)
-    at_odds = (stated != UNKNOWN) & (counts.present != UNKNOWN) & (stated != counts.present)
-    messages = [*counts.messages, seen(worded("Presence is in column {name!r}.", name=name))]
-    if at_odds.any():
-        messages.append(
-            doubtful(
-                worded(
-                    "{n} {n:record contradicts its|records contradict their} own count.",
-                    n=int(at_odds.sum()),
-                ),
-                name,
-            )
-        )
-    unread = sorted(cell for cell in known if known[cell] == UNKNOWN and not is_missing(cell))
-    if unread:
-        said = worded("These words say neither yes nor no: {shown}.", shown=_some(unread))
-        messages.append(doubtful(said, name, remedy_of_words(unread, table.options)))
-    messages += about_minus(cells, words)
-    messages += about_fractions(name, (counted(cell).number for cell in known), is_usual=False)
-    present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)
-    return _Counts(counts.number, present, messages)
-
-
-def _present(cell: str, words: ResultWords) -> int:
-    said = words[cell]
-    return presence(cell) if said is None else said
-
-
-class _Visits(NamedTuple):
-    """Which records can be of one visit with others, ``(k,)``; where and when each is, ``(n,)``."""
-
-    known: NDArray[np.intp]
-    place: NDArray[np.intp]
-    at_s: NDArray[np.float64]
-
-
-def _places(observations: Observations) -> NDArray[np.intp]:
-    """Return a number for the place of each record ``(n,)``; of those with none their own."""
-    place = np.arange(len(observations))
-    there = np.flatnonzero(np.isfinite(observations.lonlat).all(axis=1))
-    if len(there):
-        lonlat = observations.lonlat[there]
-        east = np.cos(np.radians(np.median(lonlat[:, 1])))
-        xy_m = (lonlat - lonlat[0]) * M_PER_DEGREE * [east, 1.0]
-        place[there] = there[same_places(xy_m, observations.accuracy_m[there])]
-    return place
-
-
-def _each_visit_once(
-    observations: Observations, table: _Table, visits: _Visits
-) -> tuple[NDArray[np.intp], list[ImportMessage]]:
-    """Return the first record of each visit, and what there is to say of the others.
-
-    A robot tells of a plant each time that it sees it, and that is one look. Records without a day,
-    and of positions that tell no plants apart, stay as they are; so do those of which any other
-    column tells that they are of something else.
-    """
-    some = observations.take(visits.known)
-    columns = (visits.place[visits.known], some.day.astype(np.int64), some.present, some.count)
-    read = [np.nan_to_num(column.astype(np.float64), nan=-1.0).tolist() for column in columns]
-    alike = list(zip(*read, some.species.tolist(), some.stage.tolist(), strict=True))
-    often = Counter(alike)
-    again = np.flatnonzero([often[one] > 1 for one in alike])
-    if not len(again):
-        return np.arange(len(observations)), []
-    alike, records = [alike[k] for k in again.tolist()], visits.known[again]
-    at_s = visits.at_s[records]
-    lies = {name for name in table.layer.columns if is_position(name)}
-    rest = telling(table.layer, records, lies | {table.named(role) for role in _LIES})
-    says = list(zip(alike, *rest.values(), strict=True))
-    first = first_of_visits(says, at_s)
-    messages: list[ImportMessage] = []
-    if n_again := len(records) - len(first):
-        said = worded(
-            "{n} {n:record repeats|records repeat} what another says of the same place and day, "
-            "within {minutes} minutes or with no time: one visit, which counts once.",
-            n=n_again,
-            minutes=round(VISIT_S / 60),
-        )
-        messages.append(guessed(said))
-    if n_more := len(first) - len({says[k] for k in first.tolist()}):
-        said = worded(
-            "{n} {n:record tells|records tell} the same of a place and day as another at another "
-            "time: each visit counts.",
-            n=n_more,
-        )
-        messages.append(doubtful(said))
-    if n_other := len(first) - len(first_of_visits(alike, at_s)):
-        said = worded(
-            "{n} {n:record differs|records differ} from another of the same place and time only "
-            "in {columns}: each counts.",
-            n=n_other,
-            columns=first_few(_differing(alike, rest), 3),
-        )
-        messages.append(guessed(said))
-    later = np.delete(records, first)
-    return np.delete(np.arange(len(observations)), later), messages
-
-
-def _differing(alike: list[tuple[object, ...]], rest: dict[str, list[str]]) -> list[str]:
-    """Return the columns in which records differ that are alike."""
-    n = len(set(alike))
-    return [
-        repr(name) for name, cells in rest.items() if len(set(zip(alike, cells, strict=True))) > n
-    ]
-
-
-def _same_visit(observations: Observations, place: NDArray[np.intp]) -> list[ImportMessage]:
-    """Return a doubt about records of one place ``(k,)`` and day that disagree."""
-    if len(observations) < 2:
-        return []
-    day = observations.day.astype(np.int64).astype(np.float64)
-    kinds = [
-        np.unique(v, return_inverse=True)[1] for v in (observations.species, observations.stage)
-    ]
-    visit: list[NDArray[np.generic]] = [place, day, *kinds]
-    count = np.nan_to_num(observations.count, nan=-1)
-    n_visits, n_stated = _n_distinct(visit), _n_distinct([*visit, count, observations.present])
-    if n_stated == n_visits:
-        return []
-    return [
-        doubtful(
-            worded(
-                "{n} {n:record gives|records give} another count for a place and day that "
-                "another record "
-                "already has.",
-                n=n_stated - n_visits,
-            )
-        )
-    ]
-
-
-def _n_distinct(columns: list[NDArray[np.generic]]) -> int:
-    """Return how many different rows columns ``(n,)`` make."""
-    order = np.lexsort(columns)
-    new = np.zeros(len(order) - 1, dtype=bool)
-    for column in columns:
-        new |= np.diff(column[order]) != 0
-    return int(new.sum()) + 1

@@ -29,6 +29,7 @@ from fieldmon.io.writers.zone_cells import (
     rates_geotiff,
     zone_cells,
 )
+from fieldmon.plot.polygons import polygons_of
 from fieldmon.plot.projection import Frame, turned_to
 
 if TYPE_CHECKING:
@@ -181,8 +182,7 @@ def _filled(part: Polygon) -> Polygon:
 def _polygons(area: shapely.Geometry, grid: float = 0.0) -> MultiPolygon:
     """Return the polygons of an area, at corners of a grid of such size."""
     whole = shapely.set_precision(shapely.make_valid(area), grid)
-    parts = shapely.get_parts(shapely.get_parts(whole))  # those of collections in collections, too
-    return MultiPolygon([one for one in parts if one.geom_type == "Polygon"])
+    return polygons_of(shapely.get_parts(whole))  # those of collections in collections, too
 
 
 def _frame(of: TreatmentMap) -> gpd.GeoDataFrame:

@@ -68,40 +68,26 @@ class Merged:
 
 
 class MergedCopy(NamedTuple):
-    """What came of another copy.
+    """What came of another copy, before its results and codes are held to those of this one.
 
     Parameters
     ----------
-    new, taken_back
-        As `Merged` has them.
-    differing
-        A sentence for each setting, and the table of labels, that both chose differently, for
-        treatments that are alike but for what a label may add, and where only one names a pest.
-    treatments, codes
-        As `Merged` has them.
+    merged
+        What the rows of both tell: its `contradictions` are of settings, the table of labels,
+        treatments that are alike but for what a label may add, and of a pest that only one names.
     numbers
         What batches are numbered now, by their numbers of before, where that is another one.
     gone
         Numbers of treatments that do not count any more: those that counted here alone, there
         alone, and (by their numbers here) in both.
-    chosen
-        As `Merged` has it.
     alike
         Numbers of each two treatments that count, one of each copy alone, of one day and product.
-    noted
-        As `Merged` has it.
     """
 
-    new: int
-    taken_back: int
-    differing: tuple[str, ...]
-    treatments: int
-    codes: tuple[str, ...]
+    merged: Merged
     numbers: Numbers
     gone: tuple[set[int], set[int], set[int]]
-    chosen: tuple[str, ...]
     alike: tuple[tuple[int, int], ...]
-    noted: int
 
 
 def merge_copies(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -133,25 +119,26 @@ def merge_copies(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCop
         close_if_empty(db, batch)
     after = _Standing.of(db, stay)
     n_treated, undone = merged_treatments.changed(db, applied)
-    return MergedCopy(
+    renumbered = {old: number for old, number in numbers[0].items() if old != number}
+    merged = Merged(
         new=len(after.counting - before.counting),
-        taken_back=len(before.counting - after.counting),
-        differing=(
+        contradictions=(
             *differing,
             *unnamed,
             *replaced_twice,
             *merged_treatments.alike_but_for_labels(treated, held),
         ),
+        taken_back=len(before.counting - after.counting),
+        moved=bool(renumbered),
         treatments=n_treated,
         codes=tuple(sorted(name for key, name in after.keys.items() if key not in before.keys)),
-        numbers={old: number for old, number in numbers[0].items() if old != number},
-        gone=undone,
         chosen=(*chosen, *other_labels),
-        alike=tuple(merged_treatments.of_one_product(treated, held)),
         noted=repeated_recordings.n_noted(
             before.notes, after.notes, {*after.notes} - after.counting
         ),
     )
+    alike = tuple(merged_treatments.of_one_product(treated, held))
+    return MergedCopy(merged, renumbered, undone, alike)
 
 
 class _Standing(NamedTuple):

@@ -24,9 +24,9 @@ from fieldmon.io.writers.csv import route_csv
 from fieldmon.io.writers.day_file import HandoffPlan
 from fieldmon.monitoring import scouts
 from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.day_ahead import WorkPart, route_ahead
 from fieldmon.monitoring.findings import take
-from fieldmon.monitoring.history import BeliefSettings
 from fieldmon.monitoring.scouts_out import scouts_out
 from fieldmon.planning.members import team_of
 from fieldmon.planning.skips import left_out_in_words

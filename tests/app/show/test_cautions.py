@@ -11,7 +11,7 @@ from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from tests.app.chosen import in_season
 from tests.monitoring.seasons import BEGINS, a_season
 

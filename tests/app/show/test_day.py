@@ -13,7 +13,7 @@ from app.state import chosen_day
 from app.state.chosen_day import DayRoute
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.monitoring.history import BeliefSettings
+from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.plot.grid import plant_numbers
 from tests.app.chosen import a_plot, chosen, in_season, records_at
 from tests.app.driving import apart, go, row_box, tap, texts_of
@@ -107,7 +107,7 @@ def test_what_changed_is_the_difference_of_two_days(worked):
     said = "\n".join(told)
     before, now = (worked.day_figures(BEGINS + timedelta(days=n)) for n in (0, 1))
     assert title == "Since the last visit, Mon 6 Apr"
-    assert f"{before.found} found on 40 plants inspected on Mon 6 Apr." in said
+    assert f"{before.found_today} found on 40 plants inspected on Mon 6 Apr." in said
     assert f"still infested: {now.expected:.0f}; on the evening of Mon 6 Apr: " in said
     assert f"{before.expected:.0f}." in said
     assert day.changes(on(worked, 0))[1] == [texts.CHANGED_FIRST]
@@ -118,7 +118,7 @@ def test_what_changed_is_told_since_the_last_visit_whenever_that_was(worked):
     visited, now = (worked.day_figures(BEGINS + timedelta(days=n)) for n in (1, 9))
     title, said = day.changes(on(worked, 9))
     assert title == "Since the last visit, Tue 7 Apr"
-    assert f"{visited.found} found on 40 plants inspected on Tue 7 Apr." in said
+    assert f"{visited.found_today} found on 40 plants inspected on Tue 7 Apr." in said
     assert any(f"infested: {now.expected:.0f}; on the evening of Tue 7 Apr" in one for one in said)
     past = replace(on(worked, 9), today=BEGINS + timedelta(days=30))
     assert day.changes(past) == ("Since the visit before, Tue 7 Apr", said)

@@ -194,7 +194,7 @@ def merge(db, other):
     told = season_log.taken_in(db, other)
     done = merge_copies(db, other)
     states = season_log.states(db)
-    said = {"new": done.new, "entries": len(told), "theirs": told, "numbers": done.numbers}
+    said = {"new": done.merged.new, "entries": len(told), "theirs": told, "numbers": done.numbers}
     season_log.append(db, "merged", states=states, **said)
     return done
 

@@ -30,9 +30,9 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
     for seed in range(first, min(first + 20, PAIRS)):
         one, other = apart(seed)
         ours, theirs = copied(one), copied(other)
-        new, gone, *_ = merge(ours, other)
-        assert new == len(that_count(ours) - that_count(one))
-        assert gone == len(that_count(one) - that_count(ours))
+        done = merge(ours, other).merged
+        assert done.new == len(that_count(ours) - that_count(one))
+        assert done.taken_back == len(that_count(one) - that_count(ours))
         merge(theirs, one)
         for db, before in ((ours, one), (theirs, other)):
             assert season_log.differing(db) == ()
@@ -54,7 +54,7 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
         rows = "SELECT batch, count(*) = sum(undone = 1) FROM inspections GROUP BY batch"
         assert undone == dict(ours.execute(rows).fetchall())
         again = copied(ours)
-        assert merge(again, other).differing == ()
+        assert merge(again, other).merged.contradictions == ()
         assert content(again) == content(ours)
         unchanged = copied(one)
         assert merge(unchanged, one).numbers == {}

@@ -21,7 +21,7 @@ def test_what_one_copy_alone_chose_holds_and_what_both_did_is_said():
     for seed in range(PAIRS):
         one, other = apart(seed)
         ours = copied(one)
-        differing = merge(ours, other).differing
+        differing = merge(ours, other).merged.contradictions
         for wanted in IN_ORDER.values():
             together = ours.execute(wanted).fetchall()
             for db in (one, other):  # each copy's own order, whatever its clock says
@@ -79,7 +79,7 @@ def test_a_pest_that_both_chose_differently_is_named_not_dumped():
     looks_for(one, "mites")
     chosen = from_json(settings_log.now(one))
     settings_log.change(other, replace(chosen, pest=replace(chosen.pest, detection=0.5)))
-    (said,) = merge_copies(one, other).differing
+    (said,) = merge_copies(one, other).merged.contradictions
     assert said == (
         "The setting pest differs: mites (this copy's figures) here, mites (the other copy's "
         "figures) there. What was chosen last counts: mites (the other copy's figures)."

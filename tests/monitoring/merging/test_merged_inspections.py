@@ -19,7 +19,7 @@ def test_what_both_copies_hold_stays_untouched_and_nothing_comes_out_otherwise(m
         whole = copied(one)
         counted = "SELECT value FROM fieldmon WHERE key = ?"
         before = one.execute(counted, (schema.INSPECTIONS_CHANGED,)).fetchone()
-        if content(one) == content(other) and merge_copies(one, other).differing == ():
+        if content(one) == content(other) and merge_copies(one, other).merged.contradictions == ():
             after = one.execute(counted, (schema.INSPECTIONS_CHANGED,)).fetchone()
             stayed += held(one) != [] and before == after
         else:

@@ -13,8 +13,8 @@ import pytest
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.monitoring import Season, batches, treatments
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.history import Treatment
 from fieldmon.monitoring.merging.merge import merge_copies
+from fieldmon.monitoring.treatment import Treatment
 from fieldmon.monitoring.treatments import TreatedPlace
 from fieldmon.plot import local_clock
 from tests.monitoring.merging.copies import (
@@ -93,7 +93,7 @@ def test_treatments_of_which_nobody_knows_whether_they_are_one_both_count_and_ar
     ours = copied(one)
     done = merge_copies(ours, other)
     if noted and said is None:
-        assert "It counts once" in done.differing[0]
+        assert "It counts once" in done.merged.contradictions[0]
         assert counting(ours) == [(1, 7)]
         return
     why = "" if noted else " (an earlier version did not note whether a label added that)"
@@ -101,10 +101,10 @@ def test_treatments_of_which_nobody_knows_whether_they_are_one_both_count_and_ar
         f"Treatments with Acarol on {BEGINS}, batches 1 and 2, say the same but for waiting days "
         f"7 here, {said or 14} there{why}. Both count; if they are one, undo a batch."
     )
-    assert done.differing == (doubt,)
-    assert done.treatments == 1
+    assert done.merged.contradictions == (doubt,)
+    assert done.merged.treatments == 1
     assert counting(ours) == [(1, 7), (2, said or 14)]
-    assert merge_copies(ours, other).differing == ()
+    assert merge_copies(ours, other).merged.contradictions == ()
 
 
 @pytest.mark.parametrize(
@@ -147,7 +147,7 @@ def test_what_an_earlier_version_recorded_is_known_by_all_its_values():
     one, other = copies_of(2)
     sprayed(one, 0, SPRAYED, {"waiting_days": 7}, noted=False)
     sprayed(other, 1, SPRAYED, {"waiting_days": 7})
-    assert merge_copies(one, other).differing == ()
+    assert merge_copies(one, other).merged.contradictions == ()
     assert counting(one) == [(1, 7)]
 
 
@@ -173,13 +173,13 @@ def test_treatments_of_three_copies_come_out_the_same_in_every_order(first):
                 before = treatments.counting(ours)
                 applied = [*before, *treatments.counting(each)]
                 done = merge(ours, each)
-                n_new, known = done.treatments, frozenset().union(*before)
+                n_new, known = done.merged.treatments, frozenset().union(*before)
                 now = frozenset().union(*treatments.counting(ours))
                 assert any(done.gone) == any(marks.isdisjoint(now) for marks in applied)
                 assert n_new == sum(not marks & known for marks in treatments.counting(ours))
             rows = content(ours)["treatments"]
             for each in order:
-                assert merge(ours, each).differing == ()
+                assert merge(ours, each).merged.contradictions == ()
             assert content(ours)["treatments"] == rows
             marks = treatments.counting(ours)
             assert not any(a & b for a, b in combinations(marks, 2))

@@ -1,0 +1,214 @@
+"""How many pests each record counts, and whether it found any."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fieldmon.compute.wording import worded
+from fieldmon.errors import ChoiceNeeded
+from fieldmon.infestation.observations import PRESENT, UNKNOWN
+from fieldmon.io.formats.layer import text
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
+from fieldmon.io.parse.columns import is_average, is_confidence, is_id, recognised
+from fieldmon.io.parse.result_words import (
+    ResultWords,
+    about_fractions,
+    about_mark,
+    about_minus,
+    are_fractions,
+    remedy_of_words,
+)
+from fieldmon.io.parse.values import counted, is_missing, mark_of_counts, presence
+from fieldmon.io.readers.inspection_file.columns import names_in
+from fieldmon.io.readers.inspection_file.results import results_in_names
+from fieldmon.io.readers.other_counts import about_other_counts
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+
+from fieldmon.io.readers.record_columns import LOOKED_AT, RecordColumns
+
+_FEW_WORDS = 12
+
+
+class RecordCounts(NamedTuple):
+    """How many each record counts ``(n,)``, NaN where nobody said, and whether any (`PRESENT`)."""
+
+    number: NDArray[np.float64]
+    present: NDArray[np.int8]
+    messages: list[ImportMessage]
+
+
+def counts_of(table: RecordColumns) -> RecordCounts:
+    """Return how many, whether, and what was found."""
+    count_name = table.named("count")
+    present_name = table.named("present", frozenset({count_name} if count_name else ()))
+    all_are_finds = table.options.column("present") == ""
+    counts = RecordCounts(np.full(len(table), np.nan), np.full(len(table), UNKNOWN, np.int8), [])
+    if count_name is not None:
+        counts = _numbers_of(table, count_name)
+    if present_name is not None and not all_are_finds:
+        counts = _with_presence(table, present_name, counts)
+    elif all_are_finds and count_name is None:
+        counts.present[:] = PRESENT
+        counts.messages.append(seen(worded("Every record was taken as a find, as told.")))
+    elif count_name is None:
+        counts = _by_names(table)
+    others = about_other_counts(
+        table.layer, table.options, count_name, table.used(), counts.present
+    )
+    return counts._replace(messages=[*counts.messages, *others.messages])
+
+
+def _by_names(table: RecordColumns) -> RecordCounts:
+    """Return what the names of waypoints say; ask what was found where fewer than half say it."""
+    name = names_in(table.layer)
+    said = [] if name is None else results_in_names(table.layer, name, table.options)
+    if not said or 2 * sum(one.is_said for one in said) < len(said):
+        raise _what_was_found(table)
+    every = Remedy("columns", "present=", worded("Take every record as a find"))
+    read = guessed(worded("What was found was read from the names."), name, every)
+    number = np.array([one.how_many for one in said], dtype=np.float64)
+    return RecordCounts(number, np.array([one.result for one in said], dtype=np.int8), [read])
+
+
+def _what_was_found(table: RecordColumns) -> ChoiceNeeded:
+    """Return the question which column says what was found, with those that could."""
+    words = [*table.fitting(_are_results), *table.fitting(_hold_results)]
+    numbers = [name for name in table.fitting(_are_numbers) if _could_count(table, name)]
+    could = dict.fromkeys((*(f"present={n}" for n in words), *(f"count={n}" for n in numbers)))
+    return ChoiceNeeded(
+        worded(
+            "{name} must have a column that says what was found (count, "
+            "found, result), but none was recognised among: {value}. Say which one it is, or that "
+            "every record is a find.",
+            name=table.layer.name,
+            value=", ".join(table.layer.columns) or "none",
+        ),
+        "columns",
+        (*could, "present="),
+    )
+
+
+def _are_results(cells: list[str]) -> bool:
+    read = [presence(cell) for cell in cells if not is_missing(cell)]
+    return bool(read) and all(one != UNKNOWN for one in read) and not _are_numbers(cells)
+
+
+def _hold_results(cells: list[str]) -> bool:
+    """Return whether cells are a few words, one of which says what was found."""
+    words = {cell for cell in cells if not is_missing(cell)}
+    some = any(presence(word) != UNKNOWN for word in words)
+    return len(words) <= _FEW_WORDS and some and not _are_numbers(cells)
+
+
+def _could_count(table: RecordColumns, name: str) -> bool:
+    """Return whether a column of numbers could count pests: no ids, no confidences."""
+    cells = table.cells(name)
+    if is_id(name, cells) or is_confidence(name):
+        return False
+    return not are_fractions(counted(cell).number for cell in cells[:LOOKED_AT])
+
+
+def _are_numbers(cells: list[str]) -> bool:
+    read = [counted(cell) for cell in cells if not is_missing(cell)]
+    return bool(read) and all(np.isfinite(one.number) for one in read)
+
+
+def _some(cells: Iterable[str]) -> str:
+    """Return how a sentence shows cells: the first three that differ."""
+    return ", ".join(repr(cell) for cell in list(dict.fromkeys(cells))[:3])
+
+
+def _numbers_of(table: RecordColumns, name: str) -> RecordCounts:
+    cells = table.cells(name)
+    mark, messages = _mark(table, name, cells)
+    known = {cell: counted(cell, mark) for cell in set(cells)}
+    count = np.array([known[cell].number for cell in cells])
+    present = np.array([known[cell].present for cell in cells], dtype=np.int8)
+    messages.append(seen(worded("Counts are in column {name!r}.", name=name)))
+    messages += about_fractions(name, count.tolist(), is_usual=bool(recognised([name])))
+    odd = [cell for cell in cells if known[cell].is_rough]
+    rough = [cell for cell in odd if known[cell].present != UNKNOWN]
+    none = [cell for cell in odd if known[cell].present == UNKNOWN]
+    if none:
+        messages.append(
+            doubtful(
+                worded(
+                    "{n} {n:count says|counts say} neither how many nor whether any ({shown}); "
+                    "left open.",
+                    n=len(none),
+                    shown=_some(none),
+                ),
+                name,
+            )
+        )
+    if rough:
+        messages.append(
+            doubtful(
+                worded(
+                    "{n} {n:count is|counts are} no plain number ({shown}); read roughly.",
+                    n=len(rough),
+                    shown=_some(rough),
+                ),
+                name,
+            )
+        )
+    n_missing = int(np.count_nonzero(present == UNKNOWN)) - len(none)
+    if n_missing:
+        messages.append(
+            seen(
+                worded(
+                    "{n} {n:record has|records have} no count: not known, not zero.", n=n_missing
+                ),
+                name,
+            )
+        )
+    return RecordCounts(count, present, messages)
+
+
+def _mark(table: RecordColumns, name: str, cells: list[str]) -> tuple[str, list[ImportMessage]]:
+    """Return the decimal mark of the counts: 1,234 alone is told by the rest of the table."""
+    if table.options.decimal is not None:
+        return table.options.decimal, []
+    others = (values for column, values in table.layer.columns.items() if column != name)
+    looked_at = (text(v) for values in others for v in values[:LOOKED_AT])
+    mark, unsure = mark_of_counts(cells, looked_at, averages=is_average(name))
+    return mark, about_mark(unsure, name, mark)
+
+
+def _with_presence(table: RecordColumns, name: str, counts: RecordCounts) -> RecordCounts:
+    cells = table.cells(name)
+    words = ResultWords(cells, table.options)
+    known = {cell: _present(cell, words) for cell in set(cells)}
+    stated = np.array([known[cell] for cell in cells], dtype=np.int8)
+    at_odds = (stated != UNKNOWN) & (counts.present != UNKNOWN) & (stated != counts.present)
+    messages = [*counts.messages, seen(worded("Presence is in column {name!r}.", name=name))]
+    if at_odds.any():
+        messages.append(
+            doubtful(
+                worded(
+                    "{n} {n:record contradicts its|records contradict their} own count.",
+                    n=int(at_odds.sum()),
+                ),
+                name,
+            )
+        )
+    unread = sorted(cell for cell in known if known[cell] == UNKNOWN and not is_missing(cell))
+    if unread:
+        said = worded("These words say neither yes nor no: {shown}.", shown=_some(unread))
+        messages.append(doubtful(said, name, remedy_of_words(unread, table.options)))
+    messages += about_minus(cells, words)
+    messages += about_fractions(name, (counted(cell).number for cell in known), is_usual=False)
+    present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)
+    return RecordCounts(counts.number, present, messages)
+
+
+def _present(cell: str, words: ResultWords) -> int:
+    said = words[cell]
+    return presence(cell) if said is None else said

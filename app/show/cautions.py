@@ -32,7 +32,7 @@ def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
         return
     if not kinds:
         _show_not_come(choices, season)
-        _show_found_again(choices, season)
+        _show_found_again(choices)
     found = season.cautions(choices.on, choices.units.in_sentences(choices.on))
     _warn([one for one in found if not kinds or one.kind in kinds])
 
@@ -50,10 +50,11 @@ def _warn(found: Iterable[Caution]) -> None:
 
 
 def show_today(choices: Choices, plan: DayPlan) -> None:
-    """Show what counts on the day itself: where not to enter, and a harvest that is to come."""
+    """Show what counts on the day itself: where not to enter, a harvest to come, finds again."""
     if (season := choices.season) is None:
         return
     _show_not_come(choices, season)
+    _show_found_again(choices)
     if not chosen_day.route(choices).worked:
         if left_off := _left_off(choices, season, plan):
             st.warning("\n".join(f"- {sentence}" for sentence in left_off))
@@ -102,9 +103,9 @@ def _show_not_come(choices: Choices, season: Season) -> None:
         st.warning(said)
 
 
-def _show_found_again(choices: Choices, season: Season) -> None:
+def _show_found_again(choices: Choices) -> None:
     """Say that plants were found again, though they are taken as treated."""
-    if (said := season.found_again(choices.on)) is not None:
+    if (said := chosen_day.found_again(choices)) is not None:
         st.warning(in_words(said.sentence(texts.FINDS_FLAGGED_HOW)))
 
 

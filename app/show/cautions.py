@@ -89,12 +89,15 @@ def _left_off(choices: Choices, season: Season, plan: DayPlan) -> list[str]:
 def not_come(choices: Choices, last: date) -> str:
     """Return that the last day recorded has not come, if so: a slip in a date hides what was seen.
 
-    By the plot's calendar.
+    With the ways to mend it; by the plot's calendar.
     """
     if choices.today is None or last <= choices.today:
         return ""
     day, today = (choices.units.said_day(on, choices.today) for on in (last, choices.today))
-    return texts.NOT_COME.format(day=day, today=today)
+    said = texts.NOT_COME.format(day=day, today=today)
+    if not choices.open_season.inspections_on(last):
+        return said
+    return f"{said} {texts.NOT_COME_CORRECT.format(correct=texts.CORRECT_WHEN)}"
 
 
 def _show_not_come(choices: Choices, season: Season) -> None:

@@ -117,6 +117,9 @@ NOT_COME = (
     "Something is recorded of **{day}**, which has not come: it is {today}. No day before counts "
     "it. If that day is wrong, undo it in *Record*."
 )
+NOT_COME_CORRECT = (
+    "The day of an inspection can be corrected there, too: choose its plant, then *{correct}*."
+)
 BACK_TO_TODAY = "Back to today"
 PRESSED_BEFORE = (
     "*{button}* was pressed before the plot or the day just chosen was shown, so nothing was done. "
@@ -1222,7 +1225,8 @@ SCOUT_PAGE = {
     "zoom_in": "Closer", "zoom_out": "Farther", "to_next": "To the next plant",
     "whole_plot": "The whole plot",
     "progress": "{done} done, {left} to go",
-    "progress_in_time": "{done} done, time for {left} of {all}", "time_left": "{hours}:{minutes} h left",
+    "progress_in_time": "{done} done, time for {left} of {all}",
+    "time_left": "{hours}:{minutes} h left",
     "time_over": "The hours are over",
     "waiting": "{n} to send", "all_sent": "All sent", "some_refused": "{n} not taken",
     "menu": "Menu", "close": "Close", "ok": "OK", "cancel": "Cancel",

@@ -227,7 +227,7 @@ export class Page {
     const what = `${say("place", { row: signOf(plot, one.plant), plant: plot.number[one.plant] })}: ${resultOf(one)}`;
     Object.assign(this.last.dataset, { plant: one.plant, kept: isKept });
     const n = this.field.added();
-    this.last.textContent = `${say(isKept ? "kept" : "keeping", { what })}${n ? `. ${say("added", { n })}` : ""}`;
+    this.last.textContent = `${say(isKept ? "kept" : "keeping", { what })}${n ? ` · ${say("added", { n })}` : ""}`;
   }
 
   #old() {

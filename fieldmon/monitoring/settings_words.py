@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.compute.wording import Worded
-    from fieldmon.monitoring import MonitoringSettings, Season
+    from fieldmon.monitoring.season_estimates import SeasonEstimates
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.monitoring.settings_log import Parts
     from fieldmon.planning.members import TeamMember
 
@@ -144,7 +145,7 @@ def _parts_of(*both: MonitoringSettings) -> tuple[dict[str, str], ...]:
 
 @contextmanager
 def telling_anew(
-    season: Season, before: MonitoringSettings, after: MonitoringSettings,
+    season: SeasonEstimates, before: MonitoringSettings, after: MonitoringSettings,
     tell: Callable[[str], object],
 ) -> Iterator[None]:  # fmt: skip
     """Tell what a change makes of the last day, where it makes of days past something else."""
@@ -166,7 +167,7 @@ def telling_anew(
         tell(said)
 
 
-def _still_there(season: Season, on: date) -> str:
+def _still_there(season: SeasonEstimates, on: date) -> str:
     # with those found and only flagged: else a change of them would seem to find or lose plants
     left = season.still_infested(on)
     return worded(

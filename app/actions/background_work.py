@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from ..state import browser
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ def buttons(
     It begins before its button is drawn, by what is chosen now: so no second run has to tell the
     buttons.
     """
+    if (tab := browser.tab()) is not None:
+        work.watch(*tab)
     if st.session_state.get(key) and not over:
         work.start()
     at_work = work.running

@@ -32,7 +32,7 @@ def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
         return
     if not kinds:
         _show_not_come(choices, season)
-        _show_found_again(choices, season)
+        _show_found_again(choices)
     found = season.cautions(choices.on, choices.units.in_sentences(choices.on))
     _warn([one for one in found if not kinds or one.kind in kinds])
 
@@ -50,10 +50,11 @@ def _warn(found: Iterable[Caution]) -> None:
 
 
 def show_today(choices: Choices, plan: DayPlan) -> None:
-    """Show what counts on the day itself: where not to enter, and a harvest that is to come."""
+    """Show what counts on the day itself: where not to enter, a harvest to come, finds again."""
     if (season := choices.season) is None:
         return
     _show_not_come(choices, season)
+    _show_found_again(choices)
     if not chosen_day.route(choices).worked:
         if left_off := _left_off(choices, season, plan):
             st.warning("\n".join(f"- {sentence}" for sentence in left_off))
@@ -88,12 +89,15 @@ def _left_off(choices: Choices, season: Season, plan: DayPlan) -> list[str]:
 def not_come(choices: Choices, last: date) -> str:
     """Return that the last day recorded has not come, if so: a slip in a date hides what was seen.
 
-    By the plot's calendar.
+    With the ways to mend it; by the plot's calendar.
     """
     if choices.today is None or last <= choices.today:
         return ""
     day, today = (choices.units.said_day(on, choices.today) for on in (last, choices.today))
-    return texts.NOT_COME.format(day=day, today=today)
+    said = texts.NOT_COME.format(day=day, today=today)
+    if not choices.open_season.inspections_on(last):
+        return said
+    return f"{said} {texts.NOT_COME_CORRECT.format(correct=texts.CORRECT_WHEN)}"
 
 
 def _show_not_come(choices: Choices, season: Season) -> None:
@@ -102,9 +106,9 @@ def _show_not_come(choices: Choices, season: Season) -> None:
         st.warning(said)
 
 
-def _show_found_again(choices: Choices, season: Season) -> None:
+def _show_found_again(choices: Choices) -> None:
     """Say that plants were found again, though they are taken as treated."""
-    if (said := season.found_again(choices.on)) is not None:
+    if (said := chosen_day.found_again(choices)) is not None:
         st.warning(in_words(said.sentence(texts.FINDS_FLAGGED_HOW)))
 
 

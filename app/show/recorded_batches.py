@@ -9,7 +9,7 @@ from fieldmon.infestation.inspections import RESULT_CODES
 from fieldmon.planning.members import person_key
 
 from ..words import texts
-from ..words.language import number
+from ..words.language import in_words, number
 
 if TYPE_CHECKING:
     from fieldmon.monitoring.batches import Batch, BatchContents
@@ -29,7 +29,7 @@ def in_short(result: str) -> str:
 def last(choices: Choices, said: BatchContents) -> str:
     """Return what was said last, of one plant: what an undo beside it takes back."""
     words = texts.SCOUT_LAST if choices.plot.grid.in_rows else texts.SCOUT_LAST_ALONE
-    return words.format(row=_row(choices, said), plant=said.plant, result=_result(said))
+    return words.format(row=_row(choices, said), plant=_plant(choices, said), result=_result(said))
 
 
 def source(name: str) -> str:
@@ -77,6 +77,11 @@ def _row(choices: Choices, said: BatchContents) -> str:
     return choices.plot.grid.line_signs.get(said.row, f"{said.row}")
 
 
+def _plant(choices: Choices, said: BatchContents) -> str:
+    """Return the plant of the only inspection in its row, with the face where it has two."""
+    return in_words(said.number_on(choices.plot.grid))
+
+
 def _result(said: BatchContents) -> str:
     """Return the result of the only inspection, and what was counted."""
     result = texts.RESULTS_OF[GONE] if said.is_gone else in_short(said.result)
@@ -90,4 +95,4 @@ def _what(choices: Choices, said: BatchContents) -> str:
         return texts.BATCHES_SAID["findings"].format(n=said.n, found=said.found)
     where = texts.TIP_PLANT if choices.plot.grid.in_rows else texts.TIP_ALONE
     note = texts.TIP_STATE.format(state=_result(said))
-    return where.format(row=_row(choices, said), plant=said.plant, note=note)
+    return where.format(row=_row(choices, said), plant=_plant(choices, said), note=note)

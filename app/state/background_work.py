@@ -3,8 +3,17 @@
 from __future__ import annotations
 
 import threading
+import time
+from typing import TYPE_CHECKING
 
 from fieldmon.errors import FieldmonError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+#: nobody has looked for so long: then nobody will; a tab that was lost comes back sooner
+UNSEEN_S = 120.0
+_EVERY_S = 0.5
 
 
 class BackgroundWork:
@@ -14,6 +23,7 @@ class BackgroundWork:
         self.problem: FieldmonError | None = None
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
+        self._tabs: dict[str, Callable[[], bool]] = {}
 
     @property
     def running(self) -> bool:
@@ -30,14 +40,31 @@ class BackgroundWork:
         """Ask it to end after the step that it is at."""
         self._stop.set()
 
+    def watch(self, tab: str, is_open: Callable[[], bool]) -> None:
+        """Note a tab that watches it; `is_open` tells, in any thread, whether it still does."""
+        self._tabs[tab] = is_open
+
     def wait(self, timeout_s: float) -> None:
         """Wait for the end."""
         if self._thread is not None:
             self._thread.join(timeout_s)
 
     def work(self) -> None:
-        """Do it, asking `_stop` after every step."""
+        """Do it, asking after every step for `_stop`, or `_is_over` where it can go on later."""
         raise NotImplementedError
+
+    def _is_over(self) -> bool:
+        """Return whether it is to end; while no tab is open any more, wait for one for a while."""
+        until = time.monotonic() + UNSEEN_S
+        while not (over := self._stop.is_set()) and not self._is_watched():
+            if time.monotonic() >= until:
+                return True
+            self._stop.wait(_EVERY_S)
+        return over
+
+    def _is_watched(self) -> bool:
+        tabs = [*self._tabs.values()]  # others may come meanwhile
+        return not tabs or any(is_open() for is_open in tabs)
 
     def _work(self) -> None:
         try:

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.advice import Advice
     from fieldmon.monitoring.advice_settings import AdviceSettings
     from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn
+    from fieldmon.monitoring.found_again import FoundAgain
     from fieldmon.monitoring.told_detection import ToldOtherwise
     from fieldmon.monitoring.treatment_effect import TreatmentEffect
     from fieldmon.planning.route import Route
@@ -252,6 +253,12 @@ def still_infested(key: str, revision: str, day: str, _season: Season) -> PlotEs
 def flagged(key: str, revision: str, day: str, _season: Season) -> float:
     """Return how many plants found are still infested after a day of a season."""
     return _season.flagged(date.fromisoformat(day))
+
+
+@st.cache_resource(max_entries=_DAYS, show_spinner=False)
+def found_again(key: str, revision: str, day: str, _season: Season) -> FoundAgain | None:
+    """Return how many plants taken as treated were found again up to a day of a season."""
+    return _season.found_again(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS, show_spinner=False)

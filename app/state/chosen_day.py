@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring import DayFigures, PlannedAndDone, Progress
+    from fieldmon.monitoring.found_again import FoundAgain
     from fieldmon.monitoring.told_detection import ToldOtherwise
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
@@ -240,6 +241,11 @@ def still_infested(choices: Choices, day: str) -> PlotEstimate:
 def flagged(choices: Choices) -> float:
     """Return how many of the plants found are still infested, as expected: flagged only."""
     return cached.flagged(choices.key, choices.revision, choices.day, choices.open_season)
+
+
+def found_again(choices: Choices) -> FoundAgain | None:
+    """Return how many plants taken as treated were found again, where that is hardly chance."""
+    return cached.found_again(choices.key, choices.revision, choices.day, choices.open_season)
 
 
 def learnt(choices: Choices) -> tuple[Learnt, ...]:

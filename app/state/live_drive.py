@@ -14,7 +14,7 @@ from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard, RobotWatcher
 from fieldmon.monitoring.belief_settings import BeliefSettings
 
-from .background_work import BackgroundWork
+from .background_work import UNSEEN_S, BackgroundWork
 from .driving import DayInTime
 
 if TYPE_CHECKING:
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene
 
 _EVERY_S = 0.25
-#: nobody has looked for so long: then it is listened to no more
-UNSEEN_S = 120.0
 
 
 class LiveDrive(BackgroundWork):

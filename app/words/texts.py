@@ -117,6 +117,9 @@ NOT_COME = (
     "Something is recorded of **{day}**, which has not come: it is {today}. No day before counts "
     "it. If that day is wrong, undo it in *Record*."
 )
+NOT_COME_CORRECT = (
+    "The day of an inspection can be corrected there, too: choose its plant, then *{correct}*."
+)
 BACK_TO_TODAY = "Back to today"
 PRESSED_BEFORE = (
     "*{button}* was pressed before the plot or the day just chosen was shown, so nothing was done. "
@@ -1221,7 +1224,9 @@ SCOUT_PAGE = {
     "map": "Map of the plot: arrow keys move it, + and - bring it closer",
     "zoom_in": "Closer", "zoom_out": "Farther", "to_next": "To the next plant",
     "whole_plot": "The whole plot",
-    "progress": "{done} done, {left} to go", "time_left": "{hours}:{minutes} h left",
+    "progress": "{done} done, {left} to go",
+    "progress_in_time": "{done} done, {left} of {all} fit",
+    "time_left": "{hours}:{minutes} h left",
     "time_over": "The hours are over",
     "waiting": "{n} to send", "all_sent": "All sent", "some_refused": "{n} not taken",
     "menu": "Menu", "close": "Close", "ok": "OK", "cancel": "Cancel",
@@ -1240,6 +1245,7 @@ SCOUT_PAGE = {
     "photo_asked": "A photo is asked for.", "photo_asked_of": "A photo is asked for: {note}",
     "asked": "Photos asked for: {n}", "photo_comes": "The photo is being kept ...",
     "kept": "Kept: {what}", "keeping": "Being kept: {what}",
+    "added": "{n} more beside it",
     "away": "{m} m away", "chance": "Chance {n} %",
     "chance_least": "Chance under 0.1 %", "chance_most": "Chance over 99 %",
     "off_route": "Off the route",

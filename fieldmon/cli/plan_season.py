@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import typer
 
-from fieldmon.cli.messages import tell_assumed, tell_clock_change, tell_drafts, tell_past_midnight
+from fieldmon.cli.messages import (
+    tell_assumed,
+    tell_clock_change,
+    tell_drafts,
+    tell_found_again,
+    tell_past_midnight,
+)
 from fieldmon.cli.outputs import ROUTE, day_in_words, write_chance_map, write_routes
 from fieldmon.cli.season_files import learnt_of_each, refuse_unrecorded, refuse_what_was_chosen
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
@@ -57,6 +63,7 @@ def _plan_day(season: Season, options: PlanOptions, on: date) -> None:
     hours = max(one.hours for one in (settings.robot, *(m.robot for m in settings.team)))
     tell_clock_change(datetime.combine(on, settings.starts), hours, season.plot.field)
     tell_past_midnight(on, settings)
+    tell_found_again(season, on)
     if now is not None:
         _refuse_worked(season, on, now, [one.name for one in settings.team])
     plan = _plan_team if settings.team else _plan_alone

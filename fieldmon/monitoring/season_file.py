@@ -22,6 +22,7 @@ from fieldmon.monitoring import (
     qgis_project,
     season_log,
     settings_log,
+    settings_words,
     tables,
 )
 from fieldmon.monitoring.belief_settings import BeliefSettings
@@ -269,7 +270,7 @@ class Season(SeasonPlans, SeasonFrames):
             db, "changed", written_in(db, who),
             states={"settings": season_log.settings_state(db)},
             names=", ".join(names), now={name: now[name] for name in names},
-            said="; ".join(settings_log.differences(before, now)),
+            said="; ".join(settings_words.differences(before, now)),
             **({"back": True} if back else {}),
         )  # fmt: skip
 

@@ -132,29 +132,16 @@ def _written_now(parts: tuple[tuple[str, str], ...]) -> Parts:
     return as_json(from_json(dict(parts)))
 
 
-# of settings that their own names do not tell
-_NAMES = {"beliefs treated": "finds treated at once"}
-
-
-def differences(before: Parts, after: Parts) -> list[str]:
-    """Return what differs between two choices, from what to what; what is long by its name alone.
-
-    Examples
-    --------
-    >>> one, other = '{"hours": 4.0, "look_s": 40.0}', '{"hours": 6.0, "look_s": 40.0}'
-    >>> differences({"robot": one, "pest": "null"}, {"robot": other, "pest": '{"name": "mite"}'})
-    ['robot hours 4 to 6', 'pest none to mite']
-    """
-    return [
-        _NAMES.get(path, plain_path(path)) + (f" {was} to {now}" if was and now else "")
-        for path, was, now in each_difference(before, after)
-    ]
-
-
 def each_difference(before: Parts, after: Parts) -> Iterator[tuple[str, str, str]]:
     """Yield each setting that differs by its path, as ``robot look_s``, with both in short.
 
     Both are empty where one is too long for a line.
+
+    Examples
+    --------
+    >>> one, other = '{"hours": 4.0, "look_s": 40.0}', '{"hours": 6.0, "look_s": 40.0}'
+    >>> [*each_difference({"robot": one, "pest": "null"}, {"robot": other, "pest": "null"})]
+    [('robot hours', '4', '6')]
     """
     for name in {**before, **after}:
         was, now = before.get(name, "null"), after.get(name, "null")

@@ -7,8 +7,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import chance_figure, estimate, joined, worded, written
-from fieldmon.monitoring.settings import as_json
+from fieldmon.monitoring.settings import as_json, from_json
 from fieldmon.monitoring.settings_log import each_difference, plain_path
+from fieldmon.planning.members import Teamwork
 from fieldmon.plot.robot import KM_H, Robot, scout
 
 if TYPE_CHECKING:
@@ -16,8 +17,10 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.compute.wording import Worded
-    from fieldmon.monitoring import MonitoringSettings, Season
-    from fieldmon.planning.members import TeamMember, Teamwork
+    from fieldmon.monitoring.season_estimates import SeasonEstimates
+    from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.monitoring.settings_log import Parts
+    from fieldmon.planning.members import TeamMember
 
 _NONE = worded("none")
 _NAMES = {
@@ -28,6 +31,7 @@ _NAMES = {
     "turning radius": worded("turning radius"),
     "detection": worded("detection"), "detection by seconds": worded("detection by seconds"),
     "way back": worded("way back to the gate within the hours"),
+    "shared out": worded("rows shared out by what is believed"),
     "contact": worded("contact"), "least gain": worded("least gain"),
     "passing": worded("headland to pass each other"),
     "start": worded("start"), "traces": worded("traces"),
@@ -47,8 +51,8 @@ _SAID_BY = {
     "robot width_m": "width", "robot length_m": "length",
     "robot turning_radius_m": "turning radius", "robot detection": "detection",
     "robot viewpoints": "detection by seconds", "robot returns": "way back",
-    "team teamwork contact_s": "contact", "team teamwork least_gain": "least gain",
-    "team teamwork passing_m": "passing",
+    "team teamwork together": "shared out", "team teamwork contact_s": "contact",
+    "team teamwork least_gain": "least gain", "team teamwork passing_m": "passing",
     "season starts": "start", "season harvest": "harvest", "season language": "language",
     "beliefs traces": "traces", "beliefs treated": "finds",
     "beliefs spread rate_per_day": "spread", "prior background_chance": "background",
@@ -56,7 +60,7 @@ _SAID_BY = {
 }  # fmt: skip
 # it comes and goes with a team
 _WITH_TEAM = "team teamwork"
-_TEAMWORK = ("contact", "least gain", "passing")
+_TEAMWORK = ("shared out", "contact", "least gain", "passing")
 # parts of the settings that are believed of the whole season
 _OF_ALL_DAYS = ("prior", "beliefs", "pest", "weather")
 
@@ -80,15 +84,39 @@ def changed(change: MonitoringSettings, before: MonitoringSettings) -> str:
     return joined(", ", each) if each else ""
 
 
+def differences(before: Parts, after: Parts) -> list[str]:
+    """Return all that differs between two choices, from what to what; what is long by its name.
+
+    Examples
+    --------
+    >>> from datetime import date
+    >>> import fieldmon as fm
+    >>> one = fm.MonitoringSettings(date(2026, 11, 1))
+    >>> longer = replace(one, robot=fm.Robot(hours=14), harvest=date(2026, 12, 1))
+    >>> differences(as_json(one), as_json(longer))
+    ['hours 12 to 14', 'harvest none to 2026-12-01']
+    """
+    if before.get("weather") == after.get("weather"):  # a year of hours takes time to read
+        before, after = ({**parts, "weather": "null"} for parts in (before, after))
+    each = _differing(from_json(before), from_json(after), whole=True)
+    return [f"{name} {was} to {now}" if was or now else name for name, was, now in each]
+
+
 def _differing(
-    one: MonitoringSettings, other: MonitoringSettings
+    one: MonitoringSettings, other: MonitoringSettings, *, whole: bool = False
 ) -> Iterator[tuple[str, str, str]]:
-    """Yield names of choices that differ, with both in words; "" where they are too long."""
+    """Yield names of choices that differ, with both in words; "" where they are too long.
+
+    Where a team comes or goes the one robot is of no interest, unless the `whole` is asked for.
+    """
     this, that = _in_words(one), _in_words(other)
-    differ = [name for name in {**this, **that} if this.get(name) != that.get(name)]
-    beside_team = "team" in differ  # where a team comes or goes the one robot is of no interest
+    differ = [name for name in _NAMES if this.get(name) != that.get(name)]
+    beside_team = "team" in differ and not whole
+    usual = _each_of_teamwork(Teamwork()) if whole else {}
     for name in differ:
-        if beside_team and name in _TEAMWORK and not (one.team and other.team):
+        told = {said[name] for said in (this, that) if name in said}
+        comes_with_team = name in _TEAMWORK and not (one.team and other.team)
+        if comes_with_team and (not whole or told == {usual[name]}):
             continue
         if not (beside_team and name in _each_of_worker(one.robot) | _each_of_worker(other.robot)):
             yield _NAMES[name], this.get(name, _NONE), that.get(name, _NONE)
@@ -117,7 +145,7 @@ def _parts_of(*both: MonitoringSettings) -> tuple[dict[str, str], ...]:
 
 @contextmanager
 def telling_anew(
-    season: Season, before: MonitoringSettings, after: MonitoringSettings,
+    season: SeasonEstimates, before: MonitoringSettings, after: MonitoringSettings,
     tell: Callable[[str], object],
 ) -> Iterator[None]:  # fmt: skip
     """Tell what a change makes of the last day, where it makes of days past something else."""
@@ -139,7 +167,7 @@ def telling_anew(
         tell(said)
 
 
-def _still_there(season: Season, on: date) -> str:
+def _still_there(season: SeasonEstimates, on: date) -> str:
     # with those found and only flagged: else a change of them would seem to find or lose plants
     left = season.still_infested(on)
     return worded(
@@ -176,6 +204,7 @@ def _each_of_teamwork(teamwork: Teamwork) -> dict[str, str]:
     n = teamwork.contact_s / 60
     metres = f"{teamwork.passing_m:g} m"
     return {
+        "shared out": worded("yes") if teamwork.together else worded("no"),
         "contact": worded("every {n:g} min", n=n) if n else worded("at once"),
         "least gain": written(teamwork.least_gain, ".3g"),
         "passing": metres if teamwork.passing_m else worded("any"),

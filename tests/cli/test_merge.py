@@ -74,7 +74,7 @@ def test_settings_that_a_merge_takes_over_are_said_and_in_the_log(run, season, t
     run("change", other, "--treat-finds", "--hours", "2", "--harvest", "2026-12-10")
     Season(other).keep_labels([ProductLabel("Acarol", waiting_days=7)])
     _, out, err, _ = run("merge", season, other)
-    said = "finds treated at once no to yes; robot hours 1 to 2; season harvest none to 2026-12-10"
+    said = "finds only flagged to treated at once; hours 1 to 2; harvest none to 2026-12-10"
     (line,) = (one for one in out.splitlines() if one.startswith("  taken over: "))
     told = line.removeprefix("  taken over: ")
     assert sorted(told.split("; ")) == sorted([*said.split("; "), "table of labels (Acarol)"]), err

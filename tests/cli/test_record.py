@@ -68,7 +68,8 @@ def test_finds_that_are_found_again_are_said_wherever_the_season_is_told(run, se
     )
     assert said not in run("record", season, f"{days[0]}.csv")[2]
     told = (["record", season, f"{days[1]}.csv"], ["status", season, "--date", days[1]],
-            ["decide", season, "--threshold", "5%", "--date", days[1]])  # fmt: skip
+            ["decide", season, "--threshold", "5%", "--date", days[1]],
+            ["plan", season, "--date", days[1], "-o", "r.csv"])  # fmt: skip
     for words in told:
         assert said in run(*words)[2].splitlines(), words
     run("report", season, "--until", days[1], "-o", "r.html")

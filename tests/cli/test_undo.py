@@ -95,4 +95,4 @@ def test_a_change_to_an_earlier_value_is_taken_back_and_no_other(run, season):
     assert (code, out.splitlines()[0]) == (
         0, "The last change was taken back: hours 4 (now 3 again).",
     )  # fmt: skip
-    assert "the last change taken back: robot hours 4 to 3" in run("log", season)[1]
+    assert "the last change taken back: hours 4 to 3" in run("log", season)[1]

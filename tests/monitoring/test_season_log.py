@@ -373,9 +373,9 @@ def test_a_change_of_settings_is_told_from_what_to_what(path):
     season.change(replace(first, robot=first.robot.with_hours(6.0), sampler="naive"), first)
     season.undo_change()
     changed = [one.sentence() for one in season.log() if one.kind == "changed"]
-    back = "robot hours 6 to 1.5; sampler name naive to adaptive"
+    back = "sampler naive to adaptive; hours 6 to 1.5"
     assert changed == [
-        "settings: robot hours 1.5 to 6; sampler name adaptive to naive",
+        "settings: sampler adaptive to naive; hours 1.5 to 6",
         f"settings, the last change taken back: {back}",
     ]
     of_old = {"names": "robot, sampler", "now": {}}

@@ -269,5 +269,5 @@ def test_a_change_of_today_alters_no_day_from_before_the_log(season):
     assert all(robot.hours < 9.0 for robot in before)
     changed = season.log()[-1]
     assert (changed.kind, changed.what["names"]) == ("changed", "robot")
-    assert changed.what["said"].startswith("robot hours")
+    assert changed.what["said"].startswith("hours ")
     assert ";" not in changed.what["said"]

@@ -7,7 +7,8 @@ import pytest
 
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import MonitoringSettings
-from fieldmon.monitoring.settings_words import taken_back, worker_in_words
+from fieldmon.monitoring.settings import as_json
+from fieldmon.monitoring.settings_words import differences, taken_back, worker_in_words
 from fieldmon.planning.members import TeamMember, Teamwork, team_of
 from fieldmon.plot.robot import Robot, Viewpoints, scout
 
@@ -62,6 +63,19 @@ def test_how_a_team_works_together_is_said_in_words():
     said = "contact every 10 min (now at once again), headland to pass each other 5 m"
     assert said in taken_back(told, replace(FIRST, team=(ANN,)))
     assert "contact" not in taken_back(told, FIRST)  # it goes with the team
+
+
+def test_the_log_says_a_team_in_words_with_all_that_came_with_it():
+    told = replace(FIRST, team=(ANN,), teamwork=Teamwork(contact_s=600.0), robot=Robot(hours=4))
+    assert differences(as_json(FIRST), as_json(told)) == [
+        "team none to Ann 4 h, 30 s a plant, 4 km/h, finds 69 %",
+        "hours 12 to 4",
+        "contact none to every 10 min",
+    ]
+    alone = replace(told, teamwork=Teamwork(contact_s=600.0, together=False))
+    assert differences(as_json(told), as_json(alone)) == [
+        "rows shared out by what is believed yes to no"
+    ]
 
 
 def test_of_a_member_all_is_told_that_is_not_usual():

@@ -36,10 +36,10 @@ function beyond(viewport, p, away, half, tall, gap) {
   return [dx * step, dy * step];
 }
 
-// Return how large a word is: half its width, and half its height.
-function sizeOf(t) {
+// Return how large a word is: half its width, and half its height; a plot's name has room around it.
+function sizeOf(t, k) {
   const lines = t.split("\n");
-  return [4 * Math.max(...lines.map((one) => one.length)) + 7, 10 * lines.length];
+  return [4 * Math.max(...lines.map((one) => one.length)) + 7, 10 * lines.length + (k === "name" ? 3 : 0)];
 }
 
 // Return where a word stands that belongs beyond its place.
@@ -80,10 +80,11 @@ export function rowBoxes(labels, viewport) {
   return numberedRows(labels, viewport).map(({ box }) => box);
 }
 
-// Return the boxes of the names of plots, and of the gate's, in a view.
+// Return the boxes of the names of plots, and of the gate's, in a view: as wide as the name alone. Who works
+// there when, below it, is moved into the map where it is drawn; room for all of it left none for the plots.
 export function nameBoxes(labels, viewport) {
   return labels.filter(({ k }) => k === "name" || k === "gate").map((one) => {
-    const [half, tall] = sizeOf(one.t), [x, y] = pushed(viewport, one.p, one, [half, tall]);
+    const [half] = sizeOf(one.t.split("\n")[0], one.k), [, tall] = sizeOf(one.t, one.k), [x, y] = pushed(viewport, one.p, one, [half, tall]);
     return [x - half, y - tall, x + half, y + tall];
   });
 }
@@ -130,7 +131,7 @@ export class Labels {
     for (const label of labels) {
       const { p, t, k, from, to, row, at, tight } = label;
       if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99) || (row && !rows.has(row))) continue;
-      const size = sizeOf(t).map((one) => (tight ? TIGHT * one : one));
+      const size = sizeOf(t, k).map((one) => (tight ? TIGHT * one : one));
       const places = (at ?? [p]).map((one) => pushed(viewport, one, label, size));
       const [half, tall] = size.map((one) => (rows.get(row) ? TIGHT * one : one));
       const place = (k === "name" ? places.flatMap((one) => besides(one, half + 4, over, free)) : places).find(([x, y]) => {

@@ -149,6 +149,12 @@ test("no word stands below what lies over the map", () => {
   assert.deepEqual(of([[80, 120, 300, 160]]), ["gate", "3"]);
 });
 
+test("a name of two lines stands clear of what lies above it, with the room around it", () => {
+  // as the page draws it, it is 46 px tall
+  const at = (y) => shown([{ p: [0.4, -y], t: "Gate\nrobot 1, 06:00-15:59", k: "name" }], view, new Set(), [[0, 0, 800, 50]]).length;
+  assert.deepEqual([at(0.0715), at(0.0735)], [0, 1]);
+});
+
 test("a name under the buttons of the map is moved beside them, and no other word is", () => {
   const at = (k, x) => shown([{ p: [x, -0.3], t: "Gate 2026", k }], view, new Set(), [[650, 200, 700, 400]], [0, 800])[0]?.x;
   const half = 4 * "Gate 2026".length + 7 + 4;

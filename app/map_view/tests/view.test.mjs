@@ -106,3 +106,13 @@ test("names of plots that stand below their marks are clear of the legend, too",
     assert.ok(!(right > legend.left && left < legend.right && bottom > legend.top), `${left}, ${bottom} is behind the legend`);
   }
 });
+
+test("who works on a plot and when takes no room from the plots", () => {
+  const [size, padding] = ROOMS[1], bounds = [34, 29, 37, 32];
+  const viewOf = (more) => {
+    const labels = [[34.1, 31], [36.9, 30]].map((p) => ({ p, t: `Gate${more}`, k: "name" }));
+    return besideBox(bounds, size, padding, null, [], (port) => nameBoxes(labels, port));
+  };
+  const planned = viewOf("\nrobot 1, 06:00-15:59");
+  assert.ok(viewOf("").zoom - planned.zoom < 0.1, `${planned.zoom}`);
+});

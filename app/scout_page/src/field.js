@@ -516,6 +516,16 @@ export class Field {
   /** How many plants are done and on the disk. */
   kept() { return [...this.own.values()].filter((one) => one.state !== WRITING).length; }
 
+  /** How many plants are done, and are left within the hours, of all those ahead: who is quick, or finds, has more of them. */
+  progress() { return { done: this.kept(), left: this.inHours().length, all: this.ahead.length }; }
+
+  /** How many plants beside the last one are ahead since, as it was found. */
+  added() {
+    const { last } = this, one = this.lastRecord();
+    if (!one || last?.id !== one.id) return 0;
+    return neighbours(this.plot, one.plant).filter((each) => this.ahead.includes(each) && !last.ahead.includes(each)).length;
+  }
+
   /** What is left of the hours: by the clock where they run, else by what the plants told since cost, as the season counts them. */
   secondsLeft() { return this.#secondsLeft(this.#hoursHere().begun); }
 

@@ -156,8 +156,9 @@ export class Page {
 
   #drawBar() {
     const { field } = this;
-    const said = field.day ? [
-      h("b", {}, say("progress", { done: field.kept(), left: field.inHours().length })),
+    const far = field.day && field.progress();
+    const said = far ? [
+      h("b", {}, say(far.left < far.all ? "progress_in_time" : "progress", far)),
       h("span", { id: "hours" }, this.#hours()),
     ] : [h("b", {}, "fieldmon")];
     const n = this.left.records + this.left.photos + field.unwritten();
@@ -225,7 +226,8 @@ export class Page {
     const isKept = one.state !== "writing", { plot } = this.field;
     const what = `${say("place", { row: signOf(plot, one.plant), plant: plot.number[one.plant] })}: ${resultOf(one)}`;
     Object.assign(this.last.dataset, { plant: one.plant, kept: isKept });
-    this.last.textContent = say(isKept ? "kept" : "keeping", { what });
+    const n = this.field.added();
+    this.last.textContent = `${say(isKept ? "kept" : "keeping", { what })}${n ? ` · ${say("added", { n })}` : ""}`;
   }
 
   #old() {

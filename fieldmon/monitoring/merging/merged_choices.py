@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import first_few
-from fieldmon.monitoring import schema, season_log, settings_log
+from fieldmon.monitoring import schema, season_log, settings_log, settings_words
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merged_rows import key_of
 
@@ -28,7 +28,7 @@ def merge_settings(
     before = settings_log.as_written_now(settings_log.now(db))
     merged_rows.write(db, schema.SETTINGS, chosen)
     after = settings_log.as_written_now(settings_log.now(db))
-    return _differing(copies, chosen), settings_log.differences(before, after)
+    return _differing(copies, chosen), settings_words.differences(before, after)
 
 
 def _differing(copies: list[TableRows], merged: list[Row]) -> tuple[str, ...]:

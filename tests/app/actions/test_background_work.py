@@ -1,14 +1,18 @@
 """Work in the background is begun and stopped by buttons."""
 
+from app.state import browser
 from app.state.comparison import WatchedComparison
 from tests.app.driving import go
 
 
 def test_numbers_typed_just_before_pressing_compare_are_those_compared(app, monkeypatch):
     begun = []
-    monkeypatch.setattr(WatchedComparison, "start", lambda self: begun.append(self.settings.seeds))
+    monkeypatch.setattr(
+        WatchedComparison, "start", lambda self: begun.append((self.settings.seeds, *self._tabs))
+    )
+    monkeypatch.setattr(browser, "tab", lambda: ("a tab", bool))
     go(app, "compare")
     app.number_input(key="seeds").set_value(7)
     app.button(key="run").click().run()
     assert not app.exception
-    assert begun == [7]
+    assert begun == [(7, "a tab")]  # it ends with the tab

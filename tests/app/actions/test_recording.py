@@ -496,7 +496,9 @@ def test_what_is_recorded_of_a_day_that_has_not_come_is_said_on_the_pages_of_tod
     season_app.date_input[0].set_value(date(2026, 11, 16)).run()
     for page in ("today", "season"):
         go(season_app, page)
-        assert any(said in one.value for one in season_app.warning)
+        (told,) = (one.value for one in season_app.warning if said in one.value)
+        assert "undo it in *Record*" in told
+        assert f"corrected there, too: choose its plant, then *{texts.CORRECT_WHEN}*." in told
     season().undo()
     assert not any(said in one.value for one in go(season_app, "today").warning)
 

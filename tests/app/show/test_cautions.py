@@ -10,6 +10,7 @@ from app.show import cautions, day
 from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.infestation.inspections import SKIPPED, Inspections
+from fieldmon.monitoring import Season
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.belief_settings import BeliefSettings
 from tests.app.chosen import in_season
@@ -33,9 +34,11 @@ def shown(monkeypatch):
     return kept.said
 
 
-def choices(season):
+def choices(season, on=BEGINS):
     units = UnitsInLanguage()
-    return SimpleNamespace(season=season, open_season=season, on=BEGINS, units=units, today=None)
+    of = {} if season is None else {"key": f"{season.path}", "revision": season.revision}
+    return SimpleNamespace(season=season, open_season=season, on=on, day=f"{on}", units=units,
+                           today=None, **of)  # fmt: skip
 
 
 def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):
@@ -51,20 +54,27 @@ def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):
     assert shown[-1] == ("caption", texts.EFFECTS_TREATED)
 
 
-def test_finds_that_are_found_again_are_said_with_where_the_setting_is(shown, tmp_path):
+def test_finds_that_are_found_again_are_said_with_where_the_setting_is(
+    shown, tmp_path, monkeypatch
+):
     season = a_season(tmp_path / "season.gpkg")
     for seen in np.datetime64(BEGINS) + np.arange(2):
         season.record(Inspections.of(np.arange(20), np.ones(20), seen), f"{seen}")
-    here = choices(season)
-    cautions.show(here)
+    cautions.show(choices(season))
     assert shown == []
-    here.on = BEGINS + timedelta(days=1)
-    cautions.show(here)
+    cautions.show(choices(season, BEGINS + timedelta(days=1)))
     ((_, said),) = shown
     assert said.startswith("20 of 20 plants found before were infested again ")
     assert said.endswith(f"say so: {texts.FINDS_FLAGGED_HOW}")
     named = texts.FINDS_ARE, texts.FINDS_TREATED[False], texts.ASSUMED_ALL
     assert all(f"*{one}*" in said for one in named)
+    shown.clear()
+    today = in_season(season, BEGINS + timedelta(days=1))
+    cautions.show_today(today, today.plan())
+    assert [words for _, words in shown if words == said] == [said]
+    # worked out once for all clicks
+    monkeypatch.setattr(Season, "found_again", None)
+    cautions.show(today)
 
 
 def test_no_day_of_harvest_is_shown_where_the_wait_of_a_later_treatment_was_not_said(
@@ -94,8 +104,8 @@ def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(
     waits = Application("soap", reentry_hours=24.0, ended=time(5))
     season.treat(BEGINS, 0.0, plants=line == row, application=waits)
     today = SimpleNamespace(
-        **vars(choices(season)), plot=season.plot, who=None, day=f"{BEGINS}", key=f"{tmp_path}",
-        revision=season.revision, plan=lambda: season.plan(BEGINS, keep=False),
+        **vars(choices(season)), plot=season.plot, who=None,
+        plan=lambda: season.plan(BEGINS, keep=False),
     )  # fmt: skip
     cautions.show_today(today, today.plan())
     (_, off), (_, entry) = shown
@@ -133,10 +143,7 @@ def test_today_tells_how_many_plants_are_left_out_as_nobody_could_inspect_them(s
     season.record(seen)
     for days, said in ((1, 1), (2, 0)):
         on = BEGINS + timedelta(days=days)
-        today = SimpleNamespace(
-            **vars(choices(season)) | {"on": on}, plot=season.plot, who=None, day=f"{on}",
-            key=f"{tmp_path}", revision=season.revision,
-        )  # fmt: skip
+        today = SimpleNamespace(**vars(choices(season, on)), plot=season.plot, who=None)
         plan = season.plan(on, keep=False)
         today.plan = lambda plan=plan: plan
         shown.clear()

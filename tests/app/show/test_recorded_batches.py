@@ -6,11 +6,13 @@ from datetime import date
 import numpy as np
 from shapely import MultiPolygon, box
 
-from app.show.recorded_batches import in_short, source
+from app.show.recorded_batches import in_short, last, line, source
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, SKIPPED, Inspections
 from fieldmon.monitoring import Application, Season
 from fieldmon.plot.grid import plant_numbers
+from tests.app.chosen import in_season
 from tests.app.driving import go
+from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 DAY = np.datetime64("2026-11-16")
 
@@ -35,6 +37,18 @@ def test_each_batch_is_told_by_what_it_says(season_app, season):
     assert said[2] == f"typed in · {second}: could not inspect · inspected Mon 16 Nov · Ann"
     assert said[3] == f"typed in · {first}: found · inspected Mon 16 Nov"
     assert {one.help for one in season_app.button if one.label == "Undo"} == {*lines[1:4]}
+
+
+def test_a_plant_of_two_faces_is_told_with_the_one_that_was_inspected(tmp_path, speaking):
+    kept = a_season(tmp_path / "s.gpkg", plot=a_plot(faces=2))
+    grid = kept.plot.grid
+    (face_2,) = np.flatnonzero(grid.vine == grid.vine[0])[1:]
+    kept.record(Inspections.of(face_2[None], np.array([FOUND]), np.datetime64(BEGINS)), "typed in")
+    (batch,), here = kept.batches(), in_season(kept, BEGINS)
+    said = kept.contents([batch.number])[batch.number]
+    assert f"plant {said.plant}, face 2: found" in line(here, batch, said)
+    speaking("he")
+    assert all(f"{said.plant}, צד 2:" in one for one in (line(here, batch, said), last(here, said)))
 
 
 def test_what_counts_in_another_recording_is_told_from_what_counts(season_app, season, tmp_path):

@@ -2,8 +2,10 @@
 
 import threading
 
+from app.state import background_work
 from app.state.background_work import BackgroundWork
 from fieldmon.errors import FieldmonError
+from tests.app.driving import until
 
 
 class Steps(BackgroundWork):
@@ -16,7 +18,7 @@ class Steps(BackgroundWork):
     def work(self):
         while self.taken < 3:
             self.let.acquire()
-            if self._stop.is_set():
+            if self._is_over():
                 return
             self.taken += 1
 
@@ -43,6 +45,31 @@ def test_it_ends_at_the_step_it_is_at_and_goes_on_from_there():
     steps.wait(180)
     assert steps.taken == 3
     assert steps.problem is None
+
+
+def test_it_waits_while_no_tab_is_open_and_ends_where_none_comes_back(monkeypatch):
+    monkeypatch.setattr(background_work, "_EVERY_S", 0.01)
+    steps, asked, is_open = Steps(), [], threading.Event()
+
+    def is_there():
+        asked.append(steps.taken)
+        return is_open.is_set()
+
+    steps.watch("closed", lambda: False)
+    steps.watch("lost for a moment", is_there)
+    steps.begin()
+    steps.let.release()
+    until(lambda: len(asked) > 3)
+    assert steps.running
+    is_open.set()
+    until(lambda: steps.taken == 1)
+    assert {*asked} == {0}
+    is_open.clear()
+    monkeypatch.setattr(background_work, "UNSEEN_S", 0.0)
+    steps.let.release()
+    steps.wait(180)
+    assert not steps.running
+    assert steps.taken == 1
 
 
 def test_what_cannot_be_done_is_kept_as_its_sentence():

@@ -26,3 +26,17 @@ def test_a_device_says_its_time_zone_or_none(visitor):
     assert browser.zone() == "Asia/Jerusalem"
     visitor.timezone = None
     assert browser.zone() == ""
+
+
+def test_a_tab_is_told_from_others_and_says_whether_it_is_connected(monkeypatch):
+    assert browser.tab() is None  # no browser
+    connected = {"mine", "other"}
+    run = SimpleNamespace(session_id="mine")
+    server = SimpleNamespace(is_active_session=connected.__contains__)
+    monkeypatch.setattr(browser, "get_script_run_ctx", lambda **_: run)
+    monkeypatch.setattr(browser.runtime, "exists", lambda: True)
+    monkeypatch.setattr(browser.runtime, "get_instance", lambda: server)
+    name, is_open = browser.tab()
+    assert (name, is_open()) == ("mine", True)
+    connected.discard("mine")
+    assert not is_open()

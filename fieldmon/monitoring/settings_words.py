@@ -96,6 +96,8 @@ def differences(before: Parts, after: Parts) -> list[str]:
     >>> differences(as_json(one), as_json(longer))
     ['hours 12 to 14', 'harvest none to 2026-12-01']
     """
+    if before == after:
+        return []
     if before.get("weather") == after.get("weather"):  # a year of hours takes time to read
         before, after = ({**parts, "weather": "null"} for parts in (before, after))
     each = _differing(from_json(before), from_json(after), whole=True)

@@ -352,3 +352,11 @@ def test_a_day_starts_at_the_plots_own_time_whatever_zone_it_was_given_in(on, pl
 def test_a_season_may_begin_on_a_day_given_as_text(plot):
     season = fm.Season.create("s.gpkg", plot, begins="2026-11-18")
     assert season.settings.begins == date(2026, 11, 18)
+
+
+@pytest.mark.usefixtures("_here")
+def test_a_season_takes_a_moment_for_its_day_on_the_plot(plot):
+    late = datetime(2026, 11, 17, 23, 30, tzinfo=UTC)
+    season = fm.Season.create("s.gpkg", plot, begins=late, robot=fm.Robot(hours=0.5))
+    assert season.settings.begins == date(2026, 11, 18)
+    assert season.plan(on=pd.Timestamp(late)).route.notes.start == datetime(2026, 11, 18, 6)

@@ -159,15 +159,15 @@ class Inspections:
             ``(k,)`` 1 found, 0 clean, 2 skipped.
         on
             The local date, or ``(k,)`` dates. With a time of day, as `datetime` has it, it is their
-            `second`, too; midnight is a date alone.
+            `second`, too; midnight is a date alone. None may name a zone.
         columns
             Others of these columns by name, ``(k,)`` each.
 
         Raises
         ------
         ObservationError
-            If plants are no whole numbers, results none of these, or dates no dates; if the time is
-            said in both `on` and `second`.
+            If plants are no whole numbers, results none of these, or dates no dates; if a time
+            names a zone (in which the plot lies is not known here); or if the time is said in both `on` and `second`.
         """
         k, dates = len(_column("plant", plant)), days_of(on)
         if dates is None:

@@ -158,7 +158,7 @@ class Observations:
         present
             ``(m,)`` 1 infested, 0 clean, -1 not said.
         day
-            ``(m,)`` datetime64[D], or the one of all; None: of no date.
+            ``(m,)`` datetime64[D], the plot's, or the one of all; None: of no date.
         columns
             Others of these columns by name, ``(m,)`` each.
 
@@ -166,7 +166,7 @@ class Observations:
         ------
         ObservationError
             If columns have different lengths, a position is none on earth (NaN: not known), a
-            result is not 1, 0 or -1, or a number is below 0 or has no end. A count that contradicts
+            result is not 1, 0 or -1, a day names a time zone, or a number is below 0 or has no end. A count that contradicts
             its result is taken: the result is believed.
         """
         points = lonlat_of("Positions of records", lonlat, _READ, nowhere=True)

@@ -153,6 +153,13 @@ class OpenSeason:
         """Return the file."""
         return self.store.path
 
+    def plot_time(self, moment: datetime) -> datetime:
+        """Return the plot's own time of a moment that names its zone.
+
+        Days that name one are turned so, whatever is asked of them, see `checked`.
+        """
+        return local_clock(self.plot.field).at(moment)
+
     @property
     def key(self) -> str:
         """Return what stands for this season in keys of what is kept: no other file has it."""

@@ -145,7 +145,7 @@ class Season(SeasonPlans, SeasonFrames):
             see `fieldmon.infestation.prior.prior_chance`; None: none.
         chosen
             Settings one by one instead, as ``begins=date(2026, 11, 18)`` or
-            ``robot=Robot(hours=4)``.
+            ``robot=Robot(hours=4)``. A time that names a zone is its day on the plot.
 
         Raises
         ------
@@ -363,8 +363,8 @@ def _chosen_for(
 ) -> MonitoringSettings:
     """Return the settings of a new season, given as one or one by one; raise if none can be."""
     if settings is None:
-        today = local_clock(plot.field).today()
-        settings = settings_from({"begins": today} | chosen)
+        clock = local_clock(plot.field)
+        settings = settings_from({"begins": clock.today()} | chosen, clock.at)
     elif chosen:
         raise SettingError(
             worded(

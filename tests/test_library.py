@@ -360,3 +360,31 @@ def test_a_season_takes_a_moment_for_its_day_on_the_plot(plot):
     season = fm.Season.create("s.gpkg", plot, begins=late, robot=fm.Robot(hours=0.5))
     assert season.settings.begins == date(2026, 11, 18)
     assert season.plan(on=pd.Timestamp(late)).route.notes.start == datetime(2026, 11, 18, 6)
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        lambda plot, chance: fm.plan_day(plot, on="2026-11-18", risk=chance),
+        lambda plot, chance: fm.plan_team(plot, chance, fm.team_of(2)),
+        lambda plot, chance: fm.routes.best(plot, chance, fm.Robot(hours=1)),
+        lambda plot, chance: fm.Monitor(plot, chance=chance),
+        fm.draw_start,
+        lambda plot, chance: fm.hot_spots(plot, (chance > 0.5).astype(int)),
+    ],
+)
+def test_chances_that_pandas_sorted_are_not_taken_by_their_place(asked, plot):
+    chance = pd.Series(np.linspace(0, 1, plot.n_plants)).sort_values(ascending=False)
+    with pytest.raises(fm.SettingError, match="must be in the plants' order"):
+        asked(plot, chance)
+
+
+def test_columns_of_records_and_inspections_that_pandas_sorted_apart_are_refused():
+    frame = pd.DataFrame({"plant": [1, 2], "seen": [0, 1], "lon": 35.1, "lat": 30.3}, index=[4, 2])
+    fm.Inspections.of(frame["plant"], frame["seen"], "2026-11-18")
+    fm.Observations.of(frame[["lon", "lat"]], frame["seen"])
+    later = frame["seen"].sort_index()
+    with pytest.raises(fm.SettingError, match="inspections must have one index, but that of resu"):
+        fm.Inspections.of(frame["plant"], later, "2026-11-18")
+    with pytest.raises(fm.SettingError, match="records must have one index, but that of present"):
+        fm.Observations.of(frame[["lon", "lat"]], later)

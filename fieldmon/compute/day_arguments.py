@@ -50,7 +50,8 @@ def days_of(given: object) -> NDArray[np.datetime64] | None:
 def seconds_of(given: object) -> NDArray[np.float64]:
     """Return the seconds since midnight of what `days_of` takes, of its shape; NaN at midnight.
 
-    A day alone is its midnight, so that no time is known there. Raise `ObservationError` as it does.
+    A day alone is its midnight, so that no time is known there. Raise `ObservationError`
+    as it does.
 
     Examples
     --------

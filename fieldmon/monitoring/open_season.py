@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterator, Sequence
     from contextlib import AbstractContextManager
-    from datetime import date, time
+    from datetime import date, datetime, time
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -154,10 +154,7 @@ class OpenSeason:
         return self.store.path
 
     def plot_time(self, moment: datetime) -> datetime:
-        """Return the plot's own time of a moment that names its zone.
-
-        Days that name one are turned so, whatever is asked of them, see `checked`.
-        """
+        """Return the plot's own time of a moment that names its zone: so all its days are read."""
         return local_clock(self.plot.field).at(moment)
 
     @property

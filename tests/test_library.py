@@ -388,3 +388,30 @@ def test_columns_of_records_and_inspections_that_pandas_sorted_apart_are_refused
         fm.Inspections.of(frame["plant"], later, "2026-11-18")
     with pytest.raises(fm.SettingError, match="records must have one index, but that of present"):
         fm.Observations.of(frame[["lon", "lat"]], later)
+
+
+@pytest.mark.usefixtures("_here")
+@pytest.mark.parametrize(
+    "begin",
+    [
+        lambda plot, seen: fm.plan_day(plot, seen, "2026-11-18", fm.Robot(hours=0.5), "naive"),
+        lambda plot, seen: fm.Season.create("s.gpkg", plot, seen, begins="2026-11-18"),
+    ],
+)
+def test_records_that_lie_elsewhere_or_nowhere_are_told_of(begin, plot):
+    lonlat = plot.grid.lonlat(np.arange(6))
+    lonlat[1], lonlat[2], lonlat[3, 0] = lonlat[1, ::-1], np.nan, lonlat[3, 0] + 1
+    accuracy_m = [np.nan] * 4 + [1e9, 5.0]
+    seen = fm.Observations.of(lonlat, np.ones(6), "2026-11-17", accuracy_m=accuracy_m)
+    with pytest.warns(ImportDoubt) as said:
+        begin(plot, seen)
+    sentences = [str(one.message) for one in said]
+    for part in (
+        f"2 of 5 records lie outside {plot.field.name} and were kept apart",
+        "1 record would lie on the plot with longitude and latitude exchanged",
+        "1 of the 6 records have no position",
+        "1 of the 6 records are placed no better than to 1000 m",
+    ):
+        assert any(sentence.startswith(part) for sentence in sentences), sentences
+    if Path("s.gpkg").exists():
+        np.testing.assert_array_equal(fm.Season("s.gpkg").observations.lonlat, lonlat)

@@ -291,8 +291,9 @@ def write_observations(db: sqlite3.Connection, records: Observations) -> None:
         strict=True,
     )
     insert(db, schema.OBSERVATIONS, list(rows))
-    if len(records):
-        low, high = records.lonlat.min(axis=0).tolist(), records.lonlat.max(axis=0).tolist()
+    placed = records.lonlat[~np.isnan(records.lonlat).any(axis=1)]
+    if len(placed):
+        low, high = placed.min(axis=0).tolist(), placed.max(axis=0).tolist()
         touch(db, schema.OBSERVATIONS.name, (*low, *high))
 
 
@@ -304,7 +305,8 @@ def read_observations(db: sqlite3.Connection) -> Observations:
         return Observations.none()
     geom, present, day, count, accuracy, species, stage, leaves = zip(*rows, strict=True)
     return Observations(
-        np.array([[(p := geometry(g)).x, p.y] for g in geom]),
+        # of no position: its point is empty
+        np.array([[shapely.get_x(p := geometry(g)), shapely.get_y(p)] for g in geom]),
         np.array(present, np.int8),
         np.array([np.datetime64(d or "NaT", "D") for d in day]),
         count=_floats(count),

@@ -126,8 +126,8 @@ class Weather:
         if n := int(np.isnat(self.at).sum()):
             raise SettingError(
                 worded(
-                    "Weather must say of each entry when it begins, but {n} of {all} {n:has|have} "
-                    "no time. Leave them out.",
+                    "Weather must say of each entry when it begins, but of {n} of {all} it does "
+                    "not. Leave those out.",
                     n=n,
                     all=len(self),
                 )

@@ -140,7 +140,9 @@ class SimulationSettings:
         """
         if self.own_night is not None:
             # it may write into what it is given
-            morning = asked("A season's own_night", self.own_night, grid, infested.copy(), key)
+            morning: NDArray[np.bool_] = asked(
+                "A season's own_night", self.own_night, grid, infested.copy(), key
+            )
             must_be_of("What a season's own_night returns", "NDArray[np.bool_]", morning)
             must_be_shaped("The next morning's", {"infested plants": (morning, infested.shape)})
             return morning

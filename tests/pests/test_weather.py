@@ -66,7 +66,7 @@ def test_each_entry_has_a_time_of_its_own_in_any_order():
     assert len(weather_of(at[::-1].copy(), HOUR_S)) == 3
     with pytest.raises(SettingError, match="one entry of each time, but there are 2 of 2026-11-18"):
         weather_of(at[[0, 1, 0]], HOUR_S)
-    with pytest.raises(SettingError, match="when it begins, but 1 of 3 has no time"):
+    with pytest.raises(SettingError, match="when it begins, but of 1 of 3 it does not"):
         weather_of(np.append(at[:2], np.datetime64("NaT")), HOUR_S)
 
 

@@ -84,7 +84,7 @@ def warn_of_elsewhere(observations: Observations, on_day: np.datetime64, field: 
     Not where all do: `prior_chance` refuses these.
     """
     known = usable(observations, on_day).observations
-    placed = ~np.isnan(known.lonlat).any(axis=1)
+    placed = ~np.asarray(np.isnan(known.lonlat).any(axis=1))
     split = near_plot(known.take(placed), field)
     if not len(split.inside):
         return

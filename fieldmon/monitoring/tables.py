@@ -304,9 +304,11 @@ def read_observations(db: sqlite3.Connection) -> Observations:
     if not rows:
         return Observations.none()
     geom, present, day, count, accuracy, species, stage, leaves = zip(*rows, strict=True)
+    lonlat = np.full((len(geom), 2), np.nan)  # the point of no position is empty
+    placed, which = shapely.get_coordinates([geometry(one) for one in geom], return_index=True)
+    lonlat[which] = placed
     return Observations(
-        # of no position: its point is empty
-        np.array([[shapely.get_x(p := geometry(g)), shapely.get_y(p)] for g in geom]),
+        lonlat,
         np.array(present, np.int8),
         np.array([np.datetime64(d or "NaT", "D") for d in day]),
         count=_floats(count),

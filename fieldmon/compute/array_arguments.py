@@ -73,15 +73,15 @@ def array_of_plants(
     >>> array_of_plants(np.float64, "A risk map", pd.Series([0.1, 0.3]).sort_values()[::-1])
     Traceback (most recent call last):
     ...
-    fieldmon.errors.SettingError: A risk map must be in the plants' order, its index 0, 1, 2..., but it is a Series with another. Sort it by its plants, as with .sort_index(), or give .to_numpy() of one that is in their order.
+    fieldmon.errors.SettingError: A risk map must be in the plants' order, its index 0, 1, 2..., but its index is another. Sort it by its plants, as with .sort_index(), or give .to_numpy() of one that is in their order.
     """  # noqa: E501 - a sentence
     import numpy as np  # noqa: PLC0415 - as above
 
     if _has_index(given) and not np.array_equal(given.index, np.arange(len(given))):
         raise SettingError(
-            f"{what} must be in the plants' order, its index 0, 1, 2..., but it is "
-            f"{shown(given)} with another. Sort it by its plants, as with .sort_index(), or give "
-            ".to_numpy() of one that is in their order."
+            f"{what} must be in the plants' order, its index 0, 1, 2..., but its index is another. "
+            "Sort it by its plants, as with .sort_index(), or give .to_numpy() of one that is in "
+            "their order."
         )
     return array_of(kind, what, given, instead)
 

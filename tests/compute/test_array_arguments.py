@@ -38,7 +38,7 @@ def test_a_series_of_plants_is_taken_in_their_order_alone():
     chance = pd.Series([0.3, 0.1, 0.2])
     assert array_of_plants(np.float64, "A map", chance).tolist() == [0.3, 0.1, 0.2]
     for other in (chance.sort_values(), chance[1:], chance.set_axis(["a", "b", "c"])):
-        with pytest.raises(SettingError, match=r"A map must be in the plants' order, .* Series"):
+        with pytest.raises(SettingError, match=r"A map must be in the plants' order, .* another"):
             array_of_plants(np.float64, "A map", other)
     with pytest.raises(SettingError, match="mask must be in the plants' order"):
         plants_marked("A mask", (chance > 0.1).sort_values(), 3, str)

@@ -352,3 +352,66 @@ def test_a_day_starts_at_the_plots_own_time_whatever_zone_it_was_given_in(on, pl
 def test_a_season_may_begin_on_a_day_given_as_text(plot):
     season = fm.Season.create("s.gpkg", plot, begins="2026-11-18")
     assert season.settings.begins == date(2026, 11, 18)
+
+
+@pytest.mark.usefixtures("_here")
+def test_a_season_takes_a_moment_for_its_day_on_the_plot(plot):
+    late = datetime(2026, 11, 17, 23, 30, tzinfo=UTC)
+    season = fm.Season.create("s.gpkg", plot, begins=late, robot=fm.Robot(hours=0.5))
+    assert season.settings.begins == date(2026, 11, 18)
+    assert season.plan(on=pd.Timestamp(late)).route.notes.start == datetime(2026, 11, 18, 6)
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        lambda plot, chance: fm.plan_day(plot, on="2026-11-18", risk=chance),
+        lambda plot, chance: fm.plan_team(plot, chance, fm.team_of(2)),
+        lambda plot, chance: fm.routes.best(plot, chance, fm.Robot(hours=1)),
+        lambda plot, chance: fm.Monitor(plot, chance=chance),
+        fm.draw_start,
+        lambda plot, chance: fm.hot_spots(plot, (chance > 0.5).astype(int)),
+    ],
+)
+def test_chances_that_pandas_sorted_are_not_taken_by_their_place(asked, plot):
+    chance = pd.Series(np.linspace(0, 1, plot.n_plants)).sort_values(ascending=False)
+    with pytest.raises(fm.SettingError, match="must be in the plants' order"):
+        asked(plot, chance)
+
+
+def test_columns_of_records_and_inspections_that_pandas_sorted_apart_are_refused():
+    frame = pd.DataFrame({"plant": [1, 2], "seen": [0, 1], "lon": 35.1, "lat": 30.3}, index=[4, 2])
+    fm.Inspections.of(frame["plant"], frame["seen"], "2026-11-18")
+    fm.Observations.of(frame[["lon", "lat"]], frame["seen"])
+    later = frame["seen"].sort_index()
+    with pytest.raises(fm.SettingError, match="inspections must have one index, but that of resu"):
+        fm.Inspections.of(frame["plant"], later, "2026-11-18")
+    with pytest.raises(fm.SettingError, match="records must have one index, but that of present"):
+        fm.Observations.of(frame[["lon", "lat"]], later)
+
+
+@pytest.mark.usefixtures("_here")
+@pytest.mark.parametrize(
+    "begin",
+    [
+        lambda plot, seen: fm.plan_day(plot, seen, "2026-11-18", fm.Robot(hours=0.5), "naive"),
+        lambda plot, seen: fm.Season.create("s.gpkg", plot, seen, begins="2026-11-18"),
+    ],
+)
+def test_records_that_lie_elsewhere_or_nowhere_are_told_of(begin, plot):
+    lonlat = plot.grid.lonlat(np.arange(6))
+    lonlat[1], lonlat[2], lonlat[3, 0] = lonlat[1, ::-1], np.nan, lonlat[3, 0] + 1
+    accuracy_m = [np.nan] * 4 + [1e9, 5.0]
+    seen = fm.Observations.of(lonlat, np.ones(6), "2026-11-17", accuracy_m=accuracy_m)
+    with pytest.warns(ImportDoubt) as said:
+        begin(plot, seen)
+    sentences = [str(one.message) for one in said]
+    for part in (
+        f"2 of 5 records lie outside {plot.field.name} and were kept apart",
+        "1 record would lie on the plot with longitude and latitude exchanged",
+        "1 of the 6 records have no position",
+        "1 of the 6 records are placed no better than to 1000 m",
+    ):
+        assert any(sentence.startswith(part) for sentence in sentences), sentences
+    if Path("s.gpkg").exists():
+        np.testing.assert_array_equal(fm.Season("s.gpkg").observations.lonlat, lonlat)

@@ -54,6 +54,63 @@ def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDAr
     return array
 
 
+def array_of_plants(
+    kind: type[K],
+    what: str,
+    given: Any,  # noqa: ANN401 - held to its kind here
+    instead: str = "",
+) -> NDArray[K]:
+    """Return what `array_of` does of one entry a plant, in the order of the plants.
+
+    Raise `SettingError` for what pandas has in another order, too: arrays go by place, pandas by
+    its index, which would be lost.
+
+    Examples
+    --------
+    >>> import numpy as np, pandas as pd
+    >>> array_of_plants(np.float64, "A risk map", pd.Series([0.1, 0.3]))
+    array([0.1, 0.3])
+    >>> array_of_plants(np.float64, "A risk map", pd.Series([0.1, 0.3]).sort_values()[::-1])
+    Traceback (most recent call last):
+    ...
+    fieldmon.errors.SettingError: A risk map must be in the plants' order, its index 0, 1, 2..., but its index is another. Sort it by its plants, as with .sort_index(), or give .to_numpy() of one that is in their order.
+    """  # noqa: E501 - a sentence
+    import numpy as np  # noqa: PLC0415 - as above
+
+    if _has_index(given) and not np.array_equal(given.index, np.arange(len(given))):
+        raise SettingError(
+            f"{what} must be in the plants' order, its index 0, 1, 2..., but its index is another. "
+            "Sort it by its plants, as with .sort_index(), or give .to_numpy() of one that is in "
+            "their order."
+        )
+    return array_of(kind, what, given, instead)
+
+
+def must_share_index(whose: str, columns: Mapping[str, Any]) -> None:
+    """Raise `SettingError` where columns by their names come from pandas with different indices.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> found = pd.DataFrame({"plant": [7, 8], "result": [0, 1]}, index=[3, 9])
+    >>> must_share_index("inspections", {"plant": found["plant"], "result": found["result"]})
+    """
+    indexed = {name: one for name, one in columns.items() if _has_index(one)}
+    first = next(iter(indexed), "")
+    for name, one in indexed.items():
+        if not one.index.equals(indexed[first].index):
+            raise SettingError(
+                f"The columns of {whose} must have one index, but that of {name} is another than "
+                f"that of {first}: they are put together by place, not by index. Take them from "
+                "one frame, or give .to_numpy() of each where their order is the same."
+            )
+
+
+def _has_index(given: Any) -> bool:  # noqa: ANN401 - anything
+    """Return whether something is of pandas, with an index."""
+    return hasattr(given, "iloc") and hasattr(given, "index")
+
+
 def plants_marked(
     what: str, given: object, n: int, wrong: Callable[[int], str]
 ) -> NDArray[np.bool_]:
@@ -72,7 +129,7 @@ def plants_marked(
     """
     import numpy as np  # noqa: PLC0415 - as above
 
-    marked = array_of(
+    marked = array_of_plants(
         np.bool_, what, given, f"Of plants by their numbers give np.isin(np.arange({n}), numbers)."
     )
     if marked.shape != (n,):
@@ -183,7 +240,7 @@ def chances_of(given: object, n: int) -> NDArray[np.float64]:
     """
     import numpy as np  # noqa: PLC0415 - as above
 
-    chance = array_of(np.float64, "A chance map", given)
+    chance = array_of_plants(np.float64, "A chance map", given)
     must_be_shaped("A plot's", {"chance map": (chance, (n,))})
     must_be_chances("A chance map", chance)
     return chance

@@ -1,23 +1,33 @@
 """Days and times that a caller hands over, whatever says them: a text, Python's own or numpy's.
 
-A time of a zone is as the clock there says.
+They are local ones of a plot. A time that names another zone is turned into the plot's where the
+plot is known, and else refused: which day it is there, nobody could say.
 """
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from datetime import date, datetime
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.errors import SettingError
+from fieldmon.errors import ObservationError, SettingError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy as np
     from numpy.typing import NDArray
 
 
+# a time of day, and then a zone: numpy would turn it into UTC
+_OF_ZONE = re.compile(r"[T ]\d\d.*(?:Z|[+-]\d\d(?::?\d\d)?)\s*$", re.IGNORECASE)
+
+
 def days_of(given: object) -> NDArray[np.datetime64] | None:
     """Return days, whatever they were given as; None: they are none.
+
+    Raise `ObservationError` where one names a zone.
 
     Examples
     --------
@@ -27,7 +37,7 @@ def days_of(given: object) -> NDArray[np.datetime64] | None:
     import numpy as np  # noqa: PLC0415 - a date is read without it
 
     try:
-        array = _as_clocks_say(given)
+        array = _local(given)
         if array.size and array.dtype.kind not in "MUO":
             return None
         days = array.astype("datetime64[D]", copy=False)
@@ -40,7 +50,8 @@ def days_of(given: object) -> NDArray[np.datetime64] | None:
 def seconds_of(given: object) -> NDArray[np.float64]:
     """Return the seconds since midnight of what `days_of` takes, of its shape; NaN at midnight.
 
-    A day alone is its midnight, so that no time is known there.
+    A day alone is its midnight, so that no time is known there. Raise `ObservationError`
+    as it does.
 
     Examples
     --------
@@ -49,7 +60,7 @@ def seconds_of(given: object) -> NDArray[np.float64]:
     """
     import numpy as np  # noqa: PLC0415 - as above
 
-    array = _as_clocks_say(given)
+    array = _local(given)
     if array.dtype.kind == "M" and np.datetime_data(array.dtype)[0] in "DWMY":
         return np.full(array.shape, np.nan)
     times = array.astype("datetime64[us]")
@@ -57,24 +68,41 @@ def seconds_of(given: object) -> NDArray[np.float64]:
     return np.where(second == 0.0, np.nan, second)
 
 
-def _as_clocks_say(given: object) -> NDArray[Any]:
-    """Return times as an array, those of a zone as the clock there says."""
+def _local(given: object) -> NDArray[Any]:
+    """Return times as an array; raise `ObservationError` where one names a zone."""
     import numpy as np  # noqa: PLC0415 - as above
 
     array = np.asarray(given)
-    if array.dtype.kind != "O":
-        return array
-    local = [
-        one.replace(tzinfo=None) if isinstance(one, datetime) and one.tzinfo else one
-        for one in array.ravel().tolist()
-    ]
-    made = np.empty(len(local), object)
-    made[:] = local
-    return made.reshape(array.shape)
+    if array.dtype.kind in "OU":
+        for one in array.ravel().tolist():
+            if _names_zone(one):
+                raise ObservationError(_no_plot(one))
+    return array
 
 
-def day_in(given: Any) -> Any:  # noqa: ANN401 - anything else is left as it is
+def _names_zone(given: object) -> bool:
+    if isinstance(given, str):
+        return _OF_ZONE.search(given) is not None
+    return isinstance(given, datetime) and given.tzinfo is not None
+
+
+def _no_plot(given: object) -> str:
+    return (
+        f"Days and times must be the plot's own, but {given} names a zone, and the plot is not "
+        "known here. Turn them into the plot's time and leave the zone out, in pandas with "
+        'times.dt.tz_convert("Asia/Jerusalem").dt.tz_localize(None); read_inspections and '
+        "read_records do so with files."
+    )
+
+
+def day_in(
+    given: Any,  # noqa: ANN401 - anything else is left as it is
+    local: Callable[[datetime], datetime] | None = None,
+) -> Any:  # noqa: ANN401 - as above
     """Return the day of a text, a time or numpy's day; anything else as it is.
+
+    `local` gives the plot's time of a moment that names its zone; None: the plot is not known, and
+    such a moment raises `SettingError`.
 
     Examples
     --------
@@ -84,7 +112,11 @@ def day_in(given: Any) -> Any:  # noqa: ANN401 - anything else is left as it is
     """
     day = given
     if isinstance(given, datetime):
-        day = given.date()  # as the clock there says
+        if given.tzinfo is not None:
+            if local is None:
+                raise SettingError(_no_plot(given))
+            given = local(given)
+        day = given.date()
     elif isinstance(given, str):
         with suppress(ValueError):
             day = date.fromisoformat(given)
@@ -93,7 +125,11 @@ def day_in(given: Any) -> Any:  # noqa: ANN401 - anything else is left as it is
     return day if isinstance(day, date) else given
 
 
-def day_of(what: str, given: Any) -> Any:  # noqa: ANN401 - as above
+def day_of(
+    what: str,
+    given: Any,  # noqa: ANN401 - as above
+    local: Callable[[datetime], datetime] | None = None,
+) -> Any:  # noqa: ANN401 - as above
     """Return what `day_in` does, for `must_be` to look at; of a text that is no day raise an error.
 
     Examples
@@ -101,7 +137,7 @@ def day_of(what: str, given: Any) -> Any:  # noqa: ANN401 - as above
     >>> day_of("A harvest", "2026-11-18")
     datetime.date(2026, 11, 18)
     """
-    day = day_in(given)
+    day = day_in(given, local)
     if isinstance(day, str):
         raise SettingError(f"{what} must be a day as 2026-11-18, but it is {given!r}.")
     return day

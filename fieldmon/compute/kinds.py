@@ -160,7 +160,8 @@ def _kinds_in(settings: Any) -> list[tuple[str, str, Kind]]:  # noqa: ANN401 - a
 def checked(public: F) -> F:
     """Let a function refuse arguments that are not what it is annotated with; for decorators.
 
-    Of a class: all its public methods. A day may be a text, ``"2026-11-18"``, a time, or numpy's.
+    Of a class: all its public methods. A day may be a text, ``"2026-11-18"``, a time, or numpy's;
+    what has the method `plot_time` turns a time of another zone into its plot's.
 
     Examples
     --------
@@ -198,10 +199,14 @@ def _checked(function: Any) -> Any:  # noqa: ANN401 - any function, with its own
     @wraps(function)
     def wrapper(*args: Any, **keywords: Any) -> Any:  # noqa: ANN401 - as above
         if days:
+            asked = args[0] if args and not isinstance(args[0], type) else None
+            local = getattr(asked, "plot_time", None)
             told = zip(in_order, args, strict=False)
-            in_place = [day_in(given) if name in days else given for name, given in told]
+            in_place = [day_in(given, local) if name in days else given for name, given in told]
             args = (*in_place, *args[len(in_place) :])
-            keywords = {k: day_in(given) if k in days else given for k, given in keywords.items()}
+            keywords = {
+                k: day_in(given, local) if k in days else given for k, given in keywords.items()
+            }
         for name, given in chain(zip(in_order, args, strict=False), keywords.items()):
             annotation = named.get(name, "")
             if annotation and not kind_of(annotation).fits(given):

@@ -22,7 +22,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.arguments import must_be, must_be_in
-from fieldmon.compute.array_arguments import array_of, must_hold_shapes
+from fieldmon.compute.array_arguments import array_of_plants, must_hold_shapes
 from fieldmon.compute.jit import routine
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.ranges import AllowedRange
@@ -279,7 +279,7 @@ def hot_spots(
 
 def _states(given: object, n: int) -> NDArray[np.int8]:
     """Return the state of each of `n` plants; refuse what is none."""
-    states = array_of(np.float64, "The states of the plants", given)
+    states = array_of_plants(np.float64, "The states of the plants", given)
     if states.shape != (n,):
         raise ObservationError(
             f"The states of the plants must have one entry a plant ({n}), "

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.compute.arguments import must_be_known, shown
-from fieldmon.compute.array_arguments import entries_of
+from fieldmon.compute.array_arguments import entries_of, must_share_index
 from fieldmon.compute.day_arguments import days_of, seconds_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted
@@ -159,20 +159,23 @@ class Inspections:
             ``(k,)`` 1 found, 0 clean, 2 skipped.
         on
             The local date, or ``(k,)`` dates. With a time of day, as `datetime` has it, it is their
-            `second`, too; midnight is a date alone.
+            `second`, too; midnight is a date alone. None may name a zone.
         columns
             Others of these columns by name, ``(k,)`` each.
 
         Raises
         ------
         ObservationError
-            If plants are no whole numbers, results none of these, or dates no dates; if the time is
-            said in both `on` and `second`.
+            If plants are no whole numbers, results none of these, or dates no dates; if a time
+            names a zone (that of the plot is not known here), or is said in both `on` and `second`.
+        SettingError
+            If columns of pandas differ in their index.
         """
         k, dates = len(_column("plant", plant)), days_of(on)
         if dates is None:
             raise _no_date(on)
         must_be_known("Columns of inspections", columns, list(_TYPES))
+        must_share_index("inspections", {"plant": plant, "result": result, "on": on, **columns})
         seconds = seconds_of(on)
         if "second" in columns and not np.isnan(seconds).all():
             raise ObservationError(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.compute.arguments import must_be, must_be_known, shown
-from fieldmon.compute.array_arguments import array_of, entries_of
+from fieldmon.compute.array_arguments import array_of, entries_of, must_share_index
 from fieldmon.compute.day_arguments import days_of
 from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.units import Units
@@ -158,7 +158,7 @@ class Observations:
         present
             ``(m,)`` 1 infested, 0 clean, -1 not said.
         day
-            ``(m,)`` datetime64[D], or the one of all; None: of no date.
+            ``(m,)`` datetime64[D], the plot's, or the one of all; None: of no date.
         columns
             Others of these columns by name, ``(m,)`` each.
 
@@ -166,9 +166,12 @@ class Observations:
         ------
         ObservationError
             If columns have different lengths, a position is none on earth (NaN: not known), a
-            result is not 1, 0 or -1, or a number is below 0 or has no end. A count that contradicts
-            its result is taken: the result is believed.
+            result is not 1, 0 or -1, a day names a time zone, or a number is below 0 or has no
+            end. A count that contradicts its result is taken: the result is believed.
+        SettingError
+            If columns of pandas differ in their index.
         """
+        must_share_index("records", {"lonlat": lonlat, "present": present, "day": day, **columns})
         points = lonlat_of("Positions of records", lonlat, _READ, nowhere=True)
         results = np.atleast_1d(array_of(np.float64, "Results of records", present))
         if not np.isin(results, (UNKNOWN, ABSENT, PRESENT)).all():

@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 from scipy.special import expit, logit
 
-from fieldmon.compute.array_arguments import array_of
+from fieldmon.compute.array_arguments import array_of_plants
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.chance_bounds import MOST_CHANCE
@@ -150,7 +150,7 @@ def start_infested(
 
 
 def _checked_risk(grid: PlantGrid, given: Floats) -> Floats:
-    risk = np.atleast_1d(array_of(np.float64, "A risk map", given))
+    risk = np.atleast_1d(array_of_plants(np.float64, "A risk map", given))
     if risk.shape != (len(grid),):
         raise ObservationError(
             worded(

@@ -150,7 +150,7 @@ def _within_reach(
         f"At least one record must lie on the plot or within {radius_m.max():.0f} m of it, but "
         f"of {len(observations)} the nearest is {_in_words(off_m.min())}. "
         + (
-            "With longitude and latitude exchanged they would lie there: name the columns anew."
+            "With longitude and latitude exchanged they would lie there: give longitude first."
             if turned
             else "Check the coordinate system, the order of longitude and latitude, "
             "and whether the records belong to this plot."

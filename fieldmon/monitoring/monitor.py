@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple, Self
 import numpy as np
 
 from fieldmon.compute.arguments import must_be, must_be_in, shown
-from fieldmon.compute.array_arguments import array_of, must_be_chances, must_be_shaped
+from fieldmon.compute.array_arguments import chances_of
 from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
@@ -601,7 +601,4 @@ def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.
     if chance is None:
         none, day = Observations.none(), np.datetime64(local_clock(plot.field).today())
         return prior_chance(plot.grid, plot.field, none, day, PriorSettings())
-    given = array_of(np.float64, "A chance map", chance)
-    must_be_shaped("A plot's", {"chance map": (given, (len(plot.grid),))})
-    must_be_chances("A chance map", given)
-    return given
+    return chances_of(chance, len(plot.grid))

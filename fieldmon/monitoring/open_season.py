@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterator, Sequence
     from contextlib import AbstractContextManager
-    from datetime import date, time
+    from datetime import date, datetime, time
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -152,6 +152,10 @@ class OpenSeason:
     def path(self) -> Path:
         """Return the file."""
         return self.store.path
+
+    def plot_time(self, moment: datetime) -> datetime:
+        """Return the plot's own time of a moment that names its zone: so all its days are read."""
+        return local_clock(self.plot.field).at(moment)
 
     @property
     def key(self) -> str:

@@ -15,6 +15,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.observations import Observations, warn_of_left_out
 from fieldmon.infestation.prior import prior_chance
+from fieldmon.io.readers.nearby import warn_of_elsewhere
 from fieldmon.monitoring import (
     derived_layers,
     first_morning,
@@ -146,7 +147,7 @@ class Season(SeasonPlans, SeasonFrames):
             see `fieldmon.infestation.prior.prior_chance`; None: none.
         chosen
             Settings one by one instead, as ``begins=date(2026, 11, 18)`` or
-            ``robot=Robot(hours=4)``.
+            ``robot=Robot(hours=4)``. A time that names a zone is its day on the plot.
 
         Raises
         ------
@@ -162,6 +163,7 @@ class Season(SeasonPlans, SeasonFrames):
         begins = np.datetime64(settings.begins, "D")
         if messages is None:
             warn_of_left_out(observations, begins)
+            warn_of_elsewhere(observations, begins, plot.field)
         if risk is not None:
             risk = array_of(np.float64, "A risk map", risk)
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
@@ -364,8 +366,8 @@ def _chosen_for(
 ) -> MonitoringSettings:
     """Return the settings of a new season, given as one or one by one; raise if none can be."""
     if settings is None:
-        today = local_clock(plot.field).today()
-        settings = settings_from({"begins": today} | chosen)
+        clock = local_clock(plot.field)
+        settings = settings_from({"begins": clock.today()} | chosen, clock.at)
     elif chosen:
         raise SettingError(
             worded(

@@ -41,7 +41,8 @@ from fieldmon.samplers import SAMPLERS, USUAL_SAMPLER, sampler
 from fieldmon.samplers.checked_sampler import must_detect
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
+    from datetime import datetime
 
     from fieldmon.pests.weather import Weather
     from fieldmon.samplers.base import Sampler
@@ -298,9 +299,12 @@ def seconds(at: time) -> float:
     return at.hour * 3600.0 + at.minute * 60.0 + at.second
 
 
-def settings_from(chosen: dict[str, Any]) -> MonitoringSettings:
+def settings_from(
+    chosen: dict[str, Any], local: Callable[[datetime], datetime] | None = None
+) -> MonitoringSettings:
     """Return settings from a caller's choices by name; days may be given as ``"2026-11-18"``.
 
+    Or as times of a zone, where `local` turns these into the plot's.
     Raise `SettingError` where there is no such setting, or it is of another kind.
 
     Examples
@@ -310,7 +314,7 @@ def settings_from(chosen: dict[str, Any]) -> MonitoringSettings:
     """
     must_be_known("A season's settings", chosen, [each.name for each in fields(MonitoringSettings)])
     days = {
-        name: day_of(f"A season's {name}", chosen[name])
+        name: day_of(f"A season's {name}", chosen[name], local)
         for name in ("begins", "harvest")
         if name in chosen
     }

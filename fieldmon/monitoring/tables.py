@@ -291,8 +291,9 @@ def write_observations(db: sqlite3.Connection, records: Observations) -> None:
         strict=True,
     )
     insert(db, schema.OBSERVATIONS, list(rows))
-    if len(records):
-        low, high = records.lonlat.min(axis=0).tolist(), records.lonlat.max(axis=0).tolist()
+    placed = records.lonlat[~np.isnan(records.lonlat).any(axis=1)]
+    if len(placed):
+        low, high = placed.min(axis=0).tolist(), placed.max(axis=0).tolist()
         touch(db, schema.OBSERVATIONS.name, (*low, *high))
 
 
@@ -303,8 +304,11 @@ def read_observations(db: sqlite3.Connection) -> Observations:
     if not rows:
         return Observations.none()
     geom, present, day, count, accuracy, species, stage, leaves = zip(*rows, strict=True)
+    lonlat = np.full((len(geom), 2), np.nan)  # the point of no position is empty
+    placed, which = shapely.get_coordinates([geometry(one) for one in geom], return_index=True)
+    lonlat[which] = placed
     return Observations(
-        np.array([[(p := geometry(g)).x, p.y] for g in geom]),
+        lonlat,
         np.array(present, np.int8),
         np.array([np.datetime64(d or "NaT", "D") for d in day]),
         count=_floats(count),

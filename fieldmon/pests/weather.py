@@ -67,8 +67,8 @@ class Weather:
     Raises
     ------
     SettingError
-        If columns differ in length, a step is neither of the two, there is no such zone, or a value
-        is none on earth.
+        If columns differ in length, a step is neither of the two, there is no such zone, a time is
+        missing or said twice, or a value is none on earth.
 
     Examples
     --------
@@ -118,7 +118,30 @@ class Weather:
                 )
             )
         must_be_zone("Weather's zone", self.zone)
+        self._must_have_times()
         self._must_be_possible()
+
+    def _must_have_times(self) -> None:
+        """Raise `SettingError` where a time is missing, or said of two entries."""
+        if n := int(np.isnat(self.at).sum()):
+            raise SettingError(
+                worded(
+                    "Weather must say of each entry when it begins, but of {n} of {all} it does "
+                    "not. Leave those out.",
+                    n=n,
+                    all=len(self),
+                )
+            )
+        in_order = np.sort(self.at)
+        if (twice := in_order[1:] == in_order[:-1]).any():
+            raise SettingError(
+                worded(
+                    "Weather must have one entry of each time, but there are {n} of {at}. Keep "
+                    "one of them.",
+                    n=int(np.count_nonzero(self.at == in_order[1:][twice][0])),
+                    at=in_order[1:][twice][0],
+                )
+            )
 
     def _must_be_possible(self) -> None:
         """Raise `SettingError` where no place has such weather: it is in another unit."""

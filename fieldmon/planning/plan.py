@@ -18,6 +18,7 @@ from fieldmon.infestation.observations import Observations, must_be_records, war
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.io.readers.nearby import warn_of_elsewhere
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
@@ -181,7 +182,8 @@ def plan_day(
     Warns
     -----
     ImportDoubt
-        For records that are left out: of a later day, or neither infested nor clean.
+        For records that are left out: of a later day, neither infested nor clean, of no position,
+        or more than 100 m away; and for those placed so roughly that they say nothing.
 
     Raises
     ------
@@ -208,6 +210,7 @@ def plan_day(
     given = Observations.none() if records is None else records
     day = np.datetime64(starts.date(), "D")
     warn_of_left_out(given, day)
+    warn_of_elsewhere(given, day, plot.field)
     today = first_day(plot, given, day, plans, risk)
     if not len(today.route):
         raise SettingError(

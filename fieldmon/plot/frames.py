@@ -15,6 +15,7 @@ from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.near_doubles import near_doubles
 from fieldmon.plot.plant_names import PlantNames
+from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import metres_per_unit
 from fieldmon.plot.rounding import doubts_of_rounding
 
@@ -54,6 +55,32 @@ def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> G
     )
 
 
+def faces_in(
+    frame: GeoDataFrame | GeoSeries, planting: Planting | None
+) -> tuple[GeoDataFrame | GeoSeries, Planting | None, list[str]]:
+    """Return a frame with each plant once, of whose faces its column ``face`` tells.
+
+    And a planting of both faces where none was given, and what there is to say of it.
+    """
+    if "face" not in getattr(frame, "columns", ()):
+        return frame, planting, []
+    place, face = frame.geometry.to_wkb(), frame["face"].astype(str).str.strip()
+    first, second = face.isin(["1", "1.0"]), face.isin(["2", "2.0"])
+    again = second & place.isin(place[first])
+    if not again.any():
+        return frame, planting, []
+    both = first & place.isin(place[second])
+    said = []
+    if planting is None:
+        planting = Planting(faces=2, outer_faces=bool(both[first].all()))
+    elif planting.faces == 1:
+        said.append(
+            f"The GeoDataFrame has both faces of {int(both.sum())} plants, but one is inspected by "
+            "the planting. Say Planting(faces=2, ...) to keep both."
+        )
+    return frame[~again.to_numpy()], planting, said
+
+
 def boundary_and_plants(
     frame: GeoDataFrame,
 ) -> tuple[MultiPolygon | None, NDArray[np.float64], PlantNames, list[str]]:
@@ -79,6 +106,12 @@ def boundary_and_plants(
     places = points.to_numpy()
     which = np.repeat(there[kinds == "Point"], shapely.get_num_coordinates(places))
     said, names = _of_no_place(frame, there), _names_in(frame, which)
+    if "number" not in getattr(frame, "columns", ()) and _over_rows(names):
+        said.append(
+            "The column plant counts the plants of all rows on, from 0, as Plot.to_geopandas does: "
+            "it was not taken for their numbers within their rows. Keep its column number, too."
+        )
+        names = names._replace(plant=None)
     xy = shapely.get_coordinates(frame.geometry.iloc[there][kinds == "Point"].to_numpy())
     lonlat = shapely.get_coordinates(places)
     step_m = step_of(xy) * metres_per_unit(frame.crs)
@@ -165,6 +198,18 @@ def _names_in(frame: GeoDataFrame | GeoSeries, which: NDArray[np.intp]) -> Plant
         called("block"),
         called("plant") if number is None else number,
     )
+
+
+def _over_rows(names: PlantNames) -> bool:
+    """Return whether plants are called as a grid counts them: from 0 on over several rows."""
+    row, plant = names.row, names.plant
+    if row is None or plant is None or len(np.unique(row)) == 1:
+        return False
+    if not np.char.isdecimal(plant).all():
+        return False
+    counted = np.unique(plant.astype(np.int64))
+    # second faces may have been left out of them
+    return len(counted) == len(plant) and counted[0] == 0 and counted[-1] < 2 * len(plant)
 
 
 def _written(name: object) -> str:

@@ -306,7 +306,8 @@ class Plot:
         frame
             One polygon, points, or both, in any coordinate system; rows are found from the
             points, or laid in the polygon. Columns ``row``, ``plant`` (or ``number``) and
-            ``block`` say what points are called, as in a file of plants.
+            ``block`` say what points are called, as in a file of plants. A column ``face`` of 1 and
+            2, as `to_geopandas` has it, says of which plants both faces are inspected.
         planting
             Bearing, spacings and headland; None: the defaults (rows 4 m and plants 3 m apart, along
             the longest side). Points keep their own spacings, and their bearing unless it is said.
@@ -339,9 +340,14 @@ class Plot:
         >>> fm.Plot.from_geopandas(gate, fm.Planting(row_spacing_m=4, plant_spacing_m=3)).n_plants
         3825
         """
-        from fieldmon.plot.frames import boundary_and_plants  # noqa: PLC0415 - loads GeoPandas
+        from fieldmon.plot.frames import (  # noqa: PLC0415 - loads GeoPandas
+            boundary_and_plants,
+            faces_in,
+        )
 
+        frame, planting, of_faces = faces_in(frame, planting)
         boundary, plants, names, said = boundary_and_plants(frame)
+        said += of_faces
         if boundary is None:
             plot = plot_around(name, plants, planting, gate, names)
         elif not len(plants):

@@ -17,6 +17,7 @@ from fieldmon.infestation.spread import Spread, night
 from fieldmon.infestation.traced_pairs import TracedPairs, in_sight
 from fieldmon.planning.workday import Workday, draw_detections, work_day
 from fieldmon.samplers.base import NEVER, Scene, resting_place
+from fieldmon.samplers.own import asked
 from fieldmon.simulation.insects import NightInsects, PestInsects
 from fieldmon.simulation.mornings import MorningBeliefs
 from fieldmon.simulation.treating import Sprayed
@@ -139,7 +140,9 @@ class SimulationSettings:
         """
         if self.own_night is not None:
             # it may write into what it is given
-            morning = self.own_night(grid, infested.copy(), key)
+            morning: NDArray[np.bool_] = asked(
+                "A season's own_night", self.own_night, grid, infested.copy(), key
+            )
             must_be_of("What a season's own_night returns", "NDArray[np.bool_]", morning)
             must_be_shaped("The next morning's", {"infested plants": (morning, infested.shape)})
             return morning

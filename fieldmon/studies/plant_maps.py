@@ -18,9 +18,10 @@ from fieldmon.io.options import ReadOptions, RecordOptions
 from fieldmon.io.parse.result_words import MAYBE_GONE, ResultWords, plain_word
 from fieldmon.io.parse.values import dates, decimal_mark, is_missing, number, numbers
 from fieldmon.io.readers.inspection_file.results import result_of
+from fieldmon.io.readers.known_rows import VERY_FAR_M
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.missing_plants import without
-from fieldmon.plot.planting import Planting
+from fieldmon.plot.planting import PLANTED, Planting
 from fieldmon.plot.travel import Aisles
 
 if TYPE_CHECKING:
@@ -129,6 +130,9 @@ PUBLIC_MAPS = {
 # what a map of one's own must be called, and has to hold
 _OWN_ENDING, _OWN_COLUMNS = ".map.csv", ("row", "plant", "infested", "row_m", "plant_m")
 
+# which setting of a planting each distance is
+_SPACING_OF = {"row_m": "row_spacing_m", "plant_m": "plant_spacing_m"}
+
 
 def read_plant_maps(folder: Path, public: Collection[str] = tuple(PUBLIC_MAPS)) -> list[PlantMap]:
     """Return the maps of a folder and its folders, by file name.
@@ -214,6 +218,12 @@ def _distance(layer: Layer, column: str, file: str) -> float:
         raise FileProblem(
             f"The column {column} of {file} must hold one distance in metres, the same in each "
             f"line, but it holds {', '.join(cell or 'an empty cell' for cell in cells)}."
+        )
+    rule = PLANTED[_SPACING_OF[column]].broken(value)
+    if rule or value > VERY_FAR_M:
+        raise FileProblem(
+            f"The column {column} of {file} must be {rule or f'{VERY_FAR_M:g} metres at most'}, "
+            f"but it is {value:g}. Write it in metres: 2.5, not 250."
         )
     return value
 

@@ -3,14 +3,17 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from fieldmon.compute.array_arguments import (
     array_of,
+    array_of_plants,
     chances_of,
     entries_of,
     must_be_shaped,
     must_hold_shapes,
+    must_share_index,
     plants_marked,
 )
 from fieldmon.errors import SettingError
@@ -29,6 +32,24 @@ def test_an_array_of_true_and_false_takes_no_numbers():
     for bad in ([1, 0], ["a"], [[True], [True, False]], 3):
         with pytest.raises(SettingError, match=r"^A mask must hold True or False, but .* Do\.$"):
             array_of(np.bool_, "A mask", bad, "Do.")
+
+
+def test_a_series_of_plants_is_taken_in_their_order_alone():
+    chance = pd.Series([0.3, 0.1, 0.2])
+    assert array_of_plants(np.float64, "A map", chance).tolist() == [0.3, 0.1, 0.2]
+    for other in (chance.sort_values(), chance[1:], chance.set_axis(["a", "b", "c"])):
+        with pytest.raises(SettingError, match=r"A map must be in the plants' order, .* another"):
+            array_of_plants(np.float64, "A map", other)
+    with pytest.raises(SettingError, match="mask must be in the plants' order"):
+        plants_marked("A mask", (chance > 0.1).sort_values(), 3, str)
+
+
+def test_columns_of_one_frame_are_put_together_and_those_of_other_orders_are_not():
+    frame = pd.DataFrame({"plant": [7, 8], "result": [0, 1]}, index=[9, 3])
+    one = {"plant": frame["plant"], "result": frame["result"], "on": "2026-11-18", "who": ["A"] * 2}
+    must_share_index("inspections", one)
+    with pytest.raises(SettingError, match="that of result is another than that of plant"):
+        must_share_index("inspections", one | {"result": frame["result"].sort_index()})
 
 
 def test_entries_are_picked_by_numbers_a_mask_or_a_slice():

@@ -1,12 +1,12 @@
 """Days that a program hands over, whatever says them."""
 
-from datetime import date, datetime
+from datetime import UTC, date, datetime, timedelta
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from fieldmon.compute.day_arguments import day_of, days_of
+from fieldmon.compute.day_arguments import day_in, day_of, days_of
 from fieldmon.errors import SettingError
 
 
@@ -47,3 +47,10 @@ def test_a_day_is_taken_from_a_text_or_a_time_and_the_rest_is_left(given, day):
 def test_a_text_that_is_no_day_is_refused():
     with pytest.raises(SettingError, match="A harvest must be a day as 2026-11-18, but it is 'soo"):
         day_of("A harvest", "soon")
+
+
+def test_a_moment_is_the_day_on_the_plot_and_refused_where_none_is_known():
+    late = datetime(2026, 11, 18, 23, 30, tzinfo=UTC)
+    assert day_in(late, lambda moment: moment + timedelta(hours=2)) == date(2026, 11, 19)
+    with pytest.raises(SettingError, match="must be the plot's own, but 2026-11-18 23:30"):
+        day_in(late)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED, Inspections
+from fieldmon.infestation.observations import Observations
 
 MONDAY, TUESDAY = np.datetime64("2026-04-06"), np.datetime64("2026-04-07")
 
@@ -52,8 +53,6 @@ ABROAD = datetime(2026, 4, 6, 1, 30, tzinfo=timezone(timedelta(hours=3)))
         ([AFTERNOON, date(2026, 4, 6)], [63_000.0, np.nan]),
         (pd.DatetimeIndex(["2026-04-06 17:30:15", "2026-04-06"]), [63_015.0, np.nan]),
         (["2026-04-06T17:30", "2026-04-06"], [63_000.0, np.nan]),
-        ([ABROAD, ABROAD], [5400.0, 5400.0]),
-        (pd.Series([ABROAD, ABROAD]), [5400.0, 5400.0]),
         (MONDAY, [np.nan, np.nan]),
     ],
 )
@@ -61,6 +60,26 @@ def test_a_time_of_day_is_when_plants_were_inspected(on, second):
     two = Inspections.of([3, 4], [FOUND, CLEAN], on)
     assert two.date.tolist() == [date(2026, 4, 6)] * 2
     np.testing.assert_array_equal(two.second, second)
+
+
+@pytest.mark.parametrize(
+    "on",
+    [
+        ABROAD,
+        pd.Series([ABROAD, ABROAD]),
+        pd.DatetimeIndex([ABROAD, ABROAD]),
+        "2026-04-06T01:30+03:00",
+        np.array(["2026-04-06", "2026-04-05 22:30Z"]),
+        pd.Series(["2026-04-06T01-05", None], dtype="string"),
+    ],
+)
+def test_a_time_of_a_zone_is_refused_where_no_plot_is_known(on):
+    for asked in (
+        lambda: Inspections.of([3, 4], [FOUND, CLEAN], on),
+        lambda: Observations.of([[35.1, 30.3]] * 2, [1, 0], on),
+    ):
+        with pytest.raises(ObservationError, match=r"must be the plot's own, but 2026.* names"):
+            asked()
 
 
 def test_columns_of_more_than_one_line_are_refused_for_their_shape():

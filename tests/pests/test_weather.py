@@ -61,6 +61,15 @@ def test_arrays_of_other_lengths_and_steps_are_refused():
         weather_of(hours("2026-11-18", 3), 1800)
 
 
+def test_each_entry_has_a_time_of_its_own_in_any_order():
+    at = hours("2026-11-18", 3)
+    assert len(weather_of(at[::-1].copy(), HOUR_S)) == 3
+    with pytest.raises(SettingError, match="one entry of each time, but there are 2 of 2026-11-18"):
+        weather_of(at[[0, 1, 0]], HOUR_S)
+    with pytest.raises(SettingError, match="when it begins, but of 1 of 3 it does not"):
+        weather_of(np.append(at[:2], np.datetime64("NaT")), HOUR_S)
+
+
 @pytest.mark.parametrize(
     ("name", "value", "said"),
     [

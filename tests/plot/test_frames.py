@@ -1,5 +1,7 @@
 """Plots as GeoDataFrames: the same places in as out."""
 
+import warnings
+
 import geopandas
 import numpy as np
 import pandas as pd
@@ -145,6 +147,29 @@ def test_rows_and_plants_keep_what_a_frame_calls_them_and_come_back_so(within):
     assert {*back["row_name"]} == {"", "Top"}
     again = Plot.from_geopandas(back).to_geopandas()
     assert again.drop(columns="geometry").equals(back.drop(columns="geometry"))
+
+
+@pytest.mark.parametrize("outer_faces", [True, False])
+def test_both_faces_come_back_as_they_were(outer_faces):
+    planting = Planting(row_spacing_m=4, plant_spacing_m=2, faces=2, outer_faces=outer_faces)
+    out = Plot.from_geopandas(frame(SQUARE), planting).to_geopandas()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", ImportDoubt)
+        back = Plot.from_geopandas(out).to_geopandas()
+    columns = ["row", "number", "face"]
+    out, back = (one.sort_values(columns, ignore_index=True) for one in (out, back))
+    assert back[columns].equals(out[columns])
+    assert back.geometry.geom_equals_exact(out.geometry, 1e-7).all()
+    with pytest.warns(ImportDoubt, match=r"both faces of \d+ plants, but one is inspected"):
+        single = Plot.from_geopandas(out, Planting())
+    assert single.n_plants == len(out.drop_duplicates(["row", "number"]))
+
+
+def test_a_grid_s_count_of_plants_is_not_taken_for_numbers_in_rows():
+    out = Plot.from_geopandas(named_points()).to_geopandas()
+    with pytest.warns(ImportDoubt, match="The column plant counts the plants of all rows on"):
+        back = Plot.from_geopandas(out.drop(columns="number")).to_geopandas()
+    assert back["number"].max() == 5
 
 
 def test_points_of_two_blocks_are_called_as_a_file_of_plants_calls_them():

@@ -219,6 +219,7 @@ def test_a_world_may_write_into_what_it_is_given_and_insects_may_die():
     ("answers", "said"),
     [
         (lambda _: None, "must be an array of True and False, but it is None"),
+        (lambda _: int("x"), r"must run, but it ends in ValueError: .* \(test_insects.py, line \d"),
         (lambda infested: infested.astype(float), "but it is an array of float64"),
         (lambda infested: infested[:-1], r"must have the shape \(144,\), but it has \(143,\)"),
     ],

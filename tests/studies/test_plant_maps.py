@@ -217,6 +217,8 @@ def test_a_map_is_read_with_decimal_commas_and_columns_in_any_case(tmp_path):
         (["row,plant,infested", "1,1,1"], "row_m, plant_m are missing"),
         ([*OWN[:2], OWN[2].replace("3.5", "3.6")], r"one distance .* it holds 3\.5, 3\.6"),
         ([OWN[0], OWN[1].replace("1.2", "0")], "one distance in metres"),
+        ([OWN[0], OWN[1].replace("3.5", "350")], r"row_m of vines.map.csv must be .* it is 350\."),
+        ([OWN[0], OWN[1].replace("1.2", "0.01")], "plant_m .* must be 0.05 to 1000 m.* it is 0.01"),
     ],
 )
 def test_a_map_of_ones_own_that_lacks_something_is_a_sentence(tmp_path, lines, says):

@@ -32,7 +32,7 @@ class KnownRows(NamedTuple):
 # to which a longer name is cut
 _LETTERS_OF_SHAPEFILE = 10
 # nothing that is grown in rows stands so far apart
-_VERY_FAR_M = 30.0
+VERY_FAR_M = 30.0
 _NO_UNITS = frozenset({"", "deg", "degree", "degrees", "°"})
 #: rows or plants and how they stand; or, alone, what only they have
 _OF_ROWS = re.compile(
@@ -176,7 +176,7 @@ def _very_far(
             many="Rows or plants of {n} plots would stand as far apart as in another unit",
         )
         for name, value in zip(names, stated, strict=True)
-        if value is not None and value > _VERY_FAR_M and not broken(value)
+        if value is not None and value > VERY_FAR_M and not broken(value)
     ]
 
 

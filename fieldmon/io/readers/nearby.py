@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,8 +11,8 @@ import shapely
 
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import first_few, worded
-from fieldmon.errors import ChoiceNeeded, ObservationError
-from fieldmon.infestation.observations import NEARBY_M
+from fieldmon.errors import ChoiceNeeded, ImportDoubt, ObservationError
+from fieldmon.infestation.observations import NEARBY_M, usable
 from fieldmon.io.import_report import Imported, ImportMessage, Remedy, doubtful, dropped, seen
 from fieldmon.plot.grid import nearest_plants
 from fieldmon.plot.plants_outside import PlantsOutside, between_m, distance_m
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 _DEGREE_M = 111_000.0
 #: a tenth of a millimetre: one position, read twice
 _SAME_DEG = 1e-9
+#: records placed no better than that say nothing of single plants
+_ROUGHEST_M = 1000.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +76,30 @@ def near_plot(observations: Observations, field: Field) -> RecordsNearPlot:
     away = distance_m(observations.lonlat, field)
     near = away <= observations.reach_m()
     return RecordsNearPlot(observations.take(near), observations.take(~near), away[~near])
+
+
+def warn_of_elsewhere(observations: Observations, on_day: np.datetime64, field: Field) -> None:
+    """Warn the caller of the caller of records of a plot that lie elsewhere, or nobody knows where.
+
+    Not where all do: `prior_chance` refuses these.
+    """
+    known = usable(observations, on_day).observations
+    placed = ~np.asarray(np.isnan(known.lonlat).any(axis=1))
+    split = near_plot(known.take(placed), field)
+    if not len(split.inside):
+        return
+    turned_m = distance_m(split.outside.lonlat[:, ::-1], field)
+    doubts = [*split.messages(field.name), *doubt_of_order(split.outside_m, turned_m)]
+    said = [doubt.sentence for doubt in doubts]
+    if n := int(np.count_nonzero(~placed)):
+        said.append(f"{n} of the {len(known)} records have no position and are left out.")
+    if n := int(np.count_nonzero(split.inside.accuracy_m > _ROUGHEST_M)):
+        said.append(
+            f"{n} of the {len(known)} records are placed no better than to {_ROUGHEST_M:g} m and "
+            "say nothing, or hardly anything, of single plants. Give accuracy_m in metres."
+        )
+    for one in said:
+        warnings.warn(one, ImportDoubt, stacklevel=3)
 
 
 def records_on_plot(observations: Observations, field: Field) -> Observations:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arguments import shown
-from fieldmon.compute.array_arguments import array_of
+from fieldmon.compute.array_arguments import array_of_plants
 from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted
@@ -444,7 +444,7 @@ def _known(other: ArrayLike, n: int) -> Int:
 
 
 def _checked(reward: ArrayLike, n: int, seconds: float) -> Float:
-    values = array_of(np.float64, "Rewards", reward)
+    values = array_of_plants(np.float64, "Rewards", reward)
     if values.shape != (n,):
         raise SettingError(
             f"Rewards must be {n} numbers in a row, one a plant, but they have the shape "

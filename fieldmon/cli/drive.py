@@ -26,7 +26,11 @@ from fieldmon.cli.options import (
     sampler_of,
 )
 from fieldmon.cli.sampler_names import OneSampler
-from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
+from fieldmon.cli.season_files import (
+    refuse_too_wide,
+    refuse_unrecorded,
+    refuse_what_was_chosen,
+)
 from fieldmon.cli.stopped import STOPPED_CODE
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED
@@ -317,6 +321,7 @@ def _team_day(
     robots = robots_of(settings.team)
     own = dict(zip((one.name for one in robots), _options_of_each(options, robots), strict=True))
     _refuse_written_over(season, own.values())
+    refuse_too_wide(season, settings.team)
     today = TeamSeason(season, on, options.manufacturer)
     tell_assumed(season.assumed(settings))
     tell_past_midnight(on, settings)

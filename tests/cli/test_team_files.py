@@ -84,7 +84,7 @@ def test_who_is_too_wide_for_a_plot_is_named_where_a_season_has_them_already(run
     assert (code, made) == (2, set())
     assert "Ben: A robot's aisles must be as wide as it is" in err
     assert f"Give the team anew with: fieldmon change {season} --robots TEAM.csv" in err
-    with pytest.raises(SettingError, match="^Ben: "):
+    with pytest.raises(SettingError, match=r"^Ben: "):
         Season(season).plan_each(first.begins)
 
 

@@ -26,18 +26,23 @@ from fieldmon.cli.options import (
     sampler_of,
 )
 from fieldmon.cli.sampler_names import OneSampler
-from fieldmon.cli.season_files import refuse_unrecorded, refuse_what_was_chosen
+from fieldmon.cli.season_files import (
+    refuse_too_wide,
+    refuse_unrecorded,
+    refuse_what_was_chosen,
+)
+from fieldmon.cli.stopped import STOPPED_CODE
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import SettingError
 from fieldmon.samplers import USUAL_SAMPLER
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
     from datetime import date
 
     from fieldmon.drive.day import DrivenDay
-    from fieldmon.drive.errand import DayToDrive, DrivingRobot
+    from fieldmon.drive.errand import DrivingRobot
     from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.vda5050.mqtt import RobotName
@@ -46,7 +51,6 @@ if TYPE_CHECKING:
     from fieldmon.planning.members import TeamMember
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
-    from fieldmon.plot.travel import Aisles
 
 BrokerName = Annotated[
     str, typer.Option("--broker", help="MQTT broker: HOST:PORT or mqtts://USER:PASSWORD@HOST:PORT.")
@@ -197,13 +201,14 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     """Drive a day on a plot of which nothing but records is known."""
     import numpy as np
 
+    from fieldmon.drive.day import drive_day
     from fieldmon.infestation.prior import prior_chance
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.monitoring.monitor import Monitor
     from fieldmon.planning.assumptions import assumed_by
     from fieldmon.plot.local_clock import local_clock
 
-    _refuse_written_over(None, (options.output,))
+    _refuse_written_over(None, (options,))
     worker = options.worker.robot()
     if options.steering == "ackermann":
         from fieldmon.drive.robot_body import with_turning_radius
@@ -221,13 +226,15 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     if told := aisles.narrow_sentence():
         typer.echo(told)
     with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
-        begins = local_clock(plot.field).moment(on, time(6))
-        return _driven(options, today, aisles, (worker, driver), begins), on
+        robot, recording = driver
+        driven = drive_day(today, aisles, (worker, robot), recording.note)
+    _write_bag(recording, local_clock(plot.field).moment(on, time(6)), options)
+    return driven, on
 
 
 def _season(options: DriveOptions, file: Path) -> None:
     """Drive what is left of a day of a season, each plant told recorded at once."""
-    from fieldmon.drive.day import DrivenDay
+    from fieldmon.drive.day import DrivenDay, drive_day
     from fieldmon.drive.season_day import SeasonDay
     from fieldmon.monitoring import Season
 
@@ -237,7 +244,7 @@ def _season(options: DriveOptions, file: Path) -> None:
             "Drive a copy of the season with --made-up, or a robot with --robot vda5050."
         )
     season = Season(file)
-    _refuse_written_over(season, (options.output,))
+    _refuse_written_over(season, (options,))
     on = day_on(season.plot.field, day(options.on))
     settings = season.planned_by(on)
     worker = settings.robot
@@ -258,15 +265,20 @@ def _season(options: DriveOptions, file: Path) -> None:
         _tell_plan(goes_on=today.goes_on)
     before = season.contents([today.batch])[today.batch].n if today.batch is not None else 0
     begins, so_far = _begins(season, on, today.begun_s), DrivenDay()
-    with _driver(options, season.plot, worker, (season.morning(on), on)) as driver:
+    with _driver(options, season.plot, worker, (season.morning(on), on)) as (robot, recording):
         try:
-            driven = _driven(options, today, aisles, (worker, driver), begins, so_far)
-        except BaseException:  # whatever ended it: what was driven is written
+            try:
+                drive_day(today, aisles, (worker, robot), recording.note, so_far)
+            finally:
+                _write_bag(recording, begins, options)
+        except BaseException as end:  # whatever ended it: what was driven is written
             _write(so_far, on, options, _name(options), before)
             _tell_replanned(today.replanned - 1)
             _tell_stopped(season, on, today.batch)
+            if isinstance(end, KeyboardInterrupt):
+                raise SystemExit(STOPPED_CODE) from end  # what was written is said already
             raise
-    _write(driven, on, options, _name(options), before)
+    _write(so_far, on, options, _name(options), before)
     _tell_replanned(today.replanned - 1)
 
 
@@ -308,7 +320,8 @@ def _team_day(
 
     robots = robots_of(settings.team)
     own = dict(zip((one.name for one in robots), _options_of_each(options, robots), strict=True))
-    _refuse_written_over(season, (each.output for each in own.values()))
+    _refuse_written_over(season, own.values())
+    refuse_too_wide(season, settings.team)
     today = TeamSeason(season, on, options.manufacturer)
     tell_assumed(season.assumed(settings))
     tell_past_midnight(on, settings)
@@ -331,12 +344,12 @@ def _team_day(
             missing[each.broken] = None
             if not each.stops:
                 continue
-        _write_bag(recordings[name], begins[name], mine)
         _write(each, on, mine, name, before[name])
+        _write_bag(recordings[name], begins[name], mine)
     _tell_replanned(today.replanned - 1)
     if today.stops:
         _tell_stopped(season, on, today.batch)
-        raise KeyboardInterrupt
+        raise SystemExit(STOPPED_CODE)
     if missing:
         raise SettingError(" ".join(missing))
 
@@ -430,24 +443,6 @@ def _begins(season: Season, on: date, begun_s: float) -> datetime:
     return local_clock(season.plot.field).moment(begins.date(), begins.time())
 
 
-def _driven(
-    options: DriveOptions,
-    today: DayToDrive,
-    aisles: Aisles,
-    who: tuple[Robot, tuple[DrivingRobot, Recording]],
-    begins: datetime,
-    so_far: DrivenDay | None = None,
-) -> DrivenDay:
-    """Drive a day; it is noted in `so_far`, which stays where the day breaks off."""
-    from fieldmon.drive.day import drive_day
-
-    robot, (driver, recording) = who
-
-    driven = drive_day(today, aisles, (robot, driver), recording.note, so_far)
-    _write_bag(recording, begins, options)
-    return driven
-
-
 def _write_bag(recording: Recording, begins: datetime, options: DriveOptions) -> None:
     if options.bag is None:
         return
@@ -533,14 +528,19 @@ def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before
     typer.echo(f"Written to {options.output} and {stops_path(options.output)}")
 
 
-def _refuse_written_over(season: Season | None, outputs: Iterable[Path | None]) -> None:
-    """Refuse tables that cannot be written, or would replace what somebody filled in."""
+def _refuse_written_over(season: Season | None, each: Collection[DriveOptions]) -> None:
+    """Refuse files that cannot be written, and tables that would replace what was filled in."""
+    from fieldmon.drive.bag import require_bag
     from fieldmon.drive.day_tables import is_driven_table, stops_path
     from fieldmon.io.atomic_write import require_place
 
-    files = [file for path in outputs if path is not None for file in (path, stops_path(path))]
+    outputs = [one.output for one in each if one.output is not None]
+    files = [file for path in outputs for file in (path, stops_path(path))]
     for file in files:
         require_place(file)
+    for one in each:
+        if one.bag is not None:
+            require_bag(one.bag)
     refuse_unrecorded(season, [file for file in files if not is_driven_table(file)])
 
 

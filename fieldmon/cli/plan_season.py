@@ -19,7 +19,12 @@ from fieldmon.cli.messages import (
     tell_past_midnight,
 )
 from fieldmon.cli.outputs import ROUTE, day_in_words, write_chance_map, write_routes
-from fieldmon.cli.season_files import learnt_of_each, refuse_unrecorded, refuse_what_was_chosen
+from fieldmon.cli.season_files import (
+    learnt_of_each,
+    refuse_too_wide,
+    refuse_unrecorded,
+    refuse_what_was_chosen,
+)
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
 from fieldmon.cli.times import clock, day, day_on
 from fieldmon.errors import SettingError
@@ -30,6 +35,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fieldmon.cli.plan_options import PlanOptions
+    from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.plan import DayPlan
@@ -114,12 +120,17 @@ def _tell_route(season: Season, on: date, today: DayPlan) -> None:
     """Print what was done of a day, what its route will find, and whether codes share its rows."""
     from fieldmon.reports.words import DAY_OF_NOBODY
 
-    seen = season.worked(on)
-    done = f"{len(seen)} done, " if len(seen) else ""
+    n = _done(season.worked(on))
+    done = f"{n} done, " if n else ""
     infested = float(season.evening(on)[today.route.plant].sum())
     typer.echo(f"{on}: {done}{day_in_words(today.route, infested)}")
     if [*season.codes_on(on).values()] not in ([], [None]):
         typer.echo(f"seen: {DAY_OF_NOBODY}", err=True)
+
+
+def _done(*each: Inspections) -> int:
+    """Return how many plants somebody told of: once, whatever was said of it, and by how many."""
+    return len(set().union(*(one.plant.tolist() for one in each)))
 
 
 def _refuse_worked(season: Season, on: date, now: time, team: list[str]) -> None:
@@ -262,6 +273,7 @@ def _plan_team(
     team = settings.team
     files = files_of_each(options.output, team)
     refuse_unrecorded(season, (file for each in files for file in each))
+    refuse_too_wide(season, team)
     days = season.plan_each(on, now)
     if now is None:
         days = tuple(by_the_clock(season, on, WorkPart(name=one.name), today)
@@ -298,7 +310,7 @@ def _tell_routes(
 
     names = tuple(name for name, _ in named)
     # of who is not of the team any more, too
-    done = len(season.worked(on, Besides(names))) + sum(len(season.worked(on, n)) for n in names)
+    done = _done(season.worked(on, Besides(names)), *(season.worked(on, n) for n in names))
     typer.echo(f"{on}{f': {done} done' if done else ''}")
     for name, today in named:
         if (notes := today.route.notes) is not None and notes.start is not None:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
+    from fieldmon.planning.members import TeamMember
 
 # inspections of a day that has not come, of which the numbers are shown
 _NUMBERS_SHOWN = 5
@@ -131,6 +132,20 @@ def learnt_of_each(season: Season, on: date) -> Iterator[tuple[str, str, str]]:
         for one in season.learnt(on, detects):
             if one.name == "detection":
                 yield by, str(chance_figure(detects)), str(chance_figure(one.value))
+
+
+def refuse_too_wide(season: Season, team: Iterable[TeamMember]) -> None:
+    """Raise `SettingError` where one of a season's team can drive nowhere, with who and what to do.
+
+    Seasons refuse such a robot from version 0.2 on; one of before may have it.
+    """
+    from fieldmon.planning import members
+
+    try:
+        members.refuse_too_wide(team, season.plot)
+    except SettingError as error:
+        pasted = shlex.join(["fieldmon", "change", str(season.path), "--robots"])
+        raise SettingError(f"{error} Give the team anew with: {pasted} TEAM.csv") from error
 
 
 def refuse_what_was_chosen(context: typer.Context, takes: Collection[str]) -> None:

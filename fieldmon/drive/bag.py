@@ -12,7 +12,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.drive.bag_layouts import foxglove_layout, rviz_layout
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
-from fieldmon.io.atomic_write import write_whole
+from fieldmon.io.atomic_write import require_place, write_whole
 from fieldmon.plot.clearance import half_canopy_m
 
 if TYPE_CHECKING:
@@ -58,16 +58,10 @@ def write_bag(recording: Recording, begins: datetime, to: Path) -> tuple[Path, P
 
     Raises
     ------
-    SettingError
-        If the library that writes bags is not installed, or the name does not end in .mcap.
+    FileProblem, SettingError
+        As `require_bag` does.
     """
-    if to.suffix.lower() != ".mcap":
-        raise SettingError(
-            worded(
-                "The name of a bag must end in .mcap, but it is {name!r}.",
-                name=to.name,
-            )
-        )
+    require_bag(to)
     writer, store = _rosbags()
     with working_folder() as folder:
         inner = Path(folder) / "bag"
@@ -79,6 +73,27 @@ def write_bag(recording: Recording, begins: datetime, to: Path) -> tuple[Path, P
     write_whole(layouts[0], rviz_layout())
     write_whole(layouts[1], foxglove_layout())
     return (to, *layouts)
+
+
+def require_bag(to: Path) -> None:
+    """Hold that a bag can be written to a place, before a day is driven for it.
+
+    Raises
+    ------
+    FileProblem
+        If nothing can be written there.
+    SettingError
+        If the library that writes bags is not installed, or the name does not end in .mcap.
+    """
+    if to.suffix.lower() != ".mcap":
+        raise SettingError(
+            worded(
+                "The name of a bag must end in .mcap, but it is {name!r}.",
+                name=to.name,
+            )
+        )
+    _rosbags()
+    require_place(to)
 
 
 class _Pen:

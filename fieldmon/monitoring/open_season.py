@@ -39,6 +39,7 @@ from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json,
 from fieldmon.monitoring.shift_work import Besides, Shift
 from fieldmon.monitoring.told_detection import told_at_first, told_detection
 from fieldmon.monitoring.transactions import Store, get_meta
+from fieldmon.planning.members import ways_of
 from fieldmon.plot.grid import PlantNumbers, plant_numbers
 from fieldmon.plot.local_clock import grid_clock, local_clock
 
@@ -451,6 +452,8 @@ class OpenSeason:
         now_s = None if now is None else seconds(now)
         morning = contents.morning(day)
         shift, name = self._shift(settings, who)
+        if isinstance(name, str):
+            ways_of(shift.robot, shift.aisles, name)  # or raise with the name
         return contents.history.scene(shift, day, morning, now_s, name)
 
     def aisles_from(self, gate: tuple[float, float] | None) -> Aisles:

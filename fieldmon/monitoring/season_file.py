@@ -41,7 +41,7 @@ from fieldmon.monitoring.season_plans import SeasonPlans
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, settings_from
 from fieldmon.monitoring.transactions import Store, set_meta
 from fieldmon.planning.assumptions import assumed_by, assumed_by_team
-from fieldmon.planning.members import refuse_far_gates
+from fieldmon.planning.members import refuse_far_gates, refuse_too_wide, ways_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.local_clock import local_clock
 
@@ -53,8 +53,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.tables import KeptMessage
-    from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
+    from fieldmon.plot.robot import Robot
 
     Floats = NDArray[np.float64]
 
@@ -226,7 +226,7 @@ class Season(SeasonPlans, SeasonFrames):
             something was recorded or planned.
         """
         settings = settings.of_its_pest(seen)
-        _must_work(settings, self.plot.field, seen)
+        _must_work(settings, self.plot, seen)
         with self._lock, self.store.writing() as db:
             if as_json(settings_of(db)) != as_json(seen):
                 raise FileProblem(
@@ -377,21 +377,30 @@ def _chosen_for(
             )
         )
     settings = settings.of_its_pest()
-    _must_work(settings, plot.field)
+    _must_work(settings, plot)
     if settings.belief.earlier is not None:
         settings.belief.earlier.must_end_before(settings.begins)
     return settings
 
 
 def _must_work(
-    settings: MonitoringSettings, field: Field, before: MonitoringSettings | None = None
+    settings: MonitoringSettings, plot: Plot, before: MonitoringSettings | None = None
 ) -> None:
     """Raise `SettingError` unless a season on a plot can be worked so; what was so `before` may."""
     settings.must_detect()
     if settings.language and (before is None or settings.language != before.language):
         must_be_language(settings.language)
     gates = set() if before is None else {one.gate for one in before.team}
-    refuse_far_gates((one for one in settings.team if one.gate not in gates), field)
+    refuse_far_gates((one for one in settings.team if one.gate not in gates), plot.field)
+    driven = [] if before is None else [one.robot for one in before.team] or [before.robot]
+    sizes = {_size(robot) for robot in driven}
+    refuse_too_wide((one for one in settings.team if _size(one.robot) not in sizes), plot)
+    if not settings.team and _size(settings.robot) not in sizes:
+        ways_of(settings.robot, plot.aisles)
+
+
+def _size(robot: Robot) -> tuple[float | None, ...]:
+    return robot.width_m, robot.length_m, robot.turning_radius_m
 
 
 def _refuse_other_days(db: sqlite3.Connection, begins: date, instead: date) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import AllowedRange, broken_setting
 from fieldmon.compute.wording import worded
-from fieldmon.errors import SettingError
+from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.positions import lonlat_of
 from fieldmon.plot.robot import Robot
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from fieldmon.plot.field import Field
+    from fieldmon.plot.plot import Plot
+    from fieldmon.plot.travel import Aisles
 
 # our choice: no plot has so many aisles that they would not meet
 _MOST_MEMBERS = 1000
@@ -175,6 +177,34 @@ def refuse_far_gates(team: Iterable[TeamMember], plot: Field) -> None:
             raise SettingError(
                 worded("{name}: {problem}", name=member.name, problem=error.args[0])
             ) from None
+
+
+def ways_of(robot: Robot, aisles: Aisles, name: str = "") -> Aisles:
+    """Return the ways that a robot can drive; raise `SettingError` with its name if there are none.
+
+    So it is where all aisles are too narrow for it, or no row end leaves it room to turn.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
+    >>> ways_of(fm.Robot(), plot.aisles) is plot.aisles
+    True
+    """
+    try:
+        return aisles.for_robot(robot)
+    except PlotError as error:
+        problem = error.args[0]
+        named = worded("{name}: {problem}", name=name, problem=problem) if name else problem
+        raise SettingError(named) from None
+
+
+def refuse_too_wide(team: Iterable[TeamMember], plot: Plot) -> None:
+    """Raise `SettingError` where a member whose width is known can drive nowhere on a plot."""
+    for one in team:
+        if one.robot.width_m is not None:
+            aisles = plot.aisles if one.gate is None else plot.with_gate(one.gate).aisles
+            ways_of(one.robot, aisles, one.name)
 
 
 def must_differ(members: Sequence[TeamMember]) -> None:

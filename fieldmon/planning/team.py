@@ -17,7 +17,7 @@ from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.bound_wording import bound_sentence, sound_bound
 from fieldmon.planning.headlands import HeadOn, head_on
 from fieldmon.planning.meetings import Meeting, meetings
-from fieldmon.planning.members import must_differ, refuse_far_gates
+from fieldmon.planning.members import must_differ, refuse_far_gates, refuse_too_wide
 from fieldmon.planning.plan import DayPlan, starts_at
 from fieldmon.planning.route import route_of
 from fieldmon.planning.routes import best
@@ -175,6 +175,7 @@ def plan_team(
     """
     must_differ(members)
     refuse_far_gates(members, plot.field)
+    refuse_too_wide(members, plot)
     chance, begins = chances_of(chance, plot.n_plants), starts_at(on, plot)
     _must_be_a_width(passing_m)
     tasks = _tasks_of(plot, chance, members)

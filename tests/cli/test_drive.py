@@ -4,6 +4,7 @@ from datetime import date
 
 import pytest
 
+from fieldmon.drive.bag import read_bag
 from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import DrivenDay, DrivenStop
 from fieldmon.drive.errand import Visit
@@ -110,9 +111,17 @@ def test_a_day_that_is_stopped_says_what_is_kept_and_writes_its_table(
 
     monkeypatch.setattr(ChargedRobot, "visit", stopped)
     let_in(Season(short), "Ann", (1, 2))
-    code, out, err, _ = run("drive", short, "--date", BEGINS, "--made-up", "-o", "day.csv")
+    words = ("drive", short, "--date", BEGINS, "--made-up", "-o", "day.csv", "--bag")
+    code, _, err, made = run(*words, "nowhere/day.mcap")
+    assert (code, made) == (2, set())
+    code, out, err, made = run(*words, "day.mcap")
     assert code == 130
     assert f"3 results of {BEGINS} in the season; the same command goes on" in out
+    # half a day was written, and the last line does not deny it
+    assert "nothing was written" not in err
+    finds = [one for one, _, _ in read_bag(tmp_path / "day.mcap", ("/finds",))]
+    assert len(finds) == 3
+    assert {"day.rviz", "day.foxglove.json"} <= {path.name for path in made}
     assert "Ann is out with a route of their own; the robot leaves rows 1-2 to them." in err
     assert len(table(tmp_path / "day.stops.csv")) == 3
     assert len(Season(short).history.inspections) == 3
@@ -133,8 +142,10 @@ def test_a_day_past_midnight_says_so_and_writes_its_tables(run, season, tmp_path
     assert len(table(tmp_path / "day.stops.csv")) == len(held)
 
 
-def test_a_day_that_breaks_off_writes_what_was_driven(run, season, tmp_path, monkeypatch):
-    tell, left = SeasonDay.tell, iter([True] * 3)
+@pytest.mark.parametrize("n", [0, 3])
+def test_a_day_that_breaks_off_writes_what_was_driven(run, season, tmp_path, monkeypatch, n):
+    tell, left = SeasonDay.tell, iter([True] * n)
+    (tmp_path / "day.mcap").write_bytes(b"an earlier one")
 
     def refused(day, found, at_s=None):
         if not next(left, False):
@@ -142,11 +153,13 @@ def test_a_day_that_breaks_off_writes_what_was_driven(run, season, tmp_path, mon
         tell(day, found, at_s)
 
     monkeypatch.setattr(SeasonDay, "tell", refused)
-    code, out, err, _ = run("drive", season, "--date", BEGINS, "--made-up", "-o", "day.csv")
+    words = ("--date", BEGINS, "--made-up", "-o", "day.csv", "--bag", "day.mcap")
+    code, out, err, _ = run("drive", season, *words)
     assert code == 2
     assert "The file is full." in err
-    assert "3 results" in out
-    assert len(table(tmp_path / "day.stops.csv")) == 3
+    assert f"{n} results" in out
+    assert len(table(tmp_path / "day.stops.csv")) == n
+    assert len([*read_bag(tmp_path / "day.mcap", ("/finds",))]) == n
 
 
 def test_where_no_broker_answers_it_is_a_sentence(run):
@@ -212,6 +225,7 @@ def test_a_team_that_breaks_off_writes_the_tables_of_those_that_drove(
     words = ("--date", BEGINS, "--robot", "vda5050", "-o", "day.csv")
     code, out, err, made = run("drive", season, *words)
     assert code == (130 if stops else 2), err
+    assert "nothing was written" not in err
     assert ("It has no order." in err) == (not stops)
     assert {one.name for one in made} == {"day-robot-1.csv", "day-robot-1.stops.csv"}
     assert (f"0 results of {BEGINS} in the season" in out) == bool(stops)

@@ -11,7 +11,7 @@ from fieldmon.cli.options import WorkerOptions
 from fieldmon.cli.team_files import files_of_each, members_of, tell_member
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.monitoring import Season
+from fieldmon.monitoring import Season, settings_log
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot, scout
 from tests.cli.estate import BEGINS, MITES, ZIP, filled_in
@@ -60,6 +60,32 @@ def test_what_one_did_who_left_the_team_is_done_all_the_same(run, season):
     kept.change(replace(seen, team=(first, TeamMember("Ann", first.robot))), seen)
     words = ("plan", season, "--date", BEGINS, "--no-bound", "--as-now")
     assert f"{BEGINS}: 4 done" in run(*words)[1]
+
+
+def test_a_plant_of_which_two_said_otherwise_is_done_once(run, season):
+    kept = Season(season)
+    day = np.datetime64(kept.settings.begins)
+    for who, results in (("robot-1", [0, 0]), ("robot-2", [1, 0])):
+        kept.record(Inspections.of(np.array([3, 4]), np.array(results), day), who, who,
+                    confirmed=True)  # fmt: skip
+    words = ("plan", season, "--date", BEGINS, "--no-bound")
+    assert f"{BEGINS}: 2 done" in run(*words)[1]
+    run("change", season, "--robots", "1")
+    assert f"{BEGINS}: 2 done, " in run(*words, "--as-now")[1]
+
+
+def test_who_is_too_wide_for_a_plot_is_named_where_a_season_has_them_already(run, season):
+    kept = Season(season)
+    first = kept.settings
+    wide = TeamMember("Ben", replace(first.robot, width_m=9.0))
+    with kept.store.writing() as db:  # as a season of an earlier version may
+        settings_log.change(db, replace(first, team=(first.team[0], wide)))
+    code, _, err, made = run("plan", season, "--date", BEGINS)
+    assert (code, made) == (2, set())
+    assert "Ben: A robot's aisles must be as wide as it is" in err
+    assert f"Give the team anew with: fieldmon change {season} --robots TEAM.csv" in err
+    with pytest.raises(SettingError, match=r"^Ben: "):
+        Season(season).plan_each(first.begins)
 
 
 def test_a_season_goes_on_with_another_team(run, season, tmp_path):

@@ -237,6 +237,7 @@ def test_a_season_begins_on_another_day_only_before_anything_is_recorded_or_plan
 
 
 FAR = (TeamMember("Ann", ROBOT), TeamMember("Ben", ROBOT, gate=(35.5, 30.35)))
+WIDE = replace(ROBOT, width_m=9.0)
 
 
 @pytest.mark.parametrize(
@@ -244,6 +245,8 @@ FAR = (TeamMember("Ann", ROBOT), TeamMember("Ben", ROBOT, gate=(35.5, 30.35)))
     [
         ({"language": "xx"}, "A language must be one of en, he, ar, es, but it is 'xx'."),
         ({"team": FAR}, "Ben: The gate at 35.5, 30.35 .longitude, latitude. lies .* Correct it."),
+        ({"robot": WIDE}, "^A robot's aisles must be as wide as it is, .* narrower robot"),
+        ({"team": (FAR[0], TeamMember("Ben", WIDE))}, "^Ben: A robot's aisles must be as wide "),
     ],
 )
 def test_a_season_is_neither_begun_nor_changed_so_that_nobody_can_work(

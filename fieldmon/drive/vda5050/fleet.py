@@ -6,7 +6,7 @@ import math
 import queue
 import time
 from contextlib import contextmanager
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 # an order that nobody acknowledged is sent again; robots take the same one once
 _AGAIN_S = 5.0
 _POLL_S = 0.2
+# a robot that is there says so every 30 s by the standard; without a word for so long, it may not
+_SILENT_S = 45.0
 # so often, heard each time, a robot may leave a thing undone
 _MOST_TRIES = 24
 # how far from a node it may pass where nobody said how wide it is, and nothing more is known
@@ -97,7 +99,7 @@ class Vda5050Robot:
         #: returns how often somebody asked for a stop: once, a robot that has no order is not
         #: waited for; twice, no robot is
         self.stops: Callable[[], int] = lambda: 0
-        self._has_order = False
+        self._has_order, self._is_lost, self._told_until = False, False, False
         self._state: dict[str, Any] | None = None
         self._told, self._odd_clock = "", False
         self._traffic = traffic
@@ -329,12 +331,29 @@ class Vda5050Robot:
         if stops > 1:
             raise FieldmonError("It is not waited for, but still ends what it was ordered last.")
         if self._hear():
-            self._heard_at = time.monotonic()
+            self._heard_at, self._told_until = time.monotonic(), False
             return self._broken()
         self._must_come()
+        if stops:
+            self._tell_until()
         if time.monotonic() - self._heard_at > self._patience_s:
             return f"The robot has not been heard for {self._patience_s:.0f} s."
         return ""
+
+    def _tell_until(self) -> None:
+        """Say once until when a robot that is not heard is waited for.
+
+        One whose connection is lost is, too: it drives on, and what it found comes with it.
+        """
+        silent_s = time.monotonic() - self._heard_at
+        if self._told_until or not (self._is_lost or silent_s > _SILENT_S):
+            return
+        self._told_until = True
+        until = datetime.now(UTC).astimezone() + timedelta(seconds=self._patience_s - silent_s)
+        self._say(
+            f"It is not heard, and is waited for until {until:%H:%M:%S}, as it may still end the "
+            "plant in hand. Ctrl-C again ends at once."
+        )
 
     @property
     def _heard(self) -> dict[str, Any]:
@@ -402,12 +421,13 @@ class Vda5050Robot:
             self._tell(str(error))
             return False
         if kind == "connection":
-            if message["connectionState"] != "ONLINE":
+            self._is_lost = message["connectionState"] != "ONLINE"
+            if self._is_lost:
                 self._tell("The robot's connection is lost; waiting for it.")
             return False
         if kind != "state" or self._late(message):
             return False
-        self._state = message
+        self._state, self._is_lost = message, False
         if self._stands():
             self._tell("The robot is paused, or driven by hand; waiting.")
         else:

@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 #: said at the first and the second Ctrl-C
 _STOPPING = (
-    "Stopping: each robot ends the plant in hand and drives home. Ctrl-C again ends at once.",
+    (
+        "Stopping: each robot ends the plant in hand and drives home. Ctrl-C again ends at once. "
+        "Waited for: {names}."
+    ),
     "Ending at once: what is recorded is kept.",
 )
 
@@ -41,7 +44,7 @@ def drive_team(
     others; its day says why. People of the team are left out.
 
     At Ctrl-C each ends the plant in hand and drives home, and who has no order is not waited for;
-    at a second one nobody is.
+    at a second one nobody is. Who is not heard is waited for, until a time that is said.
 
     Parameters
     ----------
@@ -88,7 +91,8 @@ def drive_team(
                 return _results(running)
             except KeyboardInterrupt:
                 day.stops += 1
-                say(told)
+                out = [name for name, each in running.items() if not each.done()]
+                say(told.format(names=", ".join(out)))
         return _results(running)
 
 

@@ -1,6 +1,7 @@
 """Asked and told over a broker: nothing lost, nothing twice, whatever the line does."""
 
 import json
+import queue
 import re
 import threading
 from contextlib import nullcontext
@@ -16,6 +17,7 @@ from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.season_day import SeasonDay
 from fieldmon.drive.vda5050.fleet import Vda5050Robot
+from fieldmon.drive.vda5050.messages import encoded, header_of
 from fieldmon.drive.vda5050.mqtt import RobotName, Wire
 from fieldmon.drive.vda5050.stand_in import StandIn
 from fieldmon.errors import SettingError
@@ -143,6 +145,22 @@ def test_a_battery_that_is_too_low_is_never_rounded_to_one_that_would_do(charge,
     assert driver._low().startswith(f"The robot's battery is at {told} %, under 15 %: ")
     driver._state = {"batteryState": {"batteryCharge": 15.0}}
     assert driver._low() == ""
+
+
+def test_at_a_stop_it_is_said_once_until_when_a_lost_robot_is_waited_for(plot, monkeypatch):
+    monkeypatch.setattr("fieldmon.drive.vda5050.fleet._POLL_S", 0.0)
+    said, heard = [], queue.Queue()
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT, heard=heard), "lost", said.append)
+    driver.begin(plot.aisles, np.zeros(2), 0.0)
+    driver._has_order, driver._state = True, {}
+    lost = encoded("connection", header_of(*ROBOT), {"connectionState": "CONNECTIONBROKEN"})
+    heard.put(("connection", lost))
+    assert driver._wait() == ""
+    assert said == ["The robot's connection is lost; waiting for it."]
+    driver.stops = lambda: 1
+    assert [driver._wait() for _ in range(3)] == ["", "", ""]
+    (told,) = said[1:]
+    assert re.match(r"It is not heard, and is waited for until \d\d:\d\d:\d\d, as it may", told)
 
 
 def test_a_low_battery_ends_the_day_after_the_plant_in_hand(broker, plot, robot, monitor):

@@ -233,6 +233,7 @@ def test_at_a_second_stop_nobody_is_waited_for_and_what_was_driven_is_kept(
     for one in robots:
         one.stop()
     assert "Ending at once: what is recorded is kept." in said
+    assert any(f"Waited for: {', '.join(NAMES)}." in told for told in said)
     plants = [stop.stop.plant for one in driven.values() for stop in one.stops]
     assert len(plants) == 6
     assert sorted(season.history.inspections.plant.tolist()) == sorted(plants)

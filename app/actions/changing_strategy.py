@@ -80,8 +80,8 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
             return
         wanted, hours = (
             _wanted(name, settings, work)
-            if choices.who is None
-            else _wanted_of_team(name, choices, choices.who)
+            if choices.whose_day is None
+            else _wanted_of_team(name, choices, choices.whose_day)
         )
         others = replace(wanted, robot=wanted.robot.with_hours(settings.robot.hours))
         # what was changed with the day is used there
@@ -221,7 +221,7 @@ def _undo(choices: Choices) -> str:
     season, said = choices.open_season, list[str]()
     settings = season.settings
     with telling_anew(season, settings, season.before_change() or settings, said.append):
-        said.append(taken_back(settings, season.undo_change(choices.who or "")))
+        said.append(taken_back(settings, season.undo_change()))
     return " ".join(map(in_words, said))
 
 

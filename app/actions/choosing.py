@@ -91,8 +91,15 @@ def choose(
 def _where_and_when(choices: Choices) -> str:
     """Return the plot and the day in a line: on a phone it stands for the boxes, which fold."""
     day = choices.units.said_day(choices.day, choices.today)
-    said = [day, hours(choices.robot.hours)]
+    said = [day, hours(_who_works(choices).hours)]
     return language.listed(said if choices.season is not None else [f"**{choices.name}**", *said])
+
+
+def _who_works(choices: Choices) -> Robot:
+    """Return whose hours the day shown has: a team's robot of the season's own works nowhere."""
+    if choices.season is None or choices.whose_day is None:
+        return choices.robot
+    return choices.season.planned_by(choices.on).member(choices.whose_day).robot
 
 
 def _chosen(head: DeltaGenerator, work: Work, wait: Wait, options: list[str]) -> Chosen:
@@ -226,12 +233,14 @@ def _choose_day(source: str, key: str, calendar: Calendar) -> None:
 
 
 def whose_day(choices: Choices) -> None:
-    """Let one of the day's team be chosen, whose day is shown and whose findings are recorded."""
+    """Let one of the day's team be chosen, whose day is shown and who signs where it is worked."""
     if len(team := choices.team_that_day) > 1:
         widget_memory.show(
             st.segmented_control, texts.WHOSE_DAY, list(team), key=WHOSE_DAY,
             default=team[0], required=True,
         )  # fmt: skip
+    elif team:
+        st.caption(f"{texts.WHOSE_DAY}: {texts.isolated(team[0])}")
 
 
 def mark_day(choices: Choices, page: str) -> None:

@@ -84,8 +84,7 @@ def _taken(choices: Choices, plant: int, *, confirmed: bool) -> str:
     _, number, day, at = told = _told(choices, plant)
     if day is None and at is None:
         raise SettingError(texts.CORRECT_UNSAID)
-    season, who = choices.open_season, choices.who or ""
     with unconfirmed.of_corrections(told):
-        season.correct_time(number, at, who, day, confirmed=confirmed)
+        choices.open_season.correct_time(number, at, "", day, confirmed=confirmed)
     FreshBoxes(_WHEN, choices).empty()
     return texts.CORRECTED.format(n=1)

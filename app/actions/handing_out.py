@@ -33,7 +33,7 @@ def show(choices: Choices, plan: DayPlan) -> None:
         _show_address()
     st.markdown(texts.SEND_FILE)
     starts = chosen_day.starts(choices, plan)
-    notes = RouteNotes(choices.plot.field.name, choices.sampler, starts, choices.who,
+    notes = RouteNotes(choices.plot.field.name, choices.sampler, starts, choices.whose_day,
                        language=language.for_reports(language.current()))  # fmt: skip
     _files(choices, HandoffPlan(chosen_day.with_bound(choices, plan).route, notes))
 

@@ -30,7 +30,7 @@ from ..state.fresh_boxes import FreshBoxes
 from ..state.unconfirmed import Unconfirmed
 from ..words import texts
 from ..words.language import in_words
-from . import acting, bringing_files, correcting, treating
+from . import acting, bringing_files, choosing, correcting, treating
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -44,6 +44,8 @@ if TYPE_CHECKING:
 # batches shown, the last ones, and so many more at each press
 _MOST = 20
 _SAID_OF_FILE = "said of a file of findings"
+# who inspected where nobody said so
+_NOBODY = ""
 _UNDO_ASKED, _SHOWN = "undo asked", "batches shown"
 _LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
 #: what a season's file calls what was typed in here, whatever the page's language
@@ -113,6 +115,7 @@ def _show_one(choices: Choices) -> None:
         box="one_result", format_func=texts.RESULTS_OF.__getitem__,
     )  # fmt: skip
     show(st.number_input, texts.COUNT, 0, None, box="one_count")
+    _ask_who(boxes)
     acting.at_press(texts.RECORD_BUTTON, _record_one, choices, key="record_one", boxes=boxes)
     correcting.show(choices, _plant_typed(choices))
 
@@ -149,7 +152,8 @@ def _record_one(choices: Choices) -> str:
         np.array([plant]), np.array([result]), np.datetime64(choices.day),
         count=counted, notes=np.array([note], object),
     )  # fmt: skip
-    return said_of(choices, recorded(choices, results, TYPED_IN, _ONE), results)
+    done = recorded(choices, results, TYPED_IN, _ONE, who=_signed(FreshBoxes(_ONE, choices)))
+    return said_of(choices, done, results)
 
 
 def as_kept(result: int) -> tuple[int, str]:
@@ -161,7 +165,11 @@ def as_kept(result: int) -> tuple[int, str]:
 
 
 def _show_route(choices: Choices) -> None:
-    """Show the route given out for the day, or the one planned, to be marked stop by stop."""
+    """Show the route given out for the day, or the one planned, to be marked stop by stop.
+
+    One of a team has a route of their own, and signs for it.
+    """
+    choosing.whose_day(choices)
     kept, plan = chosen_day.given_out(choices), choices.plan()
     plants = kept if len(kept) else plan.route.plant
     boxes = FreshBoxes(_ROUTE, choices)
@@ -228,7 +236,8 @@ def _record_stops(choices: Choices, plants: np.ndarray, told: tuple[int, _Marks]
         raise SettingError(texts.RECORD_UNSAID)
     result = np.where(is_found, FOUND, CLEAN)[said]
     results = Inspections.of(plants[said], result, np.datetime64(choices.day))
-    return said_of(choices, recorded(choices, results, _ROUTE_TABLE, _ROUTE), results)
+    kept = recorded(choices, results, _ROUTE_TABLE, _ROUTE, who=choices.whose_day or "")
+    return said_of(choices, kept, results)
 
 
 # -- a file
@@ -240,6 +249,7 @@ def _show_file(choices: Choices) -> None:
     brought = st.file_uploader(texts.RECORD_FILE_IN, key=key("findings_file"))
     st.checkbox(texts.TAKE_DOUBTFUL, key=key("take_doubtful"))
     if brought is not None:
+        _ask_who(boxes, texts.INSPECTED_BY_HELP)
         if brought.getvalue().startswith(MAGIC):
             st.text_input(texts.CORRECTED_BY, key=key("corrected_by"),
                           help=texts.CORRECTED_BY_HELP)  # fmt: skip
@@ -297,10 +307,10 @@ def _file_recorded(choices: Choices, *, confirmed: bool) -> str:
     if read.saved is None:
         # what was said of a file may be answered: it stays to be read again
         form = "" if messages else _FILE
-        done = recorded(choices, read.findings, name, form, read.messages)
+        done = recorded(choices, read.findings, name, form, read.messages, _signed(boxes))
         said = said_of(choices, done, read.findings)
     else:
-        done, more = record_saved(season, read.saved, choices.who or "")
+        done, more = record_saved(season, read.saved, _signed(boxes))
         said, messages = said_of(choices, done), [*messages, *more]
         if more:
             notices.warn()
@@ -333,19 +343,34 @@ def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes, *, confir
     return texts.CORRECTED.format(n=n)
 
 
+def _ask_who(boxes: FreshBoxes, help_: str | None = None) -> None:
+    """Ask where a team works who inspected: nobody, unless one of it or another name is said."""
+    if team := boxes.choices.team_that_day:
+        boxes.show(
+            st.selectbox, texts.INSPECTED_BY, [_NOBODY, *team], box="who", default=_NOBODY,
+            help=help_, accept_new_options=True, format_func=lambda who: who or texts.NOBODY_SAID,
+        )  # fmt: skip
+
+
+def _signed(boxes: FreshBoxes) -> str:
+    """Return who is said to have inspected; empty: nobody is."""
+    return str(boxes.said("who") or _NOBODY).strip()
+
+
 def recorded(
     choices: Choices, results: Inspections, source: str, form: str = "",
-    messages: tuple[ImportMessage, ...] = (),
+    messages: tuple[ImportMessage, ...] = (), who: str = "",
 ) -> Recorded | None:  # fmt: skip
-    """Record results, and empty the form that they are from.
+    """Record results, and empty the form that they are from; `who` inspected, unless they say so.
 
     None where some contradict what is recorded: they wait for a word on it, and what was said of
     their file waits with them.
     """
     try:
-        done = choices.open_season.record(results, source, choices.who or "")
+        done = choices.open_season.record(results, source, who)
     except ContradictionError:
-        unconfirmed.keep(Unconfirmed(choices.key, choices.day, results, source, form, messages))
+        of = choices.key, choices.day
+        unconfirmed.keep(Unconfirmed(*of, results, source, form, messages, who))
         return None
     unconfirmed.drop()
     if form:
@@ -439,7 +464,8 @@ def _record_these(choices: Choices) -> str:
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
-    done = recorded(choices, waiting.results, waiting.source, waiting.form, waiting.messages)
+    results, source, who = waiting.results, waiting.source, waiting.who
+    done = recorded(choices, results, source, waiting.form, waiting.messages, who)
     return _said_at_last(choices, waiting, done)
 
 
@@ -455,8 +481,7 @@ def _record_instead(choices: Choices) -> str:
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
-    who = choices.who or ""
-    done = choices.open_season.record_instead(waiting.results, waiting.source, who)
+    done = choices.open_season.record_instead(waiting.results, waiting.source, waiting.who)
     return _end_waiting(choices, waiting, done)
 
 
@@ -479,8 +504,8 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
-    taken, who = waiting.results.take(which), choices.who or ""
-    done = choices.open_season.record(taken, waiting.source, who, confirmed=True)
+    taken = waiting.results.take(which)
+    done = choices.open_season.record(taken, waiting.source, waiting.who, confirmed=True)
     return _end_waiting(choices, waiting, done)
 
 
@@ -568,12 +593,12 @@ def _ask_no_undo() -> None:
 
 
 @notices.reporting
-def undo(choices: Choices, batch: int) -> str:
-    """Take a batch back, unless somebody did so in another window."""
+def undo(choices: Choices, batch: int, who: str = "") -> str:
+    """Take a batch back, unless somebody did so in another window; `who` does, for the log."""
     _ask_no_undo()
     if batch not in {one.number for one in choices.open_season.batches() if not one.undone}:
         raise SettingError(texts.UNDONE_BEFORE)
-    return in_words(choices.open_season.undo(batch, who=choices.who or ""))
+    return in_words(choices.open_season.undo(batch, who=who))
 
 
 @notices.reporting
@@ -581,4 +606,4 @@ def redo(choices: Choices, batch: int) -> str:
     """Let a batch that was undone count again, unless somebody did so in another window."""
     if batch not in {one.number for one in choices.open_season.batches() if one.undone}:
         raise SettingError(texts.REDONE_BEFORE)
-    return in_words(choices.open_season.redo(batch, who=choices.who or ""))
+    return in_words(choices.open_season.redo(batch))

@@ -46,7 +46,7 @@ def _tap(choices: Choices, plant: int, result: int) -> str:
     )  # fmt: skip
     if not len(chosen_day.given_out(choices)):  # from the first tap on it is the day's route
         handing_out.give_out(choices)
-    recording.recorded(choices, results, SOURCE)
+    recording.recorded(choices, results, SOURCE, who=choices.whose_day or "")
     return ""
 
 
@@ -75,12 +75,12 @@ def undo(choices: Choices, batch: int, after: int) -> None:
     if after != taps():
         return
     st.session_state[_TAPS] += 1
-    recording.undo(choices, batch)
+    recording.undo(choices, batch, choices.whose_day or "")
 
 
 def last_tap(choices: Choices) -> tuple[int, str] | None:
     """Return the batch of this person's last tap of the day that counts, and what it said."""
-    who, season = choices.who or "", choices.open_season
+    who, season = choices.whose_day or "", choices.open_season
     taps = (
         b.number for b in season.batches() if (b.source, b.who, b.undone) == (SOURCE, who, False)
     )
@@ -116,17 +116,17 @@ def longer(choices: Choices) -> str:
     Of a team it is the day of the one chosen.
     """
     settings = choices.open_season.settings
-    second = choices.open_season.worked(choices.on, choices.who or "").second
+    who = choices.whose_day
+    second = choices.open_season.worked(choices.on, who or "").second
     # who worked on is hours beyond the end
-    gone_s = np.nanmax(np.append(second, 0.0)) - choices.open_season.begun_s(
-        choices.on, choices.who or ""
-    )
-    robot = settings.robot if choices.who is None else settings.member(choices.who).robot
+    begun_s = choices.open_season.begun_s(choices.on, who or "")
+    gone_s = np.nanmax(np.append(second, 0.0)) - begun_s
+    robot = settings.robot if who is None else settings.member(who).robot
     hours = max(robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
     robot = replace(robot, hours=float(min(hours, 24.0)))
     changed = replace(settings, robot=robot)
-    if choices.who is not None:
-        changed = _with_member(settings, replace(settings.member(choices.who), robot=robot))
+    if who is not None:
+        changed = _with_member(settings, replace(settings.member(who), robot=robot))
     choices.open_season.change(changed, settings)
     return _now_used(choices, texts.IN_HOURS.format(hours=number(robot.hours, "g")))
 
@@ -134,7 +134,7 @@ def longer(choices: Choices) -> str:
 def ask_start(choices: Choices) -> None:
     """Where the work begins later than planned, offer to begin now."""
     now, starts = choices.clock.now(), chosen_day.work_begins(choices)
-    begun = len(choices.open_season.worked(choices.on, choices.who or ""))
+    begun = len(choices.open_season.worked(choices.on, choices.whose_day or ""))
     late = now.date() == choices.on and now > starts
     if not begun and late:
         said = texts.SCOUT_START.format(start=f"{starts:%H:%M}", now=f"{now:%H:%M}")
@@ -148,9 +148,9 @@ def _begin_now(choices: Choices) -> str:
     settings = choices.open_season.settings
     starts = choices.clock.now().replace(second=0).time()
     changed = replace(settings, starts=starts)
-    if choices.who is not None:  # the others begin as before
+    if (who := choices.whose_day) is not None:  # the others begin as before
         late_s = seconds(starts) - seconds(settings.starts)
-        changed = _with_member(settings, replace(settings.member(choices.who), starts_s=late_s))
+        changed = _with_member(settings, replace(settings.member(who), starts_s=late_s))
     choices.open_season.change(changed, settings)
     return _now_used(choices, f"{starts:%H:%M}")
 
@@ -163,5 +163,5 @@ def _with_member(settings: MonitoringSettings, member: TeamMember) -> Monitoring
 
 def _now_used(choices: Choices, what: str) -> str:
     """Return what is in use now, and for whom of a team."""
-    name = what if choices.who is None else f"{texts.isolated(choices.who)} · {what}"
+    name = what if choices.whose_day is None else f"{texts.isolated(choices.whose_day)} · {what}"
     return texts.NOW_USED.format(name=name)

@@ -161,14 +161,13 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
     """Note a treatment; say what to beware of because of it."""
     efficacy, season = boxes.said("efficacy"), choices.open_season
     said = _said(boxes)
-    said = replace(said, operator=said.operator or choices.who or "")
     if efficacy is None and not said.product:
         raise SettingError(texts.TREAT_UNSAID)
     works = None if efficacy is None else efficacy / 100
     plants, read = (_plants(boxes) if zones is None else None), _of_file(boxes)
     zoned = None if zones is None or read is not None else zones()
     if zoned is not None:
-        season.advise(choices.on, zoned.advised, choices.who or "")
+        season.advise(choices.on, zoned.advised)
     area = None if zoned is None else zoned.area
     if read is not None:
         area = read.value
@@ -218,7 +217,7 @@ def _say_wait(choices: Choices, product: str, boxes: FreshBoxes) -> str:
     days = boxes.said("wait days")
     if days is None:
         raise SettingError(texts.WAIT_UNSAID)
-    choices.open_season.say_wait(product, int(days), choices.who or "")
+    choices.open_season.say_wait(product, int(days))
     boxes.empty()
     return texts.WAIT_KEPT.format(product=texts.isolated(product))
 
@@ -238,9 +237,7 @@ def _harvest(choices: Choices) -> None:
 @notices.reporting
 def _change_harvest(choices: Choices, key: str) -> str:
     settings = choices.open_season.settings
-    choices.open_season.change(
-        replace(settings, harvest=st.session_state[key]), settings, choices.who or ""
-    )
+    choices.open_season.change(replace(settings, harvest=st.session_state[key]), settings)
     return texts.HARVEST_KEPT
 
 
@@ -267,7 +264,7 @@ def _take_labels(choices: Choices, boxes: FreshBoxes) -> str:
         return ""
     table = Upload(brought.name, brought.getvalue())
     read = read_labels(table)
-    n = choices.open_season.keep_labels(read.value, table.name, choices.who or "")
+    n = choices.open_season.keep_labels(read.value, table.name)
     boxes.empty()
     said = "".join(f"\n- {in_words(message.sentence)}" for message in read.messages)
     return texts.LABELS_KEPT.format(n=n) + said

@@ -203,6 +203,8 @@ DAY: dict[str, Any] = {
         "begins": _MOMENT | {"description": "When this person's work began, or will."},
         "begun": {"type": "boolean", "description": "Whether the hours run by the clock now."},
         "seconds_left": {"type": "number", "description": "Of the hours: now where they run."},
+        "has_route": {"type": "boolean"}
+        | {"description": "False for who is neither of the team nor has rows: no hours either."},
         "route": ROUTE,
         "plan": _PLAN,
         "chance": _LIST | {"description": "Of each plant, in thousandths."},

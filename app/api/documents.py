@@ -110,7 +110,9 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "robot": _charged(season.plot.aisles.worked_by(robot)),
         "begins": _moment(season, on, hours.begins_s),
         "begun": hours.run,
-        "seconds_left": hours.left_s,
+        # who has no route would be given the hours of a robot that a team does without
+        "seconds_left": hours.left_s if ahead.has_route(part) else 0.0,
+        "has_route": ahead.has_route(part),
         "route": _route(route, season.reads(on, scout.name)),
         "plan": plan,
         # evening: what was found today counts

@@ -70,16 +70,16 @@ def are_all_closed(choices: Choices, plan: DayPlan) -> bool:
     if choices.season is None or len(plan.route):
         return False
     left_s = plan.scene.seconds_left
-    closed = choices.season.closed(choices.on, choices.who or "", left_s)
+    closed = choices.season.closed(choices.on, choices.whose_day or "", left_s)
     return is_all_closed(plan.scene, closed)
 
 
 def _left_off(choices: Choices, season: Season, plan: DayPlan) -> list[str]:
     """Return what is left off the route as people may not be there yet, and off a kept one."""
     units = choices.units.in_sentences(choices.on)
-    closed = season.closed(choices.on, choices.who or "", plan.scene.seconds_left)
+    closed = season.closed(choices.on, choices.whose_day or "", plan.scene.seconds_left)
     said = closed_in_words(closed, choices.plot.grid, units)
-    to_kept = season.closed_to_kept(choices.on, choices.who or "")
+    to_kept = season.closed_to_kept(choices.on, choices.whose_day or "")
     plants = closed_plants(to_kept, len(choices.plot.grid))
     kept = np.count_nonzero(plants[chosen_day.given_out(choices)])
     told = texts.KEPT_CLOSED if len(plan.route) else texts.KEPT_ALL_CLOSED

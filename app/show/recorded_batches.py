@@ -6,7 +6,6 @@ from datetime import datetime
 from typing import TYPE_CHECKING
 
 from fieldmon.infestation.inspections import RESULT_CODES
-from fieldmon.planning.members import person_key
 
 from ..words import texts
 from ..words.language import in_words, number
@@ -61,9 +60,9 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
 
 
 def why_to_ask(choices: Choices, batch: Batch, said: BatchContents | None) -> list[str]:
-    """Return why it is asked before a batch is undone: it is another person's, or another day's."""
+    """Return why it is asked before a batch is undone: it is somebody's, or another day's."""
     why, who = [], batch.by(said)
-    if who and person_key(who) != person_key(choices.who or ""):
+    if who:
         why.append(texts.UNDO_ASK_WHO.format(who=texts.isolated(who)))
     if said is not None and {said.first, said.last} != {choices.day}:
         named = choices.units.said_days(said.first, said.last, choices.on)

@@ -52,7 +52,7 @@ def of_day(choices: Choices) -> Report:
 
 def to_come(choices: Choices) -> Callable[[], Report]:
     """Return what makes the report of the chosen day, once it is asked for: it asks no page."""
-    season, shown = choices.season, chosen_day.route(choices)
+    season, shown, who = choices.season, chosen_day.route(choices), choices.whose_day or ""
     state, recorded = chosen_day.states_apart(choices)
     facts = DayFacts(
         choices.plot.field.name, shown.begins, shown.route, chosen_day.chance(choices),
@@ -62,8 +62,8 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         chosen_day.found(choices), shown.worked,
         {} if season is None else results_on(season, choices.on),
         None if season is None else season.planned_and_done(choices.on),
-        who=choices.who or "",
-        team=who_came(season, choices.on) if season and shown.worked and not choices.who else (),
+        who=who,
+        team=who_came(season, choices.on) if season and shown.worked and not who else (),
         missed=season is not None and was_missed(season, choices.on, choices.today),
         treatments=() if season is None else treated_on(season, choices.on),
         labels=() if season is None else season.labels(),

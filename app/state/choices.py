@@ -152,8 +152,12 @@ class Choices:
         return tuple(member.name for member in self.season.planned_by(self.on).team)
 
     @property
-    def who(self) -> str | None:
-        """Return whose day is shown, of the team of that day; None where one works."""
+    def whose_day(self) -> str | None:
+        """Return whose day is shown, of the team of that day; None where one works.
+
+        What is recorded is signed so only where somebody's own route is shown and worked: of what
+        else is done nobody said who did it.
+        """
         if not (team := self.team_that_day):
             return None
         chosen = widget_memory.value(WHOSE_DAY)
@@ -169,8 +173,8 @@ class Choices:
     def plan(self) -> DayPlan:
         """Return the planned day: what is left of it, once something of it was recorded."""
         if self.season is not None:
-            of = self.day, self.who
-            now = cached.revision_on(self.season, self.on, self.who)
+            of = self.day, self.whose_day
+            now = cached.revision_on(self.season, self.on, self.whose_day)
             wished = self.wishes, wishes.were_told(self.place, self.day)
             minute = f"{self.clock.now():%F %H:%M}" if self.is_today else ""
             return cached.season_plan_now(self.key, now, minute, of, self.season, wished)

@@ -76,7 +76,7 @@ def work_begins(choices: Choices) -> datetime:
     if (season := choices.season) is None:
         return datetime.combine(choices.on, STARTS)
     settings = season.planned_by(choices.on)
-    late_s = settings.member(choices.who).starts_s if choices.who else 0.0
+    late_s = settings.member(choices.whose_day).starts_s if choices.whose_day else 0.0
     return datetime.combine(choices.on, settings.starts) + timedelta(seconds=late_s)
 
 
@@ -84,7 +84,7 @@ def route(choices: Choices) -> DayRoute:
     """Return the route as it was driven on a day that was worked, or as it is planned."""
     plan, season = choices.plan(), choices.season
     if season is not None and day_was_worked(season, choices.on, plan.route):
-        of = choices.day, choices.who
+        of = choices.day, choices.whose_day
         done = cached.worked(choices.key, choices.revision, of, season)
         return DayRoute(done, _said_start(done) or work_begins(choices), worked=True)
     return DayRoute(plan.route, starts(choices, plan))
@@ -95,7 +95,7 @@ def with_bound(choices: Choices, plan: DayPlan) -> DayPlan:
 
     Of one of a team that says little, as others share the aisles.
     """
-    if choices.who:
+    if choices.whose_day:
         return plan
     if plan not in _BOUNDED:
         _BOUNDED[plan] = day_bound.with_bound(plan)
@@ -104,7 +104,7 @@ def with_bound(choices: Choices, plan: DayPlan) -> DayPlan:
 
 def given_out(choices: Choices) -> NDArray[np.int32]:
     """Return the plants of the route that a season keeps as given out for the day, or none."""
-    of = choices.day, choices.who
+    of = choices.day, choices.whose_day
     return cached.kept_route(choices.key, choices.revision, of, choices.open_season)
 
 
@@ -116,7 +116,7 @@ def is_given_out(choices: Choices, plan: DayPlan) -> bool:
 
 def planned_and_done(choices: Choices) -> PlannedAndDone | None:
     """Return the plan that a season keeps of the day, held to what was done; None: none."""
-    of = choices.day, choices.who
+    of = choices.day, choices.whose_day
     return cached.planned_and_done(choices.key, choices.revision, of, choices.open_season)
 
 
@@ -230,7 +230,7 @@ def planned_only(choices: Choices, until: date) -> tuple[date, ...]:
 def n_done(choices: Choices) -> int:
     """Return how many plants whoever is shown told of on the day, inspected or not."""
     told = choices.open_season.history.inspections.on(choices.on)
-    return len(np.unique(made_by(told, choices.who).plant))
+    return len(np.unique(made_by(told, choices.whose_day).plant))
 
 
 def still_infested(choices: Choices, day: str) -> PlotEstimate:

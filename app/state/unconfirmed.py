@@ -24,7 +24,7 @@ class Unconfirmed:
     """Results that wait for a word: of which season, from where, and in which form (or none).
 
     And the day (ISO) on which they were brought: nobody is asked on another. And what was said of
-    their file, as of lines that were left out.
+    their file, as of lines that were left out. And who inspected, where they do not say.
     """
 
     season: str
@@ -33,6 +33,7 @@ class Unconfirmed:
     source: str
     form: str = ""
     messages: tuple[ImportMessage, ...] = ()
+    who: str = ""
 
 
 def keep(waiting: Unconfirmed) -> None:

@@ -26,7 +26,7 @@ def show(choices: Choices) -> None:
         st.segmented_control, texts.DRIVE_SOURCE, list(texts.DRIVE_SOURCES), key="drive_source",
         default="planned", required=True, format_func=texts.DRIVE_SOURCES.__getitem__,
     )  # fmt: skip
-    shown = f"{choices.key} {choices.revision} {choices.day} {choices.who} {choices.robot}"
+    shown = f"{choices.key} {choices.revision} {choices.day} {choices.whose_day} {choices.robot}"
     shown = f"{shown} {choices.sampler} {choices.wishes} {choices.prior}"
     if source == "planned":
         day = driving.run(choices, scene, shown).day

@@ -878,6 +878,8 @@ FOUND_AGAIN = (
     "found on an earlier day. Days count finds, the figure above counts plants."
 )
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
+INSPECTED_BY, NOBODY_SAID = "Who inspected", "Nobody said"
+INSPECTED_BY_HELP = "Of inspections of which the file itself does not say who made them."
 CORRECTED_BY = "Who corrected"
 CORRECTED_BY_HELP = (
     "Inspections that QGIS or QField changed or deleted in a copy of this season come in as "
@@ -1241,6 +1243,8 @@ SCOUT_PAGE = {
     "clock_wrong": "The clock of this phone is wrong: set it right.",
     "other_day": "What is recorded now counts for {day}.",
     "loading": "Loading ...", "route_done": "The route is done.",
+    "no_route": "You have no route: you are not of the team, and without rows. Ask for a code with "
+    "rows.",
     "place": "Row {row}, plant {plant}", "no_position": "No position yet", "there": "You are there",
     "photo_asked": "A photo is asked for.", "photo_asked_of": "A photo is asked for: {note}",
     "asked": "Photos asked for: {n}", "photo_comes": "The photo is being kept ...",

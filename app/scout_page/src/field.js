@@ -529,7 +529,11 @@ export class Field {
   /** What is left of the hours: by the clock where they run, else by what the plants told since cost, as the season counts them. */
   secondsLeft() { return this.#secondsLeft(this.#hoursHere().begun); }
 
+  /** Whether nobody plans for whose phone it is: not of the team, and without rows; a server of before says nothing of it. */
+  hasNoRoute() { return this.day?.has_route === false; }
+
   #secondsLeft(begun, more = []) {
+    if (this.hasNoRoute()) return 0;
     if (this.meant() === null) return secondsLeft(this.#hoursHere(), begun, this.time.best());
     const { heard = 0 } = this.day, told = [...this.own.values()].sort((a, b) => a.order - b.order);
     const known = told.findLast((one) => one.order <= heard)?.plant ?? -1;

@@ -178,6 +178,7 @@ export class Page {
   }
 
   #hours() {
+    if (this.field.hasNoRoute()) return "";
     const left = this.field.secondsLeft(), minutes = Math.round(left / 60);
     return left > 0 ? say("time_left", { hours: Math.floor(minutes / 60), minutes: String(minutes % 60).padStart(2, "0") }) : say("time_over");
   }
@@ -204,7 +205,7 @@ export class Page {
     }
     const { draft } = field;
     if (draft.plant < 0) {
-      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place", "data-plant": -1 }, say("route_done")), ...this.#closed(), ...this.#leftOut(), this.#lastSaid(), this.#others(), this.#back());
+      return this.sheet.replaceChildren(...this.#old(), h("p", { class: "large", id: "place", "data-plant": -1 }, say(field.hasNoRoute() ? "no_route" : "route_done")), ...this.#closed(), ...this.#leftOut(), this.#lastSaid(), this.#others(), ...this.#back());
     }
     this.place = h("div", { id: "place", "data-plant": draft.plant });
     this.#drawPlace();
@@ -374,7 +375,7 @@ export class Page {
       draft.notes ? h("p", { class: "noted" }, draft.notes) : null);
   }
 
-  #back() { return h("button", { type: "button", class: "wide", onclick: () => this.planRest() }, say("plan_rest")); }
+  #back() { return this.field.hasNoRoute() ? [] : [h("button", { type: "button", class: "wide", onclick: () => this.planRest() }, say("plan_rest"))]; }
 
   async #photo(file) {
     if (!file) return;
@@ -456,7 +457,7 @@ export class Page {
       ...[...this.stranded].map(([who, n]) => h("p", { class: "bad" }, say("stranded", { n, who }))),
       refused.length ? h("ul", { class: "bad" }, ...refused) : null,
       field.access && act("load_day", () => this.load()),
-      field.day && act("plan_rest", () => this.planRest()),
+      field.day && !field.hasNoRoute() && act("plan_rest", () => this.planRest()),
       refused.length ? act("send_again", () => this.store.again().then(() => this.onTold?.())) : null,
       this.left.records + this.left.photos + refused.length > 0 && act("save_file", () => this.#saveFile()),
       field.seasons.length > 1 && h("fieldset", {}, h("legend", {}, say("plots")), ...field.seasons.map((one) => h("button", {

@@ -844,3 +844,12 @@ test("what no longer fits the hours that run is not ahead on a phone that idles,
   assert.deepEqual([at("08:11:00"), field.plant], [[], 0]);
   assert.equal(at("08:00:00"), field.ahead);
 });
+
+test("who is not of the team and without rows has no hours, and is led to no neighbour of a find", async () => {
+  const { field } = await aField(new ASeason(aDay([], { has_route: false })));
+  assert.deepEqual([field.hasNoRoute(), field.secondsLeft()], [true, 0]);
+  await field.goTo(7);
+  await field.tell("found");
+  assert.deepEqual([field.ahead, field.plant, field.own.size], [[], -1, 1]);
+  assert.equal((await aField()).field.hasNoRoute(), false, "a server of before says nothing of it");
+});

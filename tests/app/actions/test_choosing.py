@@ -5,8 +5,12 @@ from shapely import MultiPolygon, box
 from app.actions import choosing
 from app.words import texts
 from app.words.units import UnitsInLanguage
+from fieldmon.planning.members import TeamMember
 from fieldmon.plot.field import Field
+from fieldmon.plot.robot import Robot
+from tests.app.chosen import in_season
 from tests.app.driving import go, headline, map_of, metric, plants, plot_name
+from tests.monitoring.seasons import BEGINS, a_season
 
 
 def test_another_plot_is_another_map(app):
@@ -83,6 +87,12 @@ def test_a_season_that_is_gone_is_waited_for_and_nothing_stands_in_its_place(sea
     season_app.run()
     assert not season_app.error
     assert season_app.metric
+
+
+def test_the_line_of_a_phone_has_the_hours_of_the_one_of_a_team_whose_day_is_shown(tmp_path):
+    team = tuple(TeamMember(name, Robot(hours=h)) for name, h in (("Ann", 3.0), ("Dan", 2.0)))
+    season = a_season(tmp_path / "s.gpkg", team=team)
+    assert choosing._where_and_when(in_season(season, BEGINS)).endswith(" 3\u00a0h")
 
 
 def test_who_waits_with_a_phone_is_told_so_outside_of_the_box_that_folds(season_app, monkeypatch):

@@ -12,6 +12,7 @@ import streamlit as st
 
 from app.actions import recording
 from app.state import seasons_folder, unconfirmed
+from app.state.choices import WHOSE_DAY
 from app.state.fresh_boxes import FreshBoxes
 from app.state.unconfirmed import Unconfirmed
 from app.words import texts
@@ -19,6 +20,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
 from fieldmon.plot.grid import plant_at, plant_numbers
+from tests.app.actions.test_scouting import of_two
 from tests.app.chosen import in_season
 from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
 from tests.monitoring.seasons import a_season
@@ -43,6 +45,49 @@ def test_one_plant_is_recorded_and_undone(season_app, season):
     go(season_app, "record")
     press(season_app, "Redo")
     assert season().history.inspections.plant.tolist() == [plant]
+
+
+def test_in_a_team_who_inspected_or_treated_is_who_is_said_to_have(season_app, season):
+    of_two(season)
+    go(season_app, "record")
+    route = boxed(season_app.number_input, "stops_done").key
+
+    def say_one(plant, who=None, result=CLEAN):
+        boxed(season_app.number_input, "one_row").set_value(3)
+        boxed(season_app.number_input, "one_plant").set_value(plant)
+        boxed(season_app.segmented_control, "one_result").set_value(result)
+        if who is not None:
+            next(one for one in season_app.selectbox if one.label == texts.INSPECTED_BY
+                 and "one_plant" in one.key).set_value(who)  # fmt: skip
+        send(season_app, "one")
+
+    say_one(4)
+    assert season().history.inspections.who.tolist() == [""]
+    say_one(5, "Dan")
+    say_one(6)
+    assert season().history.inspections.who.tolist() == ["", "Dan", ""]
+    # what waits for a word is signed as it was brought
+    say_one(6, "Dan", FOUND)
+    press(season_app, "The new one holds")
+    assert season().history.inspections.who.tolist() == ["", "Dan", "Dan"]
+    season_app.button(key="undo 1").click().run()
+    assert season().log()[-1].who == ""
+    table = b"row,plant,result\n2,5,clean\n"
+    boxed(season_app.file_uploader, "findings_file").upload("day.csv", table).run()
+    season_app.button(key="record_file").click().run()
+    assert season().history.inspections.who.tolist() == ["Dan", "Dan", ""]
+    boxed(season_app.number_input, "efficacy").set_value(80)
+    boxed(season_app.text_input, "product").set_value("Oil")
+    send(season_app, "treatment")
+    assert [one.application.operator for one in season().treatments()] == [""]
+    # the stops are of the route of the one whose day is chosen above them
+    season_app.segmented_control(key=WHOSE_DAY).set_value("Dan").run()
+    box = boxed(season_app.number_input, "stops_done")
+    assert box.key != route
+    box.set_value(1)
+    send(season_app, "route")
+    assert season().history.inspections.who.tolist()[-1] == "Dan"
+    assert season().batches()[0].who == "Dan"
 
 
 @pytest.mark.parametrize(

@@ -267,6 +267,21 @@ def test_who_is_of_the_team_has_its_route_though_an_older_file_has_rows_for_the_
     assert (line.rows, line.ahead, line.plan) == (None, len(rest["route"]["plants"]), rest["plan"])
 
 
+def test_who_is_taken_out_of_the_team_has_neither_route_nor_hours(tmp_path):
+    season = a_season(tmp_path / "team.gpkg")
+    before = season.settings
+    season.change(replace(before, team=team_of(2, before.robot)), before)
+    left = scouts.key_owner(season, scouts.let_in(season, "robot-2"))
+    told = json.loads(day_document(season, left, BEGINS))
+    assert told["has_route"]
+    assert told["seconds_left"] == pytest.approx(before.robot.day_s)
+    before = season.settings
+    season.change(replace(before, team=before.team[:1]), before)
+    told = json.loads(day_document(season, left, BEGINS))
+    jsonschema.validate(told, description.DAY)
+    assert (told["has_route"], told["seconds_left"], told["route"]["plants"]) == (False, 0.0, [])
+
+
 def test_the_hours_of_today_run_by_the_clock_from_when_work_began(served, scout, monkeypatch):
     season, on = served.season, BEGINS + timedelta(days=1)  # a day of which nothing is recorded
     starts = local_clock(season.plot.field).moment(on, season.settings.starts)

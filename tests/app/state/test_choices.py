@@ -43,8 +43,8 @@ def test_a_day_worked_by_another_team_offers_that_one(tmp_path, monkeypatch):
     clock_on(monkeypatch, 1)
     before, today = in_season(season, BEGINS), in_season(season, on(1))
     assert (before.team_that_day, before.team) == (("rob1", "Mia"), ("Noa",))
-    assert (today.team_that_day, today.who) == (("Noa",), "Noa")
-    assert before.who == "rob1"
+    assert (today.team_that_day, today.whose_day) == (("Noa",), "Noa")
+    assert before.whose_day == "rob1"
     assert chosen_day.work_begins(before)
     assert before.plan().route.notes.who == "rob1"
 

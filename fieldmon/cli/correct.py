@@ -130,11 +130,12 @@ def _of_export(season: Season, file: Path, who: str, *, confirmed: bool) -> int:
     options = InspectionOptions().on(season.plot.field)
     with working_folder() as folder:
         with Terminal().answering():
-            copy, added = edited_copy(season, file, options, Path(folder))
-        n = season.take_corrections(copy, file.name, who, confirmed=confirmed)
-    if added:
-        typer.echo(
-            f"{added} inspection{'s' if added > 1 else ''} added there can be taken with: "
-            "fieldmon record"
-        )
+            edited = edited_copy(season, file, options, Path(folder))
+        n = season.take_corrections(edited.path, file.name, who, confirmed=confirmed)
+    if edited.n_added:
+        s = "s" if edited.n_added > 1 else ""
+        typer.echo(f"{edited.n_added} inspection{s} added there can be taken with: fieldmon record")
+    if edited.n_notes:
+        s = "s" if edited.n_notes > 1 else ""
+        typer.echo(f"{edited.n_notes} note{s} changed there can be joined with: fieldmon record")
     return n

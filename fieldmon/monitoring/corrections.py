@@ -6,11 +6,13 @@ Those that other programs make are in `outside_changes` and `copy_corrections`.
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import date, time
+from datetime import UTC, date, datetime, time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
+from fieldmon.errors import SettingError
 from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.infestation.inspections import RESULT_CODES, RESULT_NAMES, SKIPPED, Inspections
 from fieldmon.monitoring import (
@@ -25,11 +27,13 @@ from fieldmon.monitoring.geopackage import touch
 from fieldmon.monitoring.inspection_table import time_text
 from fieldmon.monitoring.outside_changes import OutsideChange
 from fieldmon.monitoring.schema import INSPECTED, INSPECTIONS
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
 
     from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
 _OTHERWISE = (
@@ -80,6 +84,33 @@ def take(
     batches.end(db, batch, len(inspections))
     touch(db, INSPECTIONS.name)
     return tuple(outside_changes.in_words(db, one, plot[0]) for one in taken)
+
+
+def must_have_come(field: Field, on: date, at: time | None) -> None:
+    """Raise `SettingError` if a moment, or a whole day, lies ahead of the plot's clock.
+
+    So it does if that clock never showed it.
+    """
+    clock = local_clock(field)
+    now = clock.now()
+    told = datetime.combine(on, at or time())
+    if at is not None and clock.at(clock.moment(on, at).astimezone(UTC)) != told:
+        raise SettingError(
+            worded(
+                "An inspection must be of a time that the plot's clock showed, but {day} is "
+                "none: clocks were put forward over it.",
+                day=f"{told:%Y-%m-%d %H:%M}",
+            )
+        )
+    if (on, at or now.time()) > (now.date(), now.time()):
+        raise SettingError(
+            worded(
+                "An inspection must be of a moment that has come, but {day} has not: on the "
+                "plot it is {now}.",
+                day=str(on) if at is None or on > now.date() else f"{on} {at:%H:%M}",
+                now=f"{now:%Y-%m-%d %H:%M}",
+            )
+        )
 
 
 def made(db: sqlite3.Connection, row: int) -> tuple[date, time | None]:

@@ -9,13 +9,16 @@ as one (`fieldmon correct`).
 from __future__ import annotations
 
 from contextlib import closing
+from datetime import date
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem, ObservationError
 from fieldmon.infestation.inspection_columns import COLUMNS, IDENTIFYING
+from fieldmon.io.import_report import Severity
 from fieldmon.io.options import source_name
 from fieldmon.monitoring import inspection_table
+from fieldmon.monitoring.corrections import must_have_come
 from fieldmon.monitoring.rows_that_count import COUNTS
 from fieldmon.monitoring.transactions import connect, copy_season
 
@@ -30,6 +33,8 @@ if TYPE_CHECKING:
 
 # anybody may change the others; `record` takes what they say
 _WATCHED = tuple(column for column in COLUMNS if column.watched)
+(_NOTES,) = (column for column in COLUMNS if column.name == "notes")
+_LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
 _SEEN = {column.kept for column in IDENTIFYING}
 _SAME_VISIT = {"plant", "date"}
 
@@ -53,78 +58,131 @@ class ChangedInspection(NamedTuple):
         return not _SAME_VISIT & said and bool(_SEEN & said)
 
 
-def changed_in(
-    season: Season, rows: InspectionRows, options: InspectionOptions
-) -> tuple[list[ChangedInspection], list[str], dict[int, str]]:
-    """Return which inspections of a season a file exported from it says otherwise.
+class Edits(NamedTuple):
+    """What a file exported from a season says otherwise.
 
-    And the digests of those that the season does not hold, and why records cannot be told, by
-    their number in the file. What was changed so already is no change.
+    Parameters
+    ----------
+    changed
+        Inspections that count in the season, with what they say now.
+    unknown
+        Digests of those that do not.
+    twice
+        Digests that stand twice in the file, with something else each time.
+    unsure
+        Why records cannot be told, by their number in the file.
+    n_notes
+        How many have other notes, which are no corrections.
+    """
+
+    changed: list[ChangedInspection]
+    unknown: list[str]
+    twice: set[str]
+    unsure: dict[int, str]
+    n_notes: int
+
+
+def edits_in(season: Season, rows: InspectionRows, options: InspectionOptions) -> Edits:
+    """Return what a file exported from a season says otherwise; of columns it lacks, nothing.
+
+    What was changed so already is no change.
     """
     from fieldmon.io.readers.inspections import exported  # noqa: PLC0415 - half a second to import
 
     told, marks, why = exported(rows, season.plot.grid, options)
+    edits = Edits([], [], set(), why, 0)
     if not marks:
-        return [], [], why
-    names = ", ".join(column.kept for column in _WATCHED)
+        return edits
+    lacked = _lacked(rows)
+    watched = [one for one in _WATCHED if one.kept not in lacked]
+    names = ", ".join(one.kept for one in (*watched, _NOTES))
     with season.store.reading() as db:
         # of those that stand back for one another, that which counts
         held = {
-            mark: (fid, undone, values)
-            for fid, undone, mark, *values in db.execute(
+            mark: (fid, undone, values, notes)
+            for fid, undone, mark, *values, notes in db.execute(
                 f"SELECT fid, undone, digest, {names} FROM inspections "  # noqa: S608 - ours
                 "WHERE digest NOTNULL ORDER BY undone = 0, fid"
             )
         }
-    counting = {_key(values) for _, undone, values in held.values() if undone == COUNTS}
+    counting = {_key(values) for _, undone, values, _ in held.values() if undone == COUNTS}
     now_said = inspection_table.kept_columns(told)
-    changed, unknown = [], []
-    for mark, *now in zip(marks, *(now_said[one.kept] for one in _WATCHED), strict=True):
+    said_of: dict[str, tuple[Any, ...]] = {}
+    n_notes = 0
+    for mark, notes, *now in zip(
+        marks, now_said[_NOTES.kept], *(now_said[one.kept] for one in watched), strict=True
+    ):
+        if said_of.setdefault(mark, _key(now)) != _key(now):
+            edits.twice.add(mark)
         if mark not in held:
-            unknown.append(mark)
+            edits.unknown.append(mark)
             continue
-        row, undone, was = held[mark]
-        pairs = zip(_WATCHED, was, now, strict=True)
+        row, undone, was, noted = held[mark]
+        n_notes += bool(notes) and notes != (noted or "")
+        pairs = zip(watched, was, now, strict=True)
         says = {one.kept: new for one, old, new in pairs if _key((old,)) != _key((new,))}
         if not says or _key(now) in counting:
             continue
         if undone == COUNTS:
-            changed.append(ChangedInspection(row, says))
+            edits.changed.append(ChangedInspection(row, says))
         else:
-            unknown.append(mark)
-    return changed, unknown, why
+            edits.unknown.append(mark)
+    return edits._replace(n_notes=n_notes)
+
+
+class EditedCopy(NamedTuple):
+    """A copy of a season, changed as a file exported from it; and how many the file has more.
+
+    Inspections and notes that were added or changed there, which `record` takes.
+    """
+
+    path: Path
+    n_added: int
+    n_notes: int
 
 
 def edited_copy(
     season: Season, source: Source, options: InspectionOptions, folder: Path
-) -> tuple[Path, int]:
-    """Return a copy of a season changed as a file exported from it, and how many were added there.
+) -> EditedCopy:
+    """Return a copy of a season changed as a file exported from it.
 
     `SeasonCorrections.take_corrections` takes what was changed. What is missing in the file was not
-    deleted: a selection may be exported. What was added is no correction.
+    deleted: a selection may be exported, of rows and of columns. What was added is no correction.
 
     Raises
     ------
     ObservationError
-        If the file holds no inspections exported from a season, or one whose plant is not sure.
+        If the file holds no inspections exported from a season, or what cannot be read for certain.
     FileProblem
         If some are of another season, or count no longer in this one.
+    SettingError
+        If one was moved to a day that has not come.
     """
     from fieldmon.io.read import read_inspection_rows  # noqa: PLC0415 - as above
 
-    rows, name = read_inspection_rows(source, options).value, source_name(source)
+    read, name = read_inspection_rows(source, options), source_name(source)
+    rows = read.value
     n_exported = 0 if rows.mark is None else int((rows.mark != "").sum())
-    if not n_exported:
+    doubts = [one.sentence for one in read.messages if one.severity in _LEFT_OUT]
+    if doubts and (n_exported or not len(rows)):
+        raise ObservationError(
+            worded(
+                "What was corrected in an export must be read for certain, but of {name}: {doubts} "
+                "Mend it there, or change it in the season's own file; nothing was taken.",
+                name=name, doubts=joined(" ", doubts),
+            )
+        )  # fmt: skip
+    if not n_exported or "result" in _lacked(rows):
         raise ObservationError(
             worded(
                 "A file of corrections must hold inspections exported from the season, with their "
-                "columns digest and undone, but {name} holds none. What is new comes with: "
+                "columns result, digest and undone, but {name} holds none. What is new comes with: "
                 "fieldmon record",
                 name=name,
             )
         )
-    changed, unknown, why = changed_in(season, rows, options)
-    for record, doubt in why.items():
+    edits = edits_in(season, rows, options)
+    for record, doubt in edits.unsure.items():
         raise ObservationError(
             worded(
                 "An exported inspection must say plant, date and result as the season does, but "
@@ -133,25 +191,43 @@ def edited_copy(
                 record=record, name=name, doubt=doubt,
             )
         )  # fmt: skip
-    if unknown:
+    if edits.twice:
+        raise ObservationError(
+            worded(
+                "Each exported inspection must stand once in a file of corrections, but {n} of "
+                "{name} {n:stands|stand} there twice and {n:says|say} something else each time, "
+                "as a copied feature does. Empty the digest of the new ones; nothing was taken.",
+                n=len(edits.twice), name=name,
+            )
+        )  # fmt: skip
+    if edits.unknown:
         raise FileProblem(
             worded(
                 "What was corrected in an export must count in the season, but {n} "
                 "{n:inspection|inspections} of {name} {n:is|are} not in it, or "
                 "{n:was|were} corrected or taken back there since. Export the layer anew and "
                 "correct that; nothing was taken.",
-                n=len(unknown), name=name,
+                n=len(edits.unknown), name=name,
             )
         )  # fmt: skip
+    for one in edits.changed:
+        if "date" in one.says:
+            must_have_come(season.plot.field, date.fromisoformat(one.says["date"]), None)
     copy = folder / "export.gpkg"
     copy_season(season.path, copy)
     with closing(connect(copy)) as db:
         db.execute("BEGIN")
-        for row, says in changed:
+        for row, says in edits.changed:
             sets = ", ".join(f"{column} = ?" for column in says)
             db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", (*says.values(), row))  # noqa: S608 - ours
         db.execute("COMMIT")
-    return copy, len(rows) - n_exported
+    return EditedCopy(copy, len(rows) - n_exported, edits.n_notes)
+
+
+def _lacked(rows: InspectionRows) -> set[str]:
+    """Return which columns of a season's inspections a file does not have."""
+    said = [] if rows.lacks is None else rows.lacks[:1].tolist()  # each record says the same
+    return {name for one in said for name in one.split(",")}
 
 
 def _key(values: Iterable[Any]) -> tuple[Any, ...]:

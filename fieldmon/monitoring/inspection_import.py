@@ -13,7 +13,7 @@ from fieldmon.io.import_report import doubtful
 from fieldmon.io.options import Upload, source_name
 from fieldmon.monitoring import findings, repeated_recordings
 from fieldmon.monitoring.batches import Recorded
-from fieldmon.monitoring.exported_inspections import changed_in
+from fieldmon.monitoring.exported_inspections import edits_in
 from fieldmon.monitoring.transactions import MAGIC, connect, copy_season, is_season
 
 if TYPE_CHECKING:
@@ -122,8 +122,10 @@ def read_brought(
         source = counting_copy(copy, folder / "new", corrected)
     rows = read_inspection_rows(source, options)
     read = _dated_on_plot(season, rows, options)
-    changed, _, unsure = changed_in(season, rows.value, options) if copy is None else ([], [], {})
-    n_changed = sum(one.is_seen_otherwise for one in changed) + len(unsure)
+    n_changed = 0
+    if copy is None:
+        edits = edits_in(season, rows.value, options)
+        n_changed = sum(one.is_seen_otherwise for one in edits.changed) + len(edits.unsure)
     messages = (*read.messages, *treated, *_about_changed(n_changed))
     return BroughtFile(name, read.value, messages, None, copy, len(corrected), n_changed)
 

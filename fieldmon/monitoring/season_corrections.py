@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import UTC, datetime, time
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.kinds import checked
@@ -14,11 +13,10 @@ from fieldmon.monitoring.people import written_in
 from fieldmon.monitoring.season_copies import SeasonCopies
 from fieldmon.monitoring.settings import seconds
 from fieldmon.monitoring.transactions import Store
-from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from datetime import date
+    from datetime import date, time
     from pathlib import Path
 
 
@@ -82,7 +80,7 @@ class SeasonCorrections(SeasonCopies):
             if on is not None:
                 settings.day(on)
             day, held_at = corrections.made(db, inspection)
-            self._must_have_come(on or day, at or held_at)
+            corrections.must_have_come(self.plot.field, on or day, at or held_at)
             if on in {None, day} and at in {None, held_at}:
                 raise SettingError(
                     worded(
@@ -98,32 +96,6 @@ class SeasonCorrections(SeasonCopies):
             self._may_be_taken(db, said, confirmed=confirmed)
             self._corrected(db, said, who, here=True)
         return said[0]
-
-    def _must_have_come(self, on: date, at: time | None) -> None:
-        """Raise `SettingError` if a moment, or a whole day, lies ahead of the plot's clock.
-
-        So it does if that clock never showed it.
-        """
-        clock = local_clock(self.plot.field)
-        now = clock.now()
-        told = datetime.combine(on, at or time())
-        if at is not None and clock.at(clock.moment(on, at).astimezone(UTC)) != told:
-            raise SettingError(
-                worded(
-                    "An inspection must be of a time that the plot's clock showed, but {day} is "
-                    "none: clocks were put forward over it.",
-                    day=f"{told:%Y-%m-%d %H:%M}",
-                )
-            )
-        if (on, at or now.time()) > (now.date(), now.time()):
-            raise SettingError(
-                worded(
-                    "An inspection must be of a moment that has come, but {day} has not: on the "
-                    "plot it is {now}.",
-                    day=str(on) if at is None or on > now.date() else f"{on} {at:%H:%M}",
-                    now=f"{now:%Y-%m-%d %H:%M}",
-                )
-            )
 
     def corrections_in(self, copy: Path) -> tuple[outside_changes.OutsideChange, ...]:
         """Return what another program changed of inspections in a copy of this season.

@@ -7,7 +7,7 @@ import pandas as pd
 import pyogrio
 import pytest
 
-from fieldmon.errors import FileProblem, ObservationError
+from fieldmon.errors import FieldmonError, FileProblem, ObservationError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.monitoring import Season
@@ -45,8 +45,8 @@ def brought(season, layer, folder, name="edited.gpkg"):
         pd.DataFrame(layer.drop(columns="geometry")).to_csv(file, index=False)
     else:
         pyogrio.write_dataframe(layer, file)
-    copy, added = edited_copy(season, file, OPTIONS, folder / name)
-    return season.take_corrections(copy, name, "Cid"), added
+    edited = edited_copy(season, file, OPTIONS, folder / name)
+    return season.take_corrections(edited.path, name, "Cid"), edited.n_added
 
 
 @pytest.mark.parametrize("name", ["edited.gpkg", "edited.geojson", "edited.csv"])
@@ -70,6 +70,36 @@ def test_what_an_export_says_otherwise_is_corrected_and_undone(season, tmp_path,
     assert season.batches()[0].who == "Cid"
     assert brought(season, layer, tmp_path, name) == (0, 0)  # twice is once
     season.undo()
+    assert season.history.inspections.result.tolist() == held.result.tolist()
+
+
+def test_what_an_export_does_not_say_or_nobody_can_read_erases_nothing(season, tmp_path):
+    layer, held = exported(season), season.history.inspections
+    mine = layer["plant"] == 301
+    some = layer[["plant", "date", "result", "digest", "undone", "geometry"]].copy()
+    assert brought(season, some, tmp_path, "some.csv") == (0, 0)
+    some.loc[layer["plant"] == 300, "result"] = "found"
+    assert brought(season, some, tmp_path) == (1, 0)
+    now = season.history.inspections
+    assert np.array_equal(now.count, held.count, equal_nan=True)
+    assert now.who.tolist() == held.who.tolist()
+    season.undo()
+    for column, value in [("result", None), ("result", "maybe"), ("count", "abc"), ("count", "-3"),
+                          ("time", "25:00"), ("time", "7h15")]:  # fmt: skip
+        wrong = layer.astype({column: object})
+        wrong.loc[mine, column] = value
+        if column == "result":
+            wrong.loc[mine, "count"] = None
+        with pytest.raises(ObservationError, match="must be read for certain"):
+            brought(season, wrong, tmp_path, "wrong.csv")
+    ahead = layer.copy()
+    ahead.loc[mine, "date"] = "2199-04-07"
+    with pytest.raises(FieldmonError, match="2199"):
+        brought(season, ahead, tmp_path)
+    pasted = layer[mine].copy()
+    pasted["result"], pasted["count"] = "clean", None
+    with pytest.raises(ObservationError, match="stands there twice"):
+        brought(season, pd.concat([layer, pasted]), tmp_path)
     assert season.history.inspections.result.tolist() == held.result.tolist()
 
 

@@ -104,7 +104,7 @@ def test_today_tells_what_is_left_off_and_that_a_kept_plan_leads_there(
     waits = Application("soap", reentry_hours=24.0, ended=time(5))
     season.treat(BEGINS, 0.0, plants=line == row, application=waits)
     today = SimpleNamespace(
-        **vars(choices(season)), plot=season.plot, who=None,
+        **vars(choices(season)), plot=season.plot, whose_day=None,
         plan=lambda: season.plan(BEGINS, keep=False),
     )  # fmt: skip
     cautions.show_today(today, today.plan())
@@ -143,7 +143,7 @@ def test_today_tells_how_many_plants_are_left_out_as_nobody_could_inspect_them(s
     season.record(seen)
     for days, said in ((1, 1), (2, 0)):
         on = BEGINS + timedelta(days=days)
-        today = SimpleNamespace(**vars(choices(season, on)), plot=season.plot, who=None)
+        today = SimpleNamespace(**vars(choices(season, on)), plot=season.plot, whose_day=None)
         plan = season.plan(on, keep=False)
         today.plan = lambda plan=plan: plan
         shown.clear()

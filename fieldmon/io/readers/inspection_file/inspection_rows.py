@@ -64,6 +64,8 @@ class InspectionRows:
     mark
         The digest by which a season's file knows it, where it was exported from one; else empty.
         None: all empty.
+    lacks
+        Which columns of a season's inspections the file does not have, between commas.
     """
 
     plant: NDArray[np.int64]
@@ -91,6 +93,7 @@ class InspectionRows:
     plot_called: NDArray[np.str_] | None = None
     plot_column: NDArray[np.str_] | None = None
     mark: NDArray[np.str_] | None = None
+    lacks: NDArray[np.str_] | None = None
 
     def __len__(self) -> int:
         """Return the number of records."""

@@ -13,7 +13,7 @@ import shapely
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.infestation.inspection_columns import BESIDE
+from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.formats.open_layer import layers_of, open_layer
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful, guessed, seen
@@ -92,7 +92,8 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
     layer = by_plant(by_day(_without_undone(layer), options), options)
     columns = columns_of(layer, options)
     results = results_in(layer, columns, options)
-    said, notes = results.said, _notes(layer, results)
+    said, notes, mark = results.said, _notes(layer, results), _marks(layer)
+    messages += _about_erased((mark != "") & ~(results.said | results.unread))
     messages += _about_silence(results, notes, in_names=columns.marks is not None)
     lonlat, accuracy_m, unread, more = positions_in(layer, columns, options)
     plant, line, number, face = named_plants(layer, columns)
@@ -122,7 +123,8 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
         detects=detects_in(layer, columns, file or layer.name),
         plot_called=texts_in(layer, plot := plot_column(layer, columns, options)),
         plot_column=np.full(len(layer), plot or ""),
-        mark=_marks(layer),
+        mark=mark,
+        lacks=np.full(len(layer), _lacking(layer)),
     )
     kept = whole.take(said)
     pests = texts_in(layer, columns.species)[said].tolist()
@@ -169,6 +171,18 @@ def _about_silence(
             )
         )
     return messages
+
+
+def _about_erased(erased: NDArray[np.bool_]) -> list[ImportMessage]:
+    """Return a doubt about inspections exported from a season whose result is gone since."""
+    if not (n := int(erased.sum())):
+        return []
+    said = worded(
+        "{n} {n:inspection|inspections} exported from a season {n:has|have} no result any more: "
+        "left unknown.",
+        n=n,
+    )
+    return [doubtful(said)]
 
 
 def _rest(layer: Layer, columns: InspectionColumns, options: InspectionOptions) -> NDArray[np.str_]:
@@ -223,6 +237,11 @@ def _marks(layer: Layer) -> NDArray[np.str_]:
     """Return by which digest a season's file knows each record ``(n,)``; empty: it is of none."""
     name = None if _of_season("undone", layer) is None else _of_season("digest", layer)
     return texts_in(layer, name)
+
+
+def _lacking(layer: Layer) -> str:
+    """Return which columns of a season's inspections a layer does not have, between commas."""
+    return ",".join(one.kept for one in COLUMNS if _of_season(one.kept, layer) is None)
 
 
 def _of_season(column: str, layer: Layer) -> str | None:

@@ -63,6 +63,10 @@ class FacesOfFrame(NamedTuple):
     both: NDArray[np.bool_]
     planting: Planting | None
 
+    def __repr__(self) -> str:
+        """Say of how many plants."""
+        return f"<FacesOfFrame: both of {int(self.both.sum())} of {len(self.both)} plants>"
+
     def doubts(self, grid: PlantGrid) -> list[str]:
         """Return what to say where the faces that are made are others than the frame's.
 

@@ -270,7 +270,7 @@ def _season(options: DriveOptions, file: Path) -> None:
             try:
                 drive_day(today, aisles, (worker, robot), recording.note, so_far)
             finally:
-                _write_bag(recording, begins, options)
+                _write_bag(recording, begins, options, goes_on=before > 0)
         except BaseException as end:  # whatever ended it: what was driven is written
             _write(so_far, on, options, _name(options), before)
             _tell_replanned(today.replanned - 1)
@@ -345,7 +345,7 @@ def _team_day(
             if not each.stops:
                 continue
         _write(each, on, mine, name, before[name])
-        _write_bag(recordings[name], begins[name], mine)
+        _write_bag(recordings[name], begins[name], mine, goes_on=before[name] > 0)
     _tell_replanned(today.replanned - 1)
     if today.stops:
         _tell_stopped(season, on, today.batch)
@@ -443,12 +443,18 @@ def _begins(season: Season, on: date, begun_s: float) -> datetime:
     return local_clock(season.plot.field).moment(begins.date(), begins.time())
 
 
-def _write_bag(recording: Recording, begins: datetime, options: DriveOptions) -> None:
+def _write_bag(
+    recording: Recording, begins: datetime, options: DriveOptions, *, goes_on: bool = False
+) -> None:
+    """Write the bag, if asked for: of a day that goes on, beside that of what was driven before."""
     if options.bag is None:
         return
     from fieldmon.drive.bag import write_bag
 
-    bag, *layouts = write_bag(recording, begins, options.bag)
+    to, part = options.bag, 2
+    while goes_on and to.exists():
+        to, part = options.bag.with_stem(f"{options.bag.stem}-{part}"), part + 1
+    bag, *layouts = write_bag(recording, begins, to)
     beside = " and ".join(path.name for path in layouts)
     typer.echo(f"Bag written to {bag}; layouts beside it: {beside}")
 

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 from shapely import MultiPolygon
 
 from fieldmon.compute.arguments import must_be
 from fieldmon.compute.rounding_step import step_of
-from fieldmon.compute.wording import first_few
+from fieldmon.compute.wording import counted, first_few
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.near_doubles import near_doubles
-from fieldmon.plot.plant_names import PlantNames
+from fieldmon.plot.plant_names import FACES, PlantNames
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import metres_per_unit
 from fieldmon.plot.rounding import doubts_of_rounding
@@ -55,30 +56,70 @@ def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> G
     )
 
 
+class FacesOfFrame(NamedTuple):
+    """Which plants of a frame have both faces in it, and whether its planting was said besides."""
+
+    lonlat: NDArray[np.float64]
+    both: NDArray[np.bool_]
+    planting: Planting | None
+
+    def __repr__(self) -> str:
+        """Say of how many plants."""
+        return f"<FacesOfFrame: both of {int(self.both.sum())} of {len(self.both)} plants>"
+
+    def doubts(self, grid: PlantGrid) -> list[str]:
+        """Return what to say where the faces that are made are others than the frame's.
+
+        Raises
+        ------
+        PlotError
+            If nobody said the planting: they would be made up, or dropped.
+        """
+        n_both, n_one = int(self.both.sum()), int((~self.both).sum())
+        one = f" and one face of {n_one:,}" if n_one else ""
+        found = f"The GeoDataFrame has both faces of {counted(n_both, 'plant')}{one}"
+        if self.planting is not None and self.planting.faces == 1:
+            keep = "Say Planting(faces=2, ...) to keep both."
+            return [f"{found}, but one is inspected by the planting. {keep}"]
+        made = grid.twin >= 0
+        if (self.both[cKDTree(self.lonlat).query(grid.lonlat())[1]] == made).all():
+            return []
+        if self.planting is not None:
+            return [f"{found}, but the planting says of which plants both are inspected."]
+        raise PlotError(
+            f"Both faces must be there of all plants, or of all but those that look at no other "
+            f"row. {found}. Keep both faces of each plant, or one line of each, "
+            'gdf.drop_duplicates("geometry"), and say Planting(faces=2) if both are inspected.'
+        )
+
+
 def faces_in(
     frame: GeoDataFrame | GeoSeries, planting: Planting | None
-) -> tuple[GeoDataFrame | GeoSeries, Planting | None, list[str]]:
+) -> tuple[GeoDataFrame | GeoSeries, Planting | None, FacesOfFrame | None]:
     """Return a frame with each plant once, of whose faces its column ``face`` tells.
 
-    And a planting of both faces where none was given, and what there is to say of it.
+    And a planting of both faces where none was given, and which plants have both; None: none has.
     """
-    if "face" not in getattr(frame, "columns", ()):
-        return frame, planting, []
-    place, face = frame.geometry.to_wkb(), frame["face"].astype(str).str.strip()
-    first, second = face.isin(["1", "1.0"]), face.isin(["2", "2.0"])
-    again = second & place.isin(place[first])
-    if not again.any():
-        return frame, planting, []
-    both = first & place.isin(place[second])
-    said = []
-    if planting is None:
-        planting = Planting(faces=2, outer_faces=bool(both[first].all()))
-    elif planting.faces == 1:
-        said.append(
-            f"The GeoDataFrame has both faces of {int(both.sum())} plants, but one is inspected by "
-            "the planting. Say Planting(faces=2, ...) to keep both."
-        )
-    return frame[~again.to_numpy()], planting, said
+    if "face" not in getattr(frame, "columns", ()) or getattr(frame, "crs", None) is None:
+        return frame, planting, None
+    words = [_written(one).casefold().removesuffix(".0") for one in frame["face"].tolist()]
+    placed = _placed(frame.geometry.to_numpy())
+    face = np.where(placed, [FACES.get(word, 0) for word in words], 0)
+    of_face: tuple[dict[bytes, int], ...] = ({}, {}, {})
+    for i, place in enumerate(frame.geometry.to_wkb().tolist()):
+        of_face[face[i]].setdefault(place, i)
+    both = of_face[1].keys() & of_face[2].keys()
+    if not both:
+        return frame, planting, None
+    has_both, kept = np.zeros(len(frame), np.bool_), np.ones(len(frame), np.bool_)
+    has_both[[of_face[1][place] for place in both]] = True
+    kept[[of_face[2][place] for place in both]] = False
+    outer = bool(has_both[kept & (face > 0)].all())
+    shapes = frame.geometry.to_crs(_DEGREES)
+    points = kept & placed & shapes.geom_type.isin(["Point", "MultiPoint"]).to_numpy()
+    lonlat, which = shapely.get_coordinates(shapes.to_numpy()[points], return_index=True)
+    of_frame = FacesOfFrame(lonlat, has_both[points][which], planting)
+    return frame[kept], planting or Planting(faces=2, outer_faces=outer), of_frame
 
 
 def boundary_and_plants(

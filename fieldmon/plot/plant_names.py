@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     Int = NDArray[np.int64]
 
+#: what people call the first and the second face of a plant
+FACES = {"1": 1, "a": 1, "2": 2, "b": 2}
 # names in a sentence
 _NAMED = 12
 # a whole number at the end of a name: 7, 07, 7.0, ROW07, ROW01VINE07; not 2.07

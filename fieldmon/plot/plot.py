@@ -307,7 +307,8 @@ class Plot:
             One polygon, points, or both, in any coordinate system; rows are found from the
             points, or laid in the polygon. Columns ``row``, ``plant`` (or ``number``) and
             ``block`` say what points are called, as in a file of plants. A column ``face`` of 1 and
-            2, as `to_geopandas` has it, says of which plants both faces are inspected.
+            2, as `to_geopandas` has it, or a and b, says whether both faces are inspected: of all
+            plants, or of all but those that look at no other row.
         planting
             Bearing, spacings and headland; None: the defaults (rows 4 m and plants 3 m apart, along
             the longest side). Points keep their own spacings, and their bearing unless it is said.
@@ -330,7 +331,8 @@ class Plot:
         SettingError
             If the frame has no coordinate system.
         PlotError
-            If it holds no area and no point, several areas, or no room for a plant.
+            If it holds no area and no point, several areas, no room for a plant, or both faces of
+            other plants.
 
         Examples
         --------
@@ -345,9 +347,8 @@ class Plot:
             faces_in,
         )
 
-        frame, planting, of_faces = faces_in(frame, planting)
+        frame, planting, faces = faces_in(frame, planting)
         boundary, plants, names, said = boundary_and_plants(frame)
-        said += of_faces
         if boundary is None:
             plot = plot_around(name, plants, planting, gate, names)
         elif not len(plants):
@@ -363,6 +364,8 @@ class Plot:
             here = ~outside.left_out
             field = names.take(here).on(replace(field, plants=plants[here]))
             plot = plot_of(field, planting)
+        if faces is not None:
+            said += faces.doubts(plot.grid)
         _warn_of(one for one in (*said, *plot.doubts) if one)
         return plot
 

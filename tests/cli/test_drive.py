@@ -128,8 +128,11 @@ def test_a_day_that_is_stopped_says_what_is_kept_and_writes_its_table(
     _, _, err, _ = run("plan", short, "--date", BEGINS, "--no-bound", "-o", "r.csv")
     assert "those who are out have their own" in err
     monkeypatch.setattr(ChargedRobot, "visit", visit)
-    _, out, _, _ = run("drive", short, "--date", BEGINS, "--made-up")
+    held = (tmp_path / "day.mcap").read_bytes()
+    _, out, _, made = run(*words, "day.mcap")
     assert "follows what is left of the plan given out last" in out
+    assert (tmp_path / "day.mcap").read_bytes() == held
+    assert {"day-2.mcap", "day-2.rviz", "day-2.foxglove.json"} <= {path.name for path in made}
 
 
 def test_a_day_past_midnight_says_so_and_writes_its_tables(run, season, tmp_path):

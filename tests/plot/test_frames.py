@@ -150,7 +150,7 @@ def test_rows_and_plants_keep_what_a_frame_calls_them_and_come_back_so(within):
 
 
 @pytest.mark.parametrize("outer_faces", [True, False])
-def test_both_faces_come_back_as_they_were(outer_faces):
+def test_both_faces_come_back_as_they_were_and_no_others(outer_faces):
     planting = Planting(row_spacing_m=4, plant_spacing_m=2, faces=2, outer_faces=outer_faces)
     out = Plot.from_geopandas(frame(SQUARE), planting).to_geopandas()
     with warnings.catch_warnings():
@@ -160,9 +160,22 @@ def test_both_faces_come_back_as_they_were(outer_faces):
     out, back = (one.sort_values(columns, ignore_index=True) for one in (out, back))
     assert back[columns].equals(out[columns])
     assert back.geometry.geom_equals_exact(out.geometry, 1e-7).all()
-    with pytest.warns(ImportDoubt, match=r"both faces of \d+ plants, but one is inspected"):
+    with pytest.warns(ImportDoubt, match="faces of 2,[0-9, a-z]+, but one is inspected"):
         single = Plot.from_geopandas(out, Planting())
     assert single.n_plants == len(out.drop_duplicates(["row", "number"]))
+    lettered = out.assign(face=out["face"].map({1: "A", 2: "b"}))
+    assert Plot.from_geopandas(lettered).n_plants == len(out)
+    first, row = out["face"] == 1, out["row"]
+    for some in (
+        out[first | (row == 5)],
+        out[first | row.isin([1, 2])],
+        out.drop(index=out.index[~first][:5]),
+        out[out.index % 7 != 0],
+    ):
+        with pytest.raises(PlotError, match=r"has both faces of [\d,]+ plants and one face of"):
+            Plot.from_geopandas(some)
+    with pytest.warns(ImportDoubt, match="but the planting says of which plants both"):
+        Plot.from_geopandas(some, planting)
 
 
 def test_a_grid_s_count_of_plants_is_not_taken_for_numbers_in_rows():

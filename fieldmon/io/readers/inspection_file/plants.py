@@ -17,6 +17,7 @@ from fieldmon.io.parse.named_positions import could_be_positions
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
+from fieldmon.plot.plant_names import FACES
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,7 +30,6 @@ _LABEL = re.compile(r"^[^\d\s]{0,8}\s*(\d{1,6})\s*[/\-.,:;\s]\s*[^\d\s]{0,8}\s*(
 #: a plant in the name of a waypoint of ours, with what stands before and behind it: ``R3/17``, or
 #: with the row's name, ``R101·5A/17``
 PLANT_IN_NAME = re.compile(r"(?:^|\s)(?:\d+\s+)?R(\d{1,7})(?:·[^\s/]*)?/(\d{1,6})([ab]?)(?=\s|$)")
-_FACES = {"1": 1, "a": 1, "2": 2, "b": 2}
 _ROW = "\0row"
 
 
@@ -47,7 +47,7 @@ def named_plants(
         line[unsaid] = number[unsaid] = UNSAID
     if columns.face is not None:
         words = [text(v).casefold() for v in layer.column(columns.face)]
-        face[:] = [_FACES.get(word, 0) for word in words]
+        face[:] = [FACES.get(word, 0) for word in words]
     if columns.plant is not None:
         plant = _whole(layer, columns.plant, -1)
     labels = columns.plant if columns.marks is None else columns.marks
@@ -57,7 +57,7 @@ def named_plants(
             found = pattern.search(text(value))
             if found and plant[i] < 0:
                 line[i], number[i] = int(found.group(1)), int(found.group(2))
-                face[i] = _FACES.get(found.group(3).casefold(), 0)
+                face[i] = FACES.get(found.group(3).casefold(), 0)
     return plant, line, number, face
 
 
@@ -66,7 +66,7 @@ def unknown_faces(layer: Layer, columns: InspectionColumns) -> NDArray[np.str_]:
     if columns.face is None:
         return np.full(len(layer), "", dtype=np.str_)
     cells = [text(v) for v in layer.column(columns.face)]
-    known = [cell.casefold() in _FACES or is_missing(cell) for cell in cells]
+    known = [cell.casefold() in FACES or is_missing(cell) for cell in cells]
     return np.where(known, "", np.array(cells, dtype=np.str_))
 
 

@@ -9,20 +9,18 @@ import numpy as np
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.infestation.observations import PRESENT, UNKNOWN
-from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
-from fieldmon.io.parse.columns import is_average, is_confidence, is_id, recognised
+from fieldmon.io.parse.columns import is_confidence, is_id, recognised
 from fieldmon.io.parse.result_words import (
     ResultWords,
     about_fractions,
-    about_mark,
     about_minus,
     are_fractions,
     remedy_of_words,
 )
-from fieldmon.io.parse.values import counted, is_missing, mark_of_counts, presence
+from fieldmon.io.parse.values import counted, is_missing, presence
 from fieldmon.io.readers.inspection_file.columns import names_in
-from fieldmon.io.readers.inspection_file.results import results_in_names
+from fieldmon.io.readers.inspection_file.results import decimal_mark_in, results_in_names
 from fieldmon.io.readers.other_counts import about_other_counts
 
 if TYPE_CHECKING:
@@ -127,7 +125,7 @@ def _some(cells: Iterable[str]) -> str:
 
 def _numbers_of(table: RecordColumns, name: str) -> RecordCounts:
     cells = table.cells(name)
-    mark, messages = _mark(table, name, cells)
+    mark, messages = decimal_mark_in(table.layer, name, cells, table.options)
     known = {cell: counted(cell, mark) for cell in set(cells)}
     count = np.array([known[cell].number for cell in cells])
     present = np.array([known[cell].present for cell in cells], dtype=np.int8)
@@ -170,16 +168,6 @@ def _numbers_of(table: RecordColumns, name: str) -> RecordCounts:
             )
         )
     return RecordCounts(count, present, messages)
-
-
-def _mark(table: RecordColumns, name: str, cells: list[str]) -> tuple[str, list[ImportMessage]]:
-    """Return the decimal mark of the counts: 1,234 alone is told by the rest of the table."""
-    if table.options.decimal is not None:
-        return table.options.decimal, []
-    others = (values for column, values in table.layer.columns.items() if column != name)
-    looked_at = (text(v) for values in others for v in values[:LOOKED_AT])
-    mark, unsure = mark_of_counts(cells, looked_at, averages=is_average(name))
-    return mark, about_mark(unsure, name, mark)
 
 
 def _with_presence(table: RecordColumns, name: str, counts: RecordCounts) -> RecordCounts:

@@ -100,7 +100,7 @@ def _by_result(
         return [_SILENT] * len(layer), []
     cells = [text(v) for v in layer.column(column)]
     words = ResultWords(cells, options)
-    mark, guess = _mark(layer, column, cells, options)
+    mark, guess = decimal_mark_in(layer, column, cells, options)
     known = {cell: result_of(cell, mark, words) for cell in set(cells)}
     known |= {cell: _NOT_INSPECTED for cell in known if is_gone(cell, options.gone)}
     numbers = (counted(cell, mark).number for cell in known)
@@ -122,7 +122,7 @@ def _by_count(
     if column is None:
         return [_SILENT] * len(layer), []
     cells = [text(v) for v in layer.column(column)]
-    mark, guess = _mark(layer, column, cells, options)
+    mark, guess = decimal_mark_in(layer, column, cells, options)
     known = {cell: _of_count(cell, mark) for cell in set(cells)}
     by_count = [known[cell] for cell in cells]
     numbers = [one.how_many for one in by_count]
@@ -145,10 +145,13 @@ def _is_named(column: str, options: InspectionOptions) -> bool:
     return options.column("present") == column or bool(recognised([column]))
 
 
-def _mark(
-    layer: Layer, name: str, cells: list[str], options: InspectionOptions
+def decimal_mark_in(
+    layer: Layer, name: str, cells: list[str], options: RecordOptions
 ) -> tuple[str, list[ImportMessage]]:
-    """Return the decimal mark of a column's counts, and what was guessed of it."""
+    """Return the decimal mark of a column's counts, and what was guessed of it.
+
+    1,234 alone is told by the rest of the table.
+    """
     if options.decimal is not None:
         return options.decimal, []
     others = (values for column, values in layer.columns.items() if column != name)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import warnings
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import NoneType
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +14,7 @@ from fieldmon.compute.day_arguments import days_of
 from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, worded
-from fieldmon.errors import ImportDoubt, ObservationError
+from fieldmon.errors import ObservationError
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.plot.positions import lonlat_of
 
@@ -287,13 +286,6 @@ def usable(
         old=int(np.count_nonzero((today - kept.day) / _DAY > prior.hardly_days)),
         prior=prior,
     )
-
-
-def warn_of_left_out(observations: Observations, on_day: np.datetime64) -> None:
-    """Warn the caller of the caller of records that say nothing on a day."""
-    known = replace(usable(observations, on_day), undated=0, old=0)
-    for doubt in known.messages():
-        warnings.warn(doubt, ImportDoubt, stacklevel=3)
 
 
 def must_be_records(given: object) -> None:

@@ -13,9 +13,9 @@ from fieldmon.compute.array_arguments import array_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.observations import Observations, warn_of_left_out
+from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import prior_chance
-from fieldmon.io.readers.nearby import warn_of_elsewhere
+from fieldmon.io.readers.nearby import warn_of_left_out
 from fieldmon.monitoring import (
     derived_layers,
     first_morning,
@@ -162,8 +162,7 @@ class Season(SeasonPlans, SeasonFrames):
             observations = Observations.none()
         begins = np.datetime64(settings.begins, "D")
         if messages is None:
-            warn_of_left_out(observations, begins)
-            warn_of_elsewhere(observations, begins, plot.field)
+            warn_of_left_out(observations, begins, plot.field)
         if risk is not None:
             risk = array_of(np.float64, "A risk map", risk)
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)

@@ -14,11 +14,11 @@ from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
-from fieldmon.infestation.observations import Observations, must_be_records, warn_of_left_out
+from fieldmon.infestation.observations import Observations, must_be_records
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.io.readers.nearby import warn_of_elsewhere
+from fieldmon.io.readers.nearby import warn_of_left_out
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
@@ -209,8 +209,7 @@ def plan_day(
     plans = PlanSettings(robot or Robot(), decides)
     given = Observations.none() if records is None else records
     day = np.datetime64(starts.date(), "D")
-    warn_of_left_out(given, day)
-    warn_of_elsewhere(given, day, plot.field)
+    warn_of_left_out(given, day, plot.field)
     today = first_day(plot, given, day, plans, risk)
     if not len(today.route):
         raise SettingError(

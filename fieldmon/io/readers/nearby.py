@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -78,16 +78,22 @@ def near_plot(observations: Observations, field: Field) -> RecordsNearPlot:
     return RecordsNearPlot(observations.take(near), observations.take(~near), away[~near])
 
 
-def warn_of_elsewhere(observations: Observations, on_day: np.datetime64, field: Field) -> None:
-    """Warn the caller of the caller of records of a plot that lie elsewhere, or nobody knows where.
+def warn_of_left_out(observations: Observations, on_day: np.datetime64, field: Field) -> None:
+    """Warn the caller of the caller of records that say nothing of a plot on a day."""
+    known = replace(usable(observations, on_day), undated=0, old=0)
+    for one in (*known.messages(), *_elsewhere(known.observations, field)):
+        warnings.warn(one, ImportDoubt, stacklevel=3)
+
+
+def _elsewhere(known: Observations, field: Field) -> list[str]:
+    """Return what to say of records that lie elsewhere, or nobody knows where.
 
     Not where all do: `prior_chance` refuses these.
     """
-    known = usable(observations, on_day).observations
     placed = ~np.asarray(np.isnan(known.lonlat).any(axis=1))
     split = near_plot(known.take(placed), field)
     if not len(split.inside):
-        return
+        return []
     turned_m = distance_m(split.outside.lonlat[:, ::-1], field)
     doubts = [*split.messages(field.name), *doubt_of_order(split.outside_m, turned_m)]
     said = [doubt.sentence for doubt in doubts]
@@ -98,8 +104,7 @@ def warn_of_elsewhere(observations: Observations, on_day: np.datetime64, field: 
             f"{n} of the {len(known)} records are placed no better than to {_ROUGHEST_M:g} m and "
             "say nothing, or hardly anything, of single plants. Give accuracy_m in metres."
         )
-    for one in said:
-        warnings.warn(one, ImportDoubt, stacklevel=3)
+    return said
 
 
 def records_on_plot(observations: Observations, field: Field) -> Observations:

@@ -14,7 +14,6 @@ import streamlit as st
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import ContradictionError, FieldmonError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.io.parse import result_words
 from fieldmon.monitoring.inspection_import import read_brought, record_saved
@@ -47,7 +46,6 @@ _SAID_OF_FILE = "said of a file of findings"
 # who inspected where nobody said so
 _NOBODY = ""
 _UNDO_ASKED, _SHOWN = "undo asked", "batches shown"
-_LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
 #: what a season's file calls what was typed in here, whatever the page's language
 TYPED_IN, _ROUTE_TABLE = "typed in", "route table"
 # the forms
@@ -322,7 +320,7 @@ def _file_recorded(choices: Choices, *, confirmed: bool) -> str:
 
 def _warn_of_lost(messages: Iterable[ImportMessage]) -> None:
     """Let what is returned be no success where something of a file was left out or is doubtful."""
-    if any(message.severity in _LEFT_OUT for message in messages):
+    if any(message.severity.is_loss for message in messages):
         notices.warn()
 
 

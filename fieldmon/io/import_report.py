@@ -38,6 +38,11 @@ class Severity(StrEnum):
         """Return 0 for the most harmless, 4 for the gravest."""
         return list(Severity).index(self)
 
+    @property
+    def is_loss(self) -> bool:
+        """Return whether something of a file was left out, or is doubtful."""
+        return self in {Severity.DROPPED, Severity.DOUBTFUL}
+
 
 @dataclass(frozen=True)
 class Remedy:

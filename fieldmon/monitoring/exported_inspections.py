@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem, ObservationError
 from fieldmon.infestation.inspection_columns import COLUMNS, IDENTIFYING
-from fieldmon.io.import_report import Severity
 from fieldmon.io.options import source_name
 from fieldmon.monitoring import inspection_table
 from fieldmon.monitoring.corrections import must_have_come
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
 # anybody may change the others; `record` takes what they say
 _WATCHED = tuple(column for column in COLUMNS if column.watched)
 (_NOTES,) = (column for column in COLUMNS if column.name == "notes")
-_LEFT_OUT = (Severity.DROPPED, Severity.DOUBTFUL)
 _SEEN = {column.kept for column in IDENTIFYING}
 _SAME_VISIT = {"plant", "date"}
 
@@ -163,7 +161,7 @@ def edited_copy(
     read, name = read_inspection_rows(source, options), source_name(source)
     rows = read.value
     n_exported = 0 if rows.mark is None else int((rows.mark != "").sum())
-    doubts = [one.sentence for one in read.messages if one.severity in _LEFT_OUT]
+    doubts = [one.sentence for one in read.messages if one.severity.is_loss]
     if doubts and (n_exported or not len(rows)):
         raise ObservationError(
             worded(
@@ -182,7 +180,8 @@ def edited_copy(
             )
         )
     edits = edits_in(season, rows, options)
-    for record, doubt in edits.unsure.items():
+    if edits.unsure:
+        record, doubt = next(iter(edits.unsure.items()))
         raise ObservationError(
             worded(
                 "An exported inspection must say plant, date and result as the season does, but "

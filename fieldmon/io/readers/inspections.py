@@ -118,7 +118,7 @@ def exported(
 
     And of records whose plant is not sure, which are left out, why, by their number in the file.
     """
-    if rows.mark is None:
+    if rows.mark is None or not (rows.mark != "").any():
         return Inspections.none(), [], {}
     rows = rows.take(rows.mark != "")
     placed = _placed(rows, grid, options)

@@ -31,69 +31,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.cells import Cells
+    from fieldmon.infestation.infestations import Infestations
 
     Floats = NDArray[np.floating[Any]]
     Ints = NDArray[np.int64]
 
 # among so many plants one that was not found goes to another
 TRIED = 4
-
-
-class Infestations(NamedTuple):
-    """The infestations of an ancestry, ``(m,)`` each, with room for more.
-
-    Parameters
-    ----------
-    plant
-        Where each is.
-    begins, ends
-        From which morning on the plant sends something out at night, and until which: that on which
-        it was found and destroyed, or the last.
-    found, seen
-        Whether it was found, and the morning on which it was first; of others the last. One found
-        long ago, of which no more is known, has 0.
-    parent, children
-        The infestation from which it came (`NOBODY`: none), and how many came from it.
-    there
-        Whether the place is taken.
-    earliest
-        The first morning on which it may have begun: after the plant's find before.
-    """
-
-    plant: Ints
-    begins: Ints
-    ends: Ints
-    found: NDArray[np.bool_]
-    parent: Ints
-    children: Ints
-    there: NDArray[np.bool_]
-    earliest: Ints
-    seen: Ints
-
-    @classmethod
-    def empty(cls, places: int) -> Infestations:
-        """Return places for so many, none taken."""
-        ints = np.zeros((7, places), np.int64)
-        ints[3] = NOBODY
-        plant, begins, ends, parent, children, earliest, seen = ints
-        found, there = np.zeros((2, places), np.bool_)
-        return cls(plant, begins, ends, found, parent, children, there, earliest, seen)
-
-    def __repr__(self) -> str:
-        hidden = np.count_nonzero(self.there & ~self.found)
-        return f"<Infestations: {np.count_nonzero(self.found)} found, {hidden} not>"
-
-    def copied(self, places: int) -> Infestations:
-        """Return the same with so many places more."""
-        wider = Infestations.empty(len(self.plant) + places)
-        for mine, own in zip(wider, self, strict=True):
-            mine[: len(own)] = own
-        return wider
-
-    def goes_on(self, last: int) -> NDArray[np.bool_]:
-        """Return which are infested on the last morning: not found, or found and left, ``(m,)``."""
-        goes_on: NDArray[np.bool_] = self.there & (~self.found | (self.ends == last))
-        return goes_on
 
 
 class Weights(NamedTuple):

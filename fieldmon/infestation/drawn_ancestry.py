@@ -21,7 +21,6 @@ from fieldmon.compute.jit import inner_loop, routine
 from fieldmon.infestation.ancestry_moves import (
     OPEN,
     TRIED,
-    Infestations,
     Weights,
     Worked,
     begin,
@@ -35,6 +34,8 @@ from fieldmon.infestation.cell_squares import NOBODY, empty_squares
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from fieldmon.infestation.infestations import Infestations
 
     Floats = NDArray[np.floating[Any]]
     Ints = NDArray[np.int64]

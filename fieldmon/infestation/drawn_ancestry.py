@@ -18,11 +18,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import inner_loop, routine
+from fieldmon.infestation.ancestry_arrays import OPEN, Weights, Worked
 from fieldmon.infestation.ancestry_moves import (
-    OPEN,
     TRIED,
-    Weights,
-    Worked,
     begin,
     go_to_one,
     move,

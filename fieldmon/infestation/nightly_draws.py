@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fieldmon.infestation.ancestry_moves import Weights
+from fieldmon.infestation.ancestry_arrays import Weights
 from fieldmon.infestation.drawn_ancestry import DrawnSums, draw_ancestries
 from fieldmon.infestation.infestation_course import BEFORE
 from fieldmon.infestation.inspected_infestations import InspectedInfestations

@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from fieldmon.infestation.ancestry_moves import Weights
+from fieldmon.infestation.ancestry_arrays import Weights
 from fieldmon.infestation.cell_squares import NOBODY
 from fieldmon.infestation.drawn_ancestry import (
     DrawnSums,

@@ -156,35 +156,11 @@ def edited_copy(
     SettingError
         If one was moved to a day that has not come.
     """
-    rows, name = _exported_rows(source, options), source_name(source)
-    edits = edits_in(season, rows, options)
-    _refuse_uncertain(edits, name)
-    for one in edits.changed:
-        if "date" in one.says:
-            must_have_come(season.plot.field, date.fromisoformat(one.says["date"]), None)
-    copy = folder / "export.gpkg"
-    copy_season(season.path, copy)
-    with closing(connect(copy)) as db:
-        db.execute("BEGIN")
-        for row, says in edits.changed:
-            sets = ", ".join(f"{column} = ?" for column in says)
-            db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", (*says.values(), row))  # noqa: S608 - ours
-        db.execute("COMMIT")
-    return EditedCopy(copy, len(rows) - _n_exported(rows), edits.n_notes)
-
-
-def _n_exported(rows: InspectionRows) -> int:
-    """Return how many rows of a file a season has exported."""
-    return 0 if rows.mark is None else int((rows.mark != "").sum())
-
-
-def _exported_rows(source: Source, options: InspectionOptions) -> InspectionRows:
-    """Return the rows of a file that holds inspections exported from a season; refuse others."""
     from fieldmon.io.read import read_inspection_rows  # noqa: PLC0415 - as above
 
     read, name = read_inspection_rows(source, options), source_name(source)
     rows = read.value
-    n_exported = _n_exported(rows)
+    n_exported = 0 if rows.mark is None else int((rows.mark != "").sum())
     doubts = [one.sentence for one in read.messages if one.severity.is_loss]
     if doubts and (n_exported or not len(rows)):
         raise ObservationError(
@@ -203,11 +179,7 @@ def _exported_rows(source: Source, options: InspectionOptions) -> InspectionRows
                 name=name,
             )
         )
-    return rows
-
-
-def _refuse_uncertain(edits: Edits, name: str) -> None:
-    """Refuse corrections of a file that cannot be told for certain, or count no longer."""
+    edits = edits_in(season, rows, options)
     if edits.unsure:
         record, doubt = next(iter(edits.unsure.items()))
         raise ObservationError(
@@ -237,6 +209,18 @@ def _refuse_uncertain(edits: Edits, name: str) -> None:
                 n=len(edits.unknown), name=name,
             )
         )  # fmt: skip
+    for one in edits.changed:
+        if "date" in one.says:
+            must_have_come(season.plot.field, date.fromisoformat(one.says["date"]), None)
+    copy = folder / "export.gpkg"
+    copy_season(season.path, copy)
+    with closing(connect(copy)) as db:
+        db.execute("BEGIN")
+        for row, says in edits.changed:
+            sets = ", ".join(f"{column} = ?" for column in says)
+            db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", (*says.values(), row))  # noqa: S608 - ours
+        db.execute("COMMIT")
+    return EditedCopy(copy, len(rows) - n_exported, edits.n_notes)
 
 
 def _lacked(rows: InspectionRows) -> set[str]:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.compute.wording import Worded
-    from fieldmon.io.parse.values import DatedColumn
+    from fieldmon.io.parse.dates import DatedColumn
 
 
 def mixed_dates(read: DatedColumn, where: str | None = None) -> list[ImportMessage]:

@@ -11,7 +11,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.options import ZonedOptions
 from fieldmon.io.parse.clock import zone_of
-from fieldmon.io.parse.values import dates
+from fieldmon.io.parse.dates import dates
 
 
 @dataclass(frozen=True)

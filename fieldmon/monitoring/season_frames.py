@@ -41,7 +41,8 @@ class SeasonFrames(SeasonInspections, SeasonTreatments, SeasonEstimates):
         of
             ``"inspections"``: a point for each that counts, with ``plant`` (number in the grid,
             from 0), ``row`` and ``number`` (from 1), ``date``, ``time``, ``result`` (clean, found
-            or skipped), ``count`` (NaN: not counted), ``who``, ``corrected_by`` and ``notes``.
+            or skipped), ``count`` (NaN: not counted), ``who``, ``corrected_by``, ``notes`` and
+            ``digest``, by which ``fieldmon correct`` knows them.
             ``"treatments"``: the outline of each that counts, with the columns of
             ``fieldmon export --of treatments``.
             ``"plants"``: a point for each plant, with its chance on the ``morning`` and after what

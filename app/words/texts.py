@@ -1110,7 +1110,8 @@ SCOUT_LAST = "Last: row {row}, plant {plant}: {result}"
 # -- comparing
 COMPARE_INTRO = (
     "Seasons are simulated on this plot: the start is drawn from today's chance map, and every "
-    "strategy meets the same insects. Less loss (infested plants times days) is better."
+    "strategy meets the same insects. Less loss (infested plants times days) is better. Once this "
+    "tab is closed it waits, and stops after two minutes; *Go on* continues."
 )
 COMPARE_ASSUMED = (
     "Assumed: insects spread to the plants next to them only, and plants found are treated at once."
@@ -1131,11 +1132,12 @@ DRIVE_SOURCE = "Which day"
 DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day", "live": "Live"}
 DRIVE_LIVE = (
     "A robot that speaks VDA 5050, listened to where its messages are exchanged. Nothing is sent "
-    "and nothing is recorded here: `fieldmon drive --robot vda5050` does that."
+    "and nothing is recorded here: `fieldmon drive --robot vda5050` does that, and goes on when you "
+    "stop watching or close this tab."
 )
 DRIVE_BROKER, DRIVE_MANUFACTURER, DRIVE_SERIAL = "MQTT broker", "Manufacturer", "Serial number"
 DRIVE_VDA = "Version of VDA 5050"
-DRIVE_WATCH = "Watch"
+DRIVE_WATCH, DRIVE_WATCH_STOP = "Watch", "Stop watching"
 DRIVE_LAG = "Heard {seconds} s ago; what the map shows is up to a second older."
 DRIVE_NOT_HEARD = "The robot was not heard yet. Is it on, and are its names right?"
 DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago."
@@ -1144,7 +1146,8 @@ DRIVE_FAILED = "The robot reports an error that it cannot mend: {said}"
 DRIVE_ROBOT = "Robot"
 DRIVE_ROBOTS = {"charged": "Planned times", "mujoco": "Physical simulation"}
 DRIVE_MADE_UP = (
-    "The finds are made up: insects are drawn from the chance map, on this share of the plants."
+    "The finds are made up: insects are drawn from the chance map, on this share of the plants. "
+    "Once this tab is closed the drive waits, and is given up after two minutes."
 )
 DRIVE_SHARE = "Infested plants (%)"
 DRIVE_RUN = "Drive the day"

@@ -9,7 +9,6 @@ as one (`fieldmon correct`).
 from __future__ import annotations
 
 from contextlib import closing
-from datetime import date
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.compute.wording import joined, worded
@@ -17,7 +16,6 @@ from fieldmon.errors import FileProblem, ObservationError
 from fieldmon.infestation.inspection_columns import COLUMNS, IDENTIFYING
 from fieldmon.io.options import source_name
 from fieldmon.monitoring import inspection_table
-from fieldmon.monitoring.corrections import must_have_come
 from fieldmon.monitoring.rows_that_count import COUNTS
 from fieldmon.monitoring.transactions import connect, copy_season
 
@@ -153,8 +151,6 @@ def edited_copy(
         If the file holds no inspections exported from a season, or what cannot be read for certain.
     FileProblem
         If some are of another season, or count no longer in this one.
-    SettingError
-        If one was moved to a day that has not come.
     """
     from fieldmon.io.read import read_inspection_rows  # noqa: PLC0415 - as above
 
@@ -209,9 +205,6 @@ def edited_copy(
                 n=len(edits.unknown), name=name,
             )
         )  # fmt: skip
-    for one in edits.changed:
-        if "date" in one.says:
-            must_have_come(season.plot.field, date.fromisoformat(one.says["date"]), None)
     copy = folder / "export.gpkg"
     copy_season(season.path, copy)
     with closing(connect(copy)) as db:

@@ -576,10 +576,12 @@ TODAY_DONE = Plural(
 )
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance"
+COLUMN_FACE = "face"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
 
 # -- what stands beside a thing on the map that is pointed at
 TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
+TIP_FACE = "{number}, face {face}"
 TIP_ALONE, NEXT_ALONE = "plant {plant}{note}", "Plant {plant}"
 SCOUT_LAST_ALONE = "Last: plant {plant}: {result}"
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
@@ -806,7 +808,7 @@ DECIDE_FILES = {
 
 HOT_TITLE = "Hot spots"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
-HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
+HISTORY_ROW, HISTORY_PLANT, HISTORY_FACE = "Row", "Plant", "Face"
 HISTORY_NOW = Text("Chance of infestation now: **{now}** (first morning: {first}).")
 HISTORY_BETWEEN = Text("If the plot had fewer or more than expected: {low} to {high}.")
 HISTORY_CHANCE = (
@@ -930,6 +932,10 @@ MOVED_HERE = (
 ONE_UNSAID = (
     "Row, plant and result must be said before they are recorded, but one of them is empty. Fill "
     "in all three."
+)
+ONE_FACE_UNSAID = (
+    "A plant with two faces must be recorded with the one that was inspected, but none is chosen. "
+    "Choose its face, or tap it on the map."
 )
 _CONTRADICTING = (
     "what is recorded or brought of the same plants and day. Nothing is recorded yet. Which holds?"
@@ -1132,8 +1138,8 @@ DRIVE_SOURCE = "Which day"
 DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day", "live": "Live"}
 DRIVE_LIVE = (
     "A robot that speaks VDA 5050, listened to where its messages are exchanged. Nothing is sent "
-    "and nothing is recorded here: `fieldmon drive --robot vda5050` does that, and goes on when you "
-    "stop watching or close this tab."
+    "and nothing is recorded here: `fieldmon drive --robot vda5050` does that, and goes on when "
+    "you stop watching or close this tab."
 )
 DRIVE_BROKER, DRIVE_MANUFACTURER, DRIVE_SERIAL = "MQTT broker", "Manufacturer", "Serial number"
 DRIVE_VDA = "Version of VDA 5050"

@@ -7,7 +7,11 @@ from tests.app.driving import go
 
 def test_numbers_typed_just_before_pressing_compare_are_those_compared(app, monkeypatch):
     begun = []
-    monkeypatch.setattr(WatchedComparison, "start", lambda self: begun.append(self))
+
+    def start(comparison):
+        begun.append(comparison)
+
+    monkeypatch.setattr(WatchedComparison, "start", start)
     monkeypatch.setattr(browser, "tab", lambda: ("a tab", lambda: True))
     go(app, "compare")
     app.number_input(key="seeds").set_value(7)

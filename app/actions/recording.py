@@ -116,7 +116,7 @@ def _show_one(choices: Choices) -> None:
         box="one_result", format_func=texts.RESULTS_OF.__getitem__,
     )  # fmt: skip
     show(st.number_input, texts.COUNT, 0, None, box="one_count")
-    _ask_who(boxes)
+    _ask_who(boxes, stays=True)
     acting.at_press(texts.RECORD_BUTTON, _record_one, choices, key="record_one", boxes=boxes)
     correcting.show(choices, _plant_typed(choices))
 
@@ -347,11 +347,14 @@ def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes, *, confir
     return texts.CORRECTED.format(n=n)
 
 
-def _ask_who(boxes: FreshBoxes, help_: str | None = None) -> None:
-    """Ask where a team works who inspected: nobody, unless one of it or another name is said."""
+def _ask_who(boxes: FreshBoxes, help_: str | None = None, *, stays: bool = False) -> None:
+    """Ask where a team works who inspected: nobody, unless one of it or another name is said.
+
+    Who `stays` inspected what is recorded next, too: the box says so.
+    """
     if team := boxes.choices.team_that_day:
         boxes.show(
-            st.selectbox, texts.INSPECTED_BY, [_NOBODY, *team], box="who",
+            st.selectbox, texts.INSPECTED_BY, [_NOBODY, *team], box="who", stays=stays,
             default=_NOBODY, help=help_, accept_new_options=True,
             format_func=lambda who: who or texts.NOBODY_SAID,
         )  # fmt: skip

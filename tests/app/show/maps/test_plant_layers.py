@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.show.maps import colours, plant_layers
+from app.show.maps import colours, labels, plant_layers
 from app.show.maps.plant_layers import PlantNotes
 from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.layout import rectangle
-from tests.app.chosen import a_plot
+from tests.app.chosen import a_plot, chosen
 from tests.app.shown_plants import plants_in, shown_plants
 from tests.paths import ROOT
 
@@ -51,6 +51,9 @@ def test_two_faces_are_drawn_beside_each_other_and_named():
     assert {*of[grid.twin[first]]} == {2}
     (ring, _) = plant_layers.chosen(grid, 0)
     assert ring.data[0]["p"] == pytest.approx(lonlat[0].tolist(), abs=1e-6)
+    route = chosen(a_plot(faces=2)).plan().route
+    places = [one["p"] for one in labels.stops(route) if one["k"] == "stop"]
+    assert places == pytest.approx(lonlat[route.plant], abs=1e-6)
 
 
 def test_a_million_plants_keep_their_places_to_the_centimetre():

@@ -100,7 +100,7 @@ def read(
         try:
             one = _inspection(dict(zip(names, values, strict=True)), plot[0])
             if ahead := amid_past(np.append(first, one.date), today):
-                drafts.append(Draft(row, None, *ahead.values()))
+                drafts.append(Draft(row, None, next(iter(ahead.values()))))
                 continue
             inspection_table.rows(one, *plot, settings, (0, ""))  # whether it fits the season
             if said_before(one, held).any():

@@ -1254,7 +1254,8 @@ SCOUT_PAGE = {
     "loading": "Loading ...", "route_done": "The route is done.",
     "no_route": "You have no route: you are not of the team, and without rows. Ask for a code with "
     "rows.",
-    "place": "Row {row}, plant {plant}", "no_position": "No position yet", "there": "You are there",
+    "place": "Row {row}, plant {plant}", "face": TIP_FACE,
+    "no_position": "No position yet", "there": "You are there",
     "photo_asked": "A photo is asked for.", "photo_asked_of": "A photo is asked for: {note}",
     "asked": "Photos asked for: {n}", "photo_comes": "The photo is being kept ...",
     "kept": "Kept: {what}", "keeping": "Being kept: {what}",

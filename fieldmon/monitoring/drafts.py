@@ -67,7 +67,7 @@ class Draft(NamedTuple):
             "Finding {row} (fid, in the layer Findings), which another program added, does not "
             "count: {why} Mend it there, or delete it.",
             row=self.row,
-            why=self.why if self.why.endswith(".") else f"{self.why}.",
+            why=self.why if self.why.endswith(".") else worded("{why}.", why=self.why),
         )
 
 
@@ -110,7 +110,8 @@ def read(
                 continue
             contradictions(one, held).refuse(plot[0])
         except (FieldmonError, ValueError, TypeError) as error:
-            drafts.append(Draft(row, None, str(error)))
+            why = error.args[0] if isinstance(error, FieldmonError) else str(error)
+            drafts.append(Draft(row, None, why))
         else:
             held = held.and_those(one)
             drafts.append(Draft(row, one))

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import replace
-from datetime import date
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -21,7 +20,6 @@ from fieldmon.errors import FileProblem, ObservationError
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, IDENTIFYING
 from fieldmon.io.options import source_name
 from fieldmon.monitoring import inspection_table, repeated_recordings
-from fieldmon.monitoring.corrections import must_have_come
 from fieldmon.monitoring.rows_that_count import COUNTS
 from fieldmon.monitoring.transactions import connect, copy_season
 
@@ -238,8 +236,6 @@ def edited_copy(
         If the file holds no inspections exported from a season, or what cannot be read for certain.
     FileProblem
         If some are of another season, or count no longer in this one.
-    SettingError
-        If one was moved to a day that has not come.
     """
     read, name = read_exported(season, source, options), source_name(source)
     rows = read.value
@@ -293,9 +289,6 @@ def edited_copy(
                 n=len(edits.twice), name=name,
             )
         )  # fmt: skip
-    for one in edits.changed:
-        if "date" in one.says:
-            must_have_come(season.plot.field, date.fromisoformat(one.says["date"]), None)
     copy = folder / "export.gpkg"
     copy_season(season.path, copy)
     with closing(connect(copy)) as db:

@@ -253,12 +253,10 @@ class Season(SeasonPlans, SeasonFrames):
         Raise `SettingError` if there is none, or as `change` does.
         """
         with self._lock, self.store.writing() as db:
-            before, begins = (
-                settings_log.as_written_now(settings_log.now(db)),
-                settings_of(db).begins,
-            )
+            before, seen = settings_log.as_written_now(settings_log.now(db)), settings_of(db)
             settings = settings_log.undo(db)
-            _refuse_other_days(db, begins, settings.begins)
+            _must_work(settings, self.plot, seen)
+            _refuse_other_days(db, seen.begins, settings.begins)
             self._log_change(db, before, who, back=True)
             self._refresh(db)
         return settings

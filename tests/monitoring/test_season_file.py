@@ -267,6 +267,10 @@ def test_a_season_is_neither_begun_nor_changed_so_that_nobody_can_work(
         settings_log.change(db, replace(first, **chosen))
     season = Season(season.path)
     season.change(replace(season.settings, seed=5), season.settings)
+    season.change(first, season.settings)
+    with pytest.raises(SettingError, match=said):
+        season.undo_change()
+    assert season.settings == first
 
 
 def test_settings_are_changed_by_settings_or_a_sentence(season):

@@ -97,7 +97,7 @@ def read_exported(
 
     read = read_inspection_rows(source, options)
     rows = read.value
-    if options.date_order is not None or rows.mark is None or not (rows.mark != "").any():
+    if options.date_order is not None or not _n_exported(rows):
         return read
     with season.store.reading() as db:
         days = dict(db.execute("SELECT digest, date FROM inspections WHERE digest NOTNULL"))
@@ -123,7 +123,7 @@ def edits_in(season: Season, rows: InspectionRows, options: InspectionOptions) -
     from fieldmon.io.readers.inspections import exported  # noqa: PLC0415 - half a second to import
 
     edits = Edits([], [], set(), {}, 0)
-    if rows.mark is None or not (rows.mark != "").any():
+    if rows.mark is None or not _n_exported(rows):
         return edits
     lacked = _lacked(rows)
     watched = [one for one in _WATCHED if one.kept not in lacked]
@@ -237,9 +237,25 @@ def edited_copy(
     FileProblem
         If some are of another season, or count no longer in this one.
     """
+    rows, name = _exported_rows(season, source, options), source_name(source)
+    edits = edits_in(season, rows, options)
+    _refuse_uncertain(edits, name)
+    copy = folder / "export.gpkg"
+    copy_season(season.path, copy)
+    with closing(connect(copy)) as db:
+        db.execute("BEGIN")
+        for row, says in edits.changed:
+            sets = ", ".join(f"{column} = ?" for column in says)
+            db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", (*says.values(), row))  # noqa: S608 - ours
+        db.execute("COMMIT")
+    return EditedCopy(copy, len(rows) - _n_exported(rows), edits.n_notes)
+
+
+def _exported_rows(season: Season, source: Source, options: InspectionOptions) -> InspectionRows:
+    """Return the rows of a file that holds inspections exported from a season; refuse others."""
     read, name = read_exported(season, source, options), source_name(source)
     rows = read.value
-    n_exported = 0 if rows.mark is None else int((rows.mark != "").sum())
+    n_exported = _n_exported(rows)
     doubts = [one.sentence for one in read.messages if one.severity.is_loss]
     if doubts and (n_exported or not len(rows)):
         raise ObservationError(
@@ -259,7 +275,16 @@ def edited_copy(
                 name=name,
             )
         )
-    edits = edits_in(season, rows, options)
+    return rows
+
+
+def _n_exported(rows: InspectionRows) -> int:
+    """Return how many rows of a file a season has exported."""
+    return 0 if rows.mark is None else int((rows.mark != "").sum())
+
+
+def _refuse_uncertain(edits: Edits, name: str) -> None:
+    """Refuse corrections of a file that cannot be told for certain, or count no longer."""
     if edits.unknown:
         raise FileProblem(
             worded(
@@ -289,15 +314,6 @@ def edited_copy(
                 n=len(edits.twice), name=name,
             )
         )  # fmt: skip
-    copy = folder / "export.gpkg"
-    copy_season(season.path, copy)
-    with closing(connect(copy)) as db:
-        db.execute("BEGIN")
-        for row, says in edits.changed:
-            sets = ", ".join(f"{column} = ?" for column in says)
-            db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", (*says.values(), row))  # noqa: S608 - ours
-        db.execute("COMMIT")
-    return EditedCopy(copy, len(rows) - n_exported, edits.n_notes)
 
 
 def _lacked(rows: InspectionRows) -> set[str]:

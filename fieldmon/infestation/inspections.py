@@ -34,15 +34,13 @@ _GIVEN = {column.name: column.given for column in COLUMNS}
 
 def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to its kind here
     """Return a column as it is kept, a view: the caller's own array stays as it is."""
-    letters, words = _GIVEN[name]
+    (letters, words), texts = _GIVEN[name], _TYPES[name] is object
     # of columns that were held to their kind before, as mostly, there is nothing to find out
-    if type(given) is np.ndarray and given.ndim == 1 and given.dtype == _TYPES[name] != object:
+    if type(given) is np.ndarray and given.ndim == 1 and given.dtype == _TYPES[name] and not texts:
         return given.view()
     try:
-        held: Any = given
-        if name == "date":
-            held = days_of(given)
-        elif _TYPES[name] is object and (held := texts_of(given)) is None:
+        held: Any = days_of(given) if name == "date" else given
+        if texts and (held := texts_of(given)) is None:
             raise _wrong(name, given)
         values = np.atleast_1d(held)
         if values.ndim != 1:

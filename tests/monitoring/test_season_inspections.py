@@ -49,7 +49,7 @@ def test_missing_texts_of_pandas_are_none_and_are_filled_in_like_them(season):
 def test_a_find_that_counts_0_is_refused(season):
     told = Inspections.of([5, 6], [CLEAN, FOUND], BEGINS, count=[0, 0])
     for record in (season.record, season.record_instead):
-        with pytest.raises(ObservationError, match="result 2 counts 0. Say clean"):
+        with pytest.raises(ObservationError, match=r"result 2 counts 0\. Say clean"):
             record(told)
 
 

@@ -72,8 +72,8 @@ def column_called(
     if exact is not None:
         return exact
     bare = {without_numbering(name): own for name, own in known.items()}
-    if numbered := next((bare[name] for name in numbered if name in bare), None):
-        return numbered
+    if counting := next((bare[name] for name in numbered if name in bare), None):
+        return counting
     # a shapefile cuts names to ten characters: decimalLon, individual, coordinate
     cut = {name for name, own in known.items() if len(own) == _CUT}
     return next((known[name[:_CUT]] for name in words if name[:_CUT] in cut), None)
@@ -137,7 +137,7 @@ def plant_columns(
         return PlantColumns(block, row, told["plant"])
     doubts = []
     plant = found("plant", {block, row})
-    number = column_called(_PLAIN["number"], names, frozenset() if row is None else {row})
+    number = found("number", {row})
     if number is not None and (plant is None or _are_numbers(cells(plant))):
         if _tells_apart(None if row is None else cells(row), cells(number), beside=plant):
             plant = number

@@ -195,7 +195,8 @@ def _must_say_where(frame: GeoDataFrame | GeoSeries) -> None:
             f"from {frame.crs.name!r}. Say in which its coordinates are: "
             "gdf.set_crs(2039, allow_override=True), for instance."
         ) from None
-    if frame.crs.is_geocentric and not frame.geometry.has_z.all():
+    placed = frame.geometry.to_numpy()[_placed(frame.geometry.to_numpy())]
+    if frame.crs.is_geocentric and not shapely.has_z(placed).all():
         raise SettingError(
             f"Positions in {frame.crs.name!r}, measured from the middle of the earth, must have x, "
             "y and z, but those of the GeoDataFrame have no z. Give their heights, too, or say in "

@@ -110,7 +110,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
     },
     "Observations.of": {
         "present": {"array of -1", "mask"}, "day": {"array of dates", "moment"},
-        **dict.fromkeys(("species", "stage"), {"array of nan"}),
+        **{name: {"array of nan"} for name in ("species", "stage")},
         **dict.fromkeys(("count", "accuracy_m", "leaves_sampled"), _RECORDED),
     },
     "Observations.take": {"which": _PICKED},

@@ -71,7 +71,7 @@ HELD = (
     ("planning/routes/aisle_ways", ("_once",), "test_one_pass"),
     ("planning/routes/aisle_ways",
      ("value_ways", "_hang", "_value_through", "_value_in", "_put", "_put_from_right",
-      "_left_if_better"),
+      "_left_if_better", "_better_left", "_sum_sides", "_of_sides"),
      ("test_each_way", "test_an_aisle_that_hangs")),
     ("planning/routes/priced", ("_take_element", "_sweep", "_sweep_kinds", "_stretches"),
      ("test_the_best_drive", "test_a_kind")),

@@ -94,7 +94,7 @@ _COLUMNS = {
     "result": {"tuple", "mask"},
     "date": {"array of dates"},
     "on": {"array of dates", "moment", "numpy's NaT"},
-    **{name: {"list of 10^30"} for name in ("who", "notes")},
+    **{name: {"array of nan"} for name in ("who", "notes")},
 }
 _RECORDED = {"tuple", "list of 10^30", "array of nan", "array of 1e30", "array of -1"}
 _PICKED = {"empty list", "list", "empty array", "array of -1", "mask"}
@@ -110,6 +110,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
     },
     "Observations.of": {
         "present": {"array of -1", "mask"}, "day": {"array of dates", "moment"},
+        **{name: {"array of nan"} for name in ("species", "stage")},
         **dict.fromkeys(("count", "accuracy_m", "leaves_sampled"), _RECORDED),
     },
     "Observations.take": {"which": _PICKED},

@@ -169,7 +169,7 @@ def study_run(options: StudyOptions) -> None:
     or killed continues with the same command. The outcome does not depend on the number of workers.
 
     With --pest and --weather the insects are that pest in that weather, and the table's column
-    spread does not apply.
+    spread is empty.
 
     Example: fieldmon study run vines.zip --feature 3 --hours 6 --hours 12 --seeds 200 -o study
     """
@@ -238,6 +238,8 @@ _ALIKE = ["hours", "look_s", "infested", "spread"]
 
 def _tell(seasons: pa.Table) -> None:
     """Print the mean of each combination, and how much more it loses than the best sampler."""
+    import numpy as np
+
     measures = ["detection_pct", "infested_plant_days"]
     table = seasons.select(["sampler", *_ALIKE, "plot", "seed", *measures]).to_pandas()
     typer.echo(
@@ -246,11 +248,12 @@ def _tell(seasons: pa.Table) -> None:
     )
     for alike, of_alike in table.groupby(_ALIKE, dropna=False):
         hours, look_s, infested, spread = alike
+        rate = "" if np.isnan(spread) else f"{spread:g}"
         lost = of_alike.pivot_table("infested_plant_days", ["plot", "seed"], "sampler")
         best = lost.mean().idxmin()
         for name, one in of_alike.groupby("sampler"):
             typer.echo(
-                f"{name:16s} {hours:6g} {look_s:7g} {infested:9g} {spread:7g} {len(one):8d} "
+                f"{name:16s} {hours:6g} {look_s:7g} {infested:9g} {rate:>7s} {len(one):8d} "
                 f"{one['detection_pct'].mean():12.1f} {one['infested_plant_days'].mean():11.0f}  "
                 f"{_more(lost[name] - lost[best], is_best=name == best)}".rstrip()
             )

@@ -54,6 +54,40 @@ def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDAr
     return array
 
 
+def texts_of(given: object) -> NDArray[np.object_] | None:
+    """Return texts ``(k,)``, empty where one is missing (None, NaN, NA); None: they are none.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> texts_of(pd.Series(["Ann", None], dtype="string")), texts_of([float("nan")]), texts_of([7])
+    (array(['Ann', ''], dtype=object), array([''], dtype=object), None)
+    """
+    import numpy as np  # noqa: PLC0415 - as above
+
+    array = np.atleast_1d(np.asarray(given, None if hasattr(given, "dtype") else object))
+    if array.dtype.kind == "U":
+        return array.astype(object)
+    entries = array.ravel().tolist()
+    if array.dtype.kind == "O" and {*map(type, entries)} <= {str}:  # as mostly
+        return array
+    said = ["" if _is_missing(one) else one for one in entries]
+    if not all(isinstance(one, str) for one in said):
+        return None
+    texts = np.empty(len(said), object)
+    texts[:] = [*map(str, said)]
+    return texts.reshape(array.shape)
+
+
+def _is_missing(given: Any) -> bool:  # noqa: ANN401 - anything
+    """Return whether something stands for nothing: None, NaN, or pandas's NA and NaT."""
+    return (
+        given is None
+        or type(given).__name__ in {"NAType", "NaTType"}
+        or (isinstance(given, float) and given != given)  # noqa: PLR0124 - NaN
+    )
+
+
 def array_of_plants(
     kind: type[K],
     what: str,

@@ -70,7 +70,7 @@ class InspectionColumn:
     def to_file(self, values: Any) -> list[Any]:  # noqa: ANN401 - an array of any of them
         """Return texts or numbers ``(k,)`` as the season's file keeps them."""
         if self.is_text:
-            return [str(one) for one in values]
+            return list(values.tolist())
         known = [None if np.isnan(one) else one for one in values.tolist()]
         if self.decimals is None:
             return known

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.compute.arguments import must_be_known, shown
-from fieldmon.compute.array_arguments import entries_of, must_share_index
+from fieldmon.compute.array_arguments import entries_of, must_share_index, texts_of
 from fieldmon.compute.day_arguments import days_of, seconds_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted
@@ -34,12 +34,14 @@ _GIVEN = {column.name: column.given for column in COLUMNS}
 
 def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to its kind here
     """Return a column as it is kept, a view: the caller's own array stays as it is."""
+    (letters, words), texts = _GIVEN[name], _TYPES[name] is object
     # of columns that were held to their kind before, as mostly, there is nothing to find out
-    if type(given) is np.ndarray and given.ndim == 1 and given.dtype == _TYPES[name]:
+    if type(given) is np.ndarray and given.ndim == 1 and given.dtype == _TYPES[name] and not texts:
         return given.view()
-    letters, words = _GIVEN[name]
     try:
         held: Any = days_of(given) if name == "date" else given
+        if texts and (held := texts_of(given)) is None:
+            raise _wrong(name, given)
         values = np.atleast_1d(held)
         if values.ndim != 1:
             raise ObservationError(
@@ -87,7 +89,7 @@ class Inspections:
     count
         Pests counted; NaN where they were not.
     who, notes
-        Text; empty where nothing was noted.
+        Text; empty where nothing was noted. None, NaN and pandas's NA are nothing.
     detects
         Chance to see an infested plant that is inspected, as was said with the inspection; NaN
         where nothing was: then it is that of who inspects in the season.

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.compute.arguments import must_be, must_be_known, shown
-from fieldmon.compute.array_arguments import array_of, entries_of, must_share_index
+from fieldmon.compute.array_arguments import array_of, entries_of, must_share_index, texts_of
 from fieldmon.compute.day_arguments import days_of
 from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, worded
-from fieldmon.errors import ObservationError
+from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.plot.positions import lonlat_of
 
@@ -34,12 +34,17 @@ _TEXTS = frozenset({"species", "stage"})
 
 def _column(name: str, given: object) -> NDArray[np.generic]:
     """Return a column of records as it is kept."""
-    if name not in _TEXTS and getattr(given, "dtype", None) != np.bool_:
-        return np.atleast_1d(array_of(np.float64, f"The {name} of records", given))
-    kind = "NDArray[np.str_]" if name in _TEXTS else "NDArray[np.float64]"
-    is_array = isinstance(given, np.ndarray)
-    must_be_of(f"The {name} of records", kind if is_array else "Sequence[str]", given)
-    return np.asarray(given)
+    what = f"The {name} of records"
+    if name not in _TEXTS:
+        if getattr(given, "dtype", None) == np.bool_:
+            must_be_of(what, "NDArray[np.float64]", given)
+        return np.atleast_1d(array_of(np.float64, what, given))
+    texts = texts_of(given)
+    if texts is None or texts.ndim != 1:
+        raise SettingError(
+            f"{what} must be texts, one a record, but {shown(given)} does not hold them."
+        )
+    return texts.astype(np.str_)
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +164,8 @@ class Observations:
         day
             ``(m,)`` datetime64[D], the plot's, or the one of all; None: of no date.
         columns
-            Others of these columns by name, ``(m,)`` each.
+            Others of these columns by name, ``(m,)`` each. Where a text is missing (None, NaN,
+            pandas's NA) it is unknown.
 
         Raises
         ------
@@ -168,7 +174,7 @@ class Observations:
             result is not 1, 0 or -1, a day names a time zone, or a number is below 0 or has no
             end. A count that contradicts its result is taken: the result is believed.
         SettingError
-            If columns of pandas differ in their index.
+            If columns of pandas differ in their index, or texts are none.
         """
         must_share_index("records", {"lonlat": lonlat, "present": present, "day": day, **columns})
         points = lonlat_of("Positions of records", lonlat, _READ, nowhere=True)

@@ -10,8 +10,8 @@ import numpy as np
 
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
-from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.inspections import Inspections
+from fieldmon.errors import FileProblem, ObservationError, SettingError
+from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import (
     batches,
     corrections,
@@ -112,10 +112,12 @@ class SeasonInspections(SeasonCorrections):
         ContradictionError
             If there are such results and nobody confirmed them.
         ObservationError
-            If a plant is not on this plot, or a result has no date or an impossible one.
+            If a plant is not on this plot, a result has no date or an impossible one, or a find
+            counts 0.
         SettingError
             If a date is not of this season.
         """
+        _must_count_finds(inspections)
         (done,) = self.record_all([(inspections, source)], who, confirmed=confirmed, into=into)
         return done
 
@@ -203,10 +205,12 @@ class SeasonInspections(SeasonCorrections):
         Raises
         ------
         ObservationError
-            If a plant is not on this plot, or a result has no date or an impossible one.
+            If a plant is not on this plot, a result has no date or an impossible one, or a find
+            counts 0.
         SettingError
             If a date is not of this season.
         """
+        _must_count_finds(inspections)
         with self._writing() as db:
             before = self._read(db)
             held, known = before.history.inspections, names_written(db)
@@ -444,6 +448,19 @@ class SeasonInspections(SeasonCorrections):
         """Return what the imports had to say."""
         with self.store.reading() as db:
             return tables.read_messages(db)
+
+
+def _must_count_finds(inspections: Inspections) -> None:
+    """Raise `ObservationError` where a find counts 0; seasons of old hold such ones."""
+    nothing = (inspections.result == FOUND) & (inspections.count == 0)
+    if nothing.any():
+        raise ObservationError(
+            worded(
+                "A find must count above 0, but result {value} counts 0. Say clean, or give no "
+                "count (NaN).",
+                value=int(nothing.argmax()) + 1,
+            )
+        )
 
 
 def _by_those_known(known: dict[str, str], told: Inspections) -> Inspections:

@@ -336,7 +336,8 @@ class Pest:
     latency_days
         From infection until a plant infects others.
     hidden_days
-        From infestation until an inspection can see it.
+        From infestation until an inspection can see it. What is on the plot on the first morning
+        is older, in all stages: it can be seen from then on.
     mortality_per_day
         Chance that a plant's infestation ends of itself.
     count_means

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import pyproj
 import shapely
+from pyproj.exceptions import ProjError
 from scipy.spatial import cKDTree
 from shapely import MultiPolygon
 
@@ -15,6 +18,7 @@ from fieldmon.compute.wording import counted, first_few
 from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.near_doubles import near_doubles
+from fieldmon.plot.plant_columns import plain, plant_columns
 from fieldmon.plot.plant_names import FACES, PlantNames
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import goes_round, metres_per_unit
@@ -28,6 +32,8 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _DEGREES = "EPSG:4326"
+# columns as `plant_frame` has them
+_OWN = frozenset({"block", "row", "row_name", "number", "plant"})
 # no plot reaches so far
 _NEAR_180 = 175.0
 
@@ -124,9 +130,12 @@ def faces_in(
 
     And a planting of both faces where none was given, and which plants have both; None: none has.
     """
-    if "face" not in getattr(frame, "columns", ()) or getattr(frame, "crs", None) is None:
+    held = [name for name in getattr(frame, "columns", ()) if isinstance(name, str)]
+    column = next((name for name in held if plain(name) == "face"), None)
+    if column is None:
         return frame, planting, None
-    words = [_written(one).casefold().removesuffix(".0") for one in frame["face"].tolist()]
+    _must_say_where(frame)
+    words = [_written(one).casefold().removesuffix(".0") for one in frame[column].tolist()]
     placed = _placed(frame.geometry.to_numpy())
     face = np.where(placed, [FACES.get(word, 0) for word in words], 0)
     of_face: tuple[dict[bytes, int], ...] = ({}, {}, {})
@@ -154,14 +163,16 @@ def boundary_and_plants(
     And what there is to say of its lines that have no place.
 
     Places are in degrees WGS84. Names are those of its columns ``row`` (or ``row_name``, where that
-    says something), ``number`` or else ``plant``, and ``block``, as `plant_frame` has them.
+    says something), ``number`` or else ``plant``, and ``block``, as `plant_frame` has them, or as
+    files of plants call these.
 
     Raises
     ------
     SettingError
-        If the frame has no coordinate system.
+        If the frame has no coordinate system, or one that does not lead to WGS84.
     PlotError
-        If it is empty, holds several areas, or anything but areas and points.
+        If it is empty, holds several areas, one that crosses itself, or anything but areas and
+        points.
     """
     _must_say_where(frame)
     there = np.flatnonzero(_placed(frame.geometry.to_numpy()))
@@ -170,13 +181,8 @@ def boundary_and_plants(
     boundary, points = _area_of(shapes, kinds), shapes[kinds == "Point"]
     places = points.to_numpy()
     which = np.repeat(there[kinds == "Point"], shapely.get_num_coordinates(places))
-    said, names = _of_no_place(frame, there), _names_in(frame, which)
-    if "number" not in getattr(frame, "columns", ()) and _over_rows(names):
-        said.append(
-            "The column plant counts the plants of all rows on, from 0, as Plot.to_geopandas does: "
-            "it was not taken for their numbers within their rows. Keep its column number, too."
-        )
-        names = names._replace(plant=None)
+    names, of_names = _names_in(frame, which)
+    said = [*_of_no_place(frame, there), *of_names]
     xy = shapely.get_coordinates(frame.geometry.iloc[there][kinds == "Point"].to_numpy())
     lonlat = shapely.get_coordinates(places)
     step_m = step_of(xy) * metres_per_unit(frame.crs)
@@ -205,6 +211,22 @@ def _must_say_where(frame: GeoDataFrame | GeoSeries) -> None:
             "A GeoDataFrame must say its coordinate system, but its crs is None. "
             "Set it first: gdf.set_crs(4326), for instance."
         )
+    try:
+        pyproj.Transformer.from_crs(frame.crs, _DEGREES)
+    except ProjError:
+        raise SettingError(
+            "The coordinate system of a GeoDataFrame must lead to WGS84, but PROJ finds no way "
+            f"from {frame.crs.name!r}. Say in which its coordinates are: "
+            "gdf.set_crs(2039, allow_override=True), for instance."
+        ) from None
+    placed = frame.geometry.to_numpy()[_placed(frame.geometry.to_numpy())]
+    if frame.crs.is_geocentric and not shapely.has_z(placed).all():
+        raise SettingError(
+            f"Positions in {frame.crs.name!r}, measured from the middle of the earth, must have x, "
+            "y and z, but those of the GeoDataFrame have no z. Give their heights, too, or say in "
+            "which coordinate system they are: gdf.set_crs(2039, allow_override=True), for "
+            "instance."
+        )
 
 
 def _area_of(shapes: GeoSeries, kinds: Series) -> MultiPolygon | None:
@@ -221,7 +243,18 @@ def _area_of(shapes: GeoSeries, kinds: Series) -> MultiPolygon | None:
             f"One area must be the plot, but the GeoDataFrame holds {len(areas)}. Choose a row, "
             "gdf.iloc[[0]], or join its parts, gdf.dissolve()."
         )
-    return MultiPolygon(list(shapely.get_parts(areas.iloc[0]))) if len(areas) else None
+    if not len(areas):
+        return None
+    area = MultiPolygon(list(shapely.get_parts(areas.iloc[0])))
+    if not area.is_valid:
+        reason, _, at = shapely.is_valid_reason(area).rstrip("]").partition("[")
+        where = " / ".join(f"{float(one):.6f}" for one in at.split()[:2])
+        raise PlotError(
+            "The area of a plot must be one that can be walked round, but that of the "
+            f"GeoDataFrame is not valid: {reason.lower()} at {where}. Look at what "
+            "gdf.set_geometry(gdf.make_valid()) makes of it, or draw it again."
+        )
+    return area
 
 
 def _placed(shapes: NDArray[np.object_]) -> NDArray[np.bool_]:
@@ -241,33 +274,58 @@ def _of_no_place(frame: GeoDataFrame | GeoSeries, there: NDArray[np.intp]) -> li
     return [f"Lines of the GeoDataFrame without a place were left out: {n} ({named})."]
 
 
-def _names_in(frame: GeoDataFrame | GeoSeries, which: NDArray[np.intp]) -> PlantNames:
-    """Return what the columns of a frame call the points in these lines of it, ``(n,)``."""
+def _names_in(
+    frame: GeoDataFrame | GeoSeries, which: NDArray[np.intp]
+) -> tuple[PlantNames, list[str]]:
+    """Return what the columns of a frame call the points in these lines of it, ``(n,)``.
+
+    And what there is to say of these columns.
+    """
     import pandas as pd  # noqa: PLC0415 - as above
 
-    columns = getattr(frame, "columns", ())
+    held = [*dict.fromkeys(one for one in getattr(frame, "columns", ()) if isinstance(one, str))]
+    if not held or not len(which):
+        return PlantNames(), []
 
-    def called(name: str) -> NDArray[np.str_] | None:
-        if name not in columns:
-            return None
-        said = frame[name].iloc[which].tolist()
-        names = np.array(["" if pd.isna(one) else _written(one) for one in said], np.str_)
-        return names if (names != "").any() else None
+    @cache
+    def cells(name: str) -> list[str]:
+        column = frame.iloc[:, int(np.argmax(frame.columns == name))]
+        return ["" if pd.isna(one) else _written(one) for one in column.iloc[which].tolist()]
 
-    row, named = called("row"), called("row_name")
-    if row is not None and named is not None:
-        row = np.where(named == "", row, named)
-    number = called("number")
-    return PlantNames(
-        named if row is None else row,
-        called("block"),
-        called("plant") if number is None else number,
-    )
+    def called(name: str | None) -> NDArray[np.str_] | None:
+        return None if name is None or not any(cells(name)) else np.array(cells(name), np.str_)
+
+    names = [name for name in held if name != frame.active_geometry_name]
+    label = next((name for name in names if plain(name) == "rowname"), None)
+    columns = plant_columns(names, cells)
+    if columns.row is None and label is not None:
+        columns = plant_columns(names, cells, {"row": label})
+    row, labelled = called(columns.row), called(label)
+    if row is not None and labelled is not None:
+        row = np.where(labelled == "", row, labelled)
+    block, plant = called(columns.block), called(columns.plant)
+    said = [*columns.doubts]
+    if _over_rows(row, plant) and plain(str(columns.plant)) == "plant":
+        plant = None
+        said.append(
+            f"The column {columns.plant} counts the plants of all rows on, from 0, as "
+            "Plot.to_geopandas does: it was not taken for their numbers within their rows. Keep "
+            "its column number, too."
+        )
+    taken = {"blocks": (columns.block, block), "rows": (columns.row, row),
+             "plants": (columns.plant, plant)}  # fmt: skip
+    by = {what: name for what, (name, called_so) in taken.items() if called_so is not None}
+    if not _OWN.issuperset(by.values()):
+        said.append(
+            "Names were taken from columns of the GeoDataFrame: "
+            f"{', '.join(f'{what} from {name!r}' for what, name in by.items())}. Leave a column "
+            "out, or call it something else, if it means something else."
+        )
+    return PlantNames(row, block, plant), said
 
 
-def _over_rows(names: PlantNames) -> bool:
+def _over_rows(row: NDArray[np.str_] | None, plant: NDArray[np.str_] | None) -> bool:
     """Return whether plants are called as a grid counts them: from 0 on over several rows."""
-    row, plant = names.row, names.plant
     if row is None or plant is None or len(np.unique(row)) == 1:
         return False
     if not np.char.isdecimal(plant).all():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
@@ -278,14 +279,16 @@ def _doubt_of_plants(grid: PlantGrid) -> str:
     if grid.plant_called is not None and (plants == grid.plant_called).all():
         return ""
     wrong = _not_told_apart(grid, plants)
-    # where most have none, or share theirs, numbers are meant otherwise
-    if not 0 < 2 * len(wrong) <= len(np.unique(grid.vine)):
+    # where most have none, or share theirs, they are meant otherwise if they are not just numbers
+    not_empty = grid.plant_named[grid.plant_named != ""].tolist()
+    are_numbers = 2 * sum(_PLAIN.match(name) is not None for name in not_empty) > len(not_empty)
+    if not len(wrong) or (2 * len(wrong) > len(np.unique(grid.vine)) and not are_numbers):
         return ""
     line = plant_numbers(grid).line[wrong].tolist()
     names = grid.plant_named[wrong].tolist()
     some = [
         worded("{name} in row {row}", name=name or "?", row=grid.line_signs.get(row, row))
-        for name, row in dict.fromkeys(zip(names, line, strict=True))
+        for name, row in islice(dict.fromkeys(zip(names, line, strict=True)), _NAMED + 1)
     ]
     where = (
         worded("in all rows")

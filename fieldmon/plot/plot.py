@@ -305,10 +305,11 @@ class Plot:
         ----------
         frame
             One polygon, points, or both, in any coordinate system; rows are found from the
-            points, or laid in the polygon. Columns ``row``, ``plant`` (or ``number``) and
-            ``block`` say what points are called, as in a file of plants. A column ``face`` of 1 and
-            2, as `to_geopandas` has it, or a and b, says whether both faces are inspected: of all
-            plants, or of all but those that look at no other row.
+            points, or laid in the polygon. Columns ``row``, ``number`` (or ``plant``) and
+            ``block`` say what points are called; they are recognised as those of a file of plants
+            are (``Row``, ``Reihe``), and other names than these are said. A column ``face`` of 1
+            and 2, as `to_geopandas` has it, or a and b, says whether both faces are inspected: of
+            all plants, or of all but those that look at no other row.
         planting
             Bearing, spacings and headland; None: the defaults (rows 4 m and plants 3 m apart, along
             the longest side). Points keep their own spacings, and their bearing unless it is said.
@@ -323,16 +324,16 @@ class Plot:
         Warns
         -----
         ImportDoubt
-            Of lines without a place, of points that are left out, of rows along a ragged outline,
-            and for each of `doubts`.
+            Of lines without a place, of points that are left out, of columns that were taken for
+            names, of rows along a ragged outline, and for each of `doubts`.
 
         Raises
         ------
         SettingError
-            If the frame has no coordinate system.
+            If the frame has no coordinate system, or one that does not lead to WGS84.
         PlotError
-            If it holds no area and no point, several areas, no room for a plant, or both faces of
-            other plants.
+            If it holds no area and no point, several areas, one that crosses itself, no room for a
+            plant, or both faces of other plants.
 
         Examples
         --------

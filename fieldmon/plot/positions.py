@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.array_arguments import array_of
 from fieldmon.errors import ObservationError
+from fieldmon.plot.plant_columns import column_called
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
 _FARTHEST_DEG = (360.0, 90.0)
+# what columns of a table are called, as `plain` has them
+_LON, _LAT = ("lon", "long", "lng", "longitude", "x"), ("lat", "latitude", "y")
 
 
 def lonlat_of(
@@ -24,7 +27,8 @@ def lonlat_of(
     what
         Whose they are, in the sentence: ``"Positions of records"``.
     given
-        What was handed over.
+        What was handed over. A DataFrame may have any order and other columns if its columns are
+        called lon and lat.
     instead
         What else to do.
     nowhere
@@ -39,7 +43,7 @@ def lonlat_of(
     """  # noqa: E501 - a sentence
     import numpy as np  # noqa: PLC0415 - commands that only print their help do not wait for it
 
-    points = array_of(np.float64, what, given)
+    points = array_of(np.float64, what, _by_name(given))
     if points.size == 0 and points.ndim:
         return points.reshape(-1, 2)
     if points.ndim != 2 or points.shape[1] != 2:
@@ -57,3 +61,13 @@ def lonlat_of(
             f"Give longitude first{instead}."
         )
     return points
+
+
+def _by_name(given: Any) -> Any:  # noqa: ANN401 - anything
+    """Return the longitudes and latitudes of a DataFrame whose columns say which they are."""
+    if not hasattr(given, "iloc") or getattr(given, "ndim", 0) != 2:
+        return given
+    names = [str(name) for name in given.columns]
+    places = [column_called(words, names) for words in (_LON, _LAT)]
+    found = [names.index(one) for one in places if one is not None]
+    return given.iloc[:, found] if len(found) == len(places) else given

@@ -85,10 +85,12 @@ def simulate_chunk(
     except FieldmonError as error:
         return RefusedPlot(of.field.name, str(error))
     rows, plot, robot = [], laid.plot, Robot().with_times(robot_times)
-    named = replace(levels, sampler=label_of(levels.sampler))
+    named = vars(replace(levels, sampler=label_of(levels.sampler)))
+    if laid.pest_in_weather is not None:
+        named = named | {"spread": None}  # the insects are that pest
     for seed in seeds:
         season = simulated_season(laid, robot, levels, seed, (n_days, visit_every))
-        about = {"plot": plot.field.name, **vars(named), "seed": seed, "days": n_days}
+        about = {"plot": plot.field.name, **named, "seed": seed, "days": n_days}
         rows.append(about | {"plants": len(plot.grid)} | _measures(season))
     return rows
 

@@ -9,10 +9,12 @@ import pyarrow as pa
 import pytest
 from shapely import box
 
+from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.study_run import StudyOptions, _tell, _tell_charged
 from fieldmon.errors import FileProblem
 from fieldmon.simulation import results
 from fieldmon.simulation.design import study_of
+from fieldmon.simulation.worker import simulate_chunk
 from tests.cli.estate import MITES, ZIP, square
 from tests.paths import ROOT
 
@@ -151,6 +153,21 @@ def test_how_much_more_a_sampler_loses_is_told_season_by_season(capsys):
     assert dynamic.endswith(" 20  (best)")
     # differences 2, 5 and 3: mean 3.3, and by Student's t 4.30 * 1.53 / sqrt(3) to each side
     assert naive.endswith(" 23  +3.3 (-0.5 to +7.1)")
+    assert dynamic.split()[4:6] == ["0.1", "3"]
+    _tell(pa.Table.from_pylist([row | {"spread": None} for row in rows], results.SCHEMA))
+    _, of_pest, *_ = capsys.readouterr().out.splitlines()
+    assert of_pest == dynamic.replace("0.1", "   ")
+
+
+def test_seasons_of_a_pest_have_no_spread(tmp_path):
+    file = tmp_path / "plots.gpkg"
+    square().to_file(file)
+    usual = StudyOptions(file, hours=[1.0], sampler=["snake"], seeds=1, days=1)
+    of_pest = replace(usual, pest_options=PestOptions(pest="thesis"))
+    for asked, spread in ((usual, 0.1), (of_pest, None)):
+        (chunk,) = study_of(asked.plots(), asked.design()).chunks()
+        (season,) = simulate_chunk(chunk.setting, chunk.seeds, 1)
+        assert season["spread"] == spread
 
 
 def test_a_sampler_of_ones_own_is_compared_under_its_name(run, tmp_path):

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.errors import ObservationError
+from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED, Inspections
 from fieldmon.infestation.observations import Observations
 
@@ -101,6 +101,38 @@ def test_columns_have_the_same_types_wherever_they_come_from():
         kinds = [str(getattr(other, name).dtype) for name in vars(week())]
         assert kinds == ["int32", "int8", "datetime64[D]", "float64", "float64", "object", "object",
                          "float64"]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "who",
+    [
+        ["Ann", None],
+        np.array(["Ann", np.nan], object),
+        pd.Series(["Ann", None]),
+        pd.Series(["Ann", None], dtype=object),
+        pd.Series(["Ann", pd.NA], dtype="string"),
+        pd.Series(["Ann", None], dtype="category"),
+        np.array(["Ann", ""]),
+    ],
+)
+def test_missing_texts_are_nothing_whatever_they_stand_in(who):
+    places = [[35.1, 30.3]] * 2
+    for names in (
+        Inspections.of([1, 2], [0, 1], MONDAY, who=who).who,
+        Inspections.of([1, 2], [0, 1], MONDAY, notes=who).take([0, 1]).notes,
+        Observations.of(places, [1, 0], MONDAY, species=who).species,
+        Observations.of(places, [1, 0], MONDAY, stage=who).stage,
+    ):
+        assert names.tolist() == ["Ann", ""]
+    assert Inspections.of([1, 2], [0, 1], MONDAY, who=[np.nan, np.nan]).who.tolist() == ["", ""]
+
+
+@pytest.mark.parametrize("who", [[7, 8], np.array([7, 8]), ["Ann", 7], [["Ann"], ["Ben"]]])
+def test_what_is_no_text_is_refused_by_name(who):
+    with pytest.raises(ObservationError, match="who of inspections must be texts"):
+        Inspections.of([1, 2], [0, 1], MONDAY, who=who)
+    with pytest.raises(SettingError, match="species of records must be texts"):
+        Observations.of([[35.1, 30.3]] * 2, [1, 0], MONDAY, species=who)
 
 
 def test_columns_of_another_length_are_refused_by_name():

@@ -130,7 +130,7 @@ def test_a_clean_plant_with_a_count_of_zero_says_no_more_than_a_clean_plant(seas
 def test_a_find_with_a_count_of_zero_is_the_find_that_nobody_counted(season):
     """Old seasons hold such finds, and their own tables bring them back without the zero."""
     taps = results((3, FOUND), count=np.array([0.0]), second=np.array([25_000.0]))
-    season.record(taps, "phone")
+    season.record_all([(taps, "phone")])
     again = results((3, FOUND), second=np.array([25_000.2]))
     assert season.record(again, "inspections.csv").new == 0
     later = results((3, FOUND), second=np.array([25_001.0]))

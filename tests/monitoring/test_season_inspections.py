@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from fieldmon.errors import ContradictionError, ObservationError, SettingError
@@ -33,6 +34,23 @@ def test_the_log_says_how_many_of_what_was_brought_were_new(season):
     assert season.record(again, "copy.gpkg").new == 2
     seen = [entry.what for entry in season.log() if entry.kind == "seen"]
     assert [(one["found"], one["clean"]) for one in seen] == [(1, 4), (1, 1)]
+
+
+def test_missing_texts_of_pandas_are_none_and_are_filled_in_like_them(season):
+    frame = pd.DataFrame({"plant": [20, 21], "who": ["Ann", np.nan], "notes": [np.nan, "ok"]})
+    for given in (frame, frame.assign(plant=[22, 23]).convert_dtypes()):
+        told = Inspections.of(given.plant, [1, 0], BEGINS, who=given.who, notes=given.notes)
+        season.record(told, who="Ben")
+    with season.store.reading() as db:
+        kept = db.execute("SELECT who, notes FROM inspections").fetchall()
+    assert kept == [("Ann", ""), ("Ben", "ok")] * 2
+
+
+def test_a_find_that_counts_0_is_refused(season):
+    told = Inspections.of([5, 6], [CLEAN, FOUND], BEGINS, count=[0, 0])
+    for record in (season.record, season.record_instead):
+        with pytest.raises(ObservationError, match=r"result 2 counts 0\. Say clean"):
+            record(told)
 
 
 def test_what_was_not_inspected_stays_unknown(season):

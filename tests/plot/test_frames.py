@@ -195,6 +195,69 @@ def test_both_faces_come_back_as_they_were_and_no_others(outer_faces):
         Plot.from_geopandas(some, planting)
 
 
+@pytest.mark.parametrize(
+    ("row", "plant"),
+    [("Row", "Plant"), ("Reihe", "Pflanze"), ("row", "Number"), ("ROW_NUM", "number")],
+)
+def test_columns_are_recognised_as_those_of_a_file_are_and_said(row, plant):
+    points = named_points()
+    as_usual = Plot.from_geopandas(points)
+    with pytest.warns(ImportDoubt, match=f"rows from '{row}', plants from '{plant}'") as said:
+        plot = Plot.from_geopandas(points.rename(columns={"row": row, "plant": plant}))
+    assert len(said) == 1
+    assert plot.to_geopandas().equals(as_usual.to_geopandas())
+
+
+def test_a_column_face_is_recognised_so_too_and_numbers_alone_are_numbers():
+    planting = Planting(row_spacing_m=4, plant_spacing_m=2, faces=2)
+    out = Plot.from_geopandas(frame(SQUARE), planting).to_geopandas()
+    back = Plot.from_geopandas(out.rename(columns={"face": "Face"}))
+    assert back.n_plants == len(out)
+    points = named_points().drop(columns="row").rename(columns={"plant": "number"})
+    assert {*Plot.from_geopandas(points).to_geopandas()["number"]} == {*range(21, 26)}
+
+
+@pytest.mark.parametrize(
+    ("number", "said"),
+    [
+        (lambda k: np.ones(len(k)), "Column 'plant' was not taken for the numbers of plants"),
+        (lambda k: np.where(k < 3, np.nan, k), "Plants count from 1 in all rows"),
+        (lambda k: k // 2, "Plants count from 1 in all rows, not by the numbers"),
+    ],
+)
+def test_numbers_of_plants_that_tell_most_not_apart_are_not_dropped_without_a_word(number, said):
+    points = named_points()
+    points["plant"] = number(points["plant"].to_numpy(int) - 21)
+    with pytest.warns(ImportDoubt, match=said) as warned:
+        plot = Plot.from_geopandas(points)
+    assert len(warned) == 1
+    assert {*plot.to_geopandas()["number"]} == {*range(1, 6)}
+
+
+@pytest.mark.parametrize(
+    ("crs", "said"),
+    [
+        ('LOCAL_CS["Site",UNIT["metre",1]]', "PROJ finds no way from 'Site'"),
+        ("EPSG:4978", "must have x, y and z, but"),
+    ],
+)
+@pytest.mark.parametrize("face", [{}, {"face": [1, 2]}])
+def test_a_coordinate_system_that_does_not_lead_to_the_ground_is_refused(crs, said, face):
+    places = geopandas.GeoDataFrame(face, geometry=[Point(0, 0), Point(0, 0)], crs=crs)
+    with pytest.raises(SettingError, match=said):
+        Plot.from_geopandas(places)
+
+
+def test_an_area_that_crosses_itself_is_refused_with_what_mends_it():
+    x, y = 700_000, 3_360_000
+    corners = [(0, 0), (100, 0), (100, 60), (60, 60), (60, 61), (59, 60), (61, 60.5), (0, 60)]
+    crossing = frame(shapely.Polygon([(x + a, y + b) for a, b in corners]))
+    with pytest.raises(PlotError, match=r"self-intersection at 35\.\d+ / 30\.\d+\. .*make_valid"):
+        Plot.from_geopandas(crossing, PLANTING)
+    mended = crossing.set_geometry(crossing.make_valid())
+    assert Plot.from_geopandas(mended, PLANTING).n_plants > 100
+
+
 def test_a_grid_s_count_of_plants_is_not_taken_for_numbers_in_rows():
     out = Plot.from_geopandas(named_points()).to_geopandas()
     with pytest.warns(ImportDoubt, match="The column plant counts the plants of all rows on"):

@@ -206,7 +206,10 @@ def test_one_number_that_tells_no_plant_apart_takes_them_from_its_row_alone(odd,
 def test_numbers_that_tell_few_plants_apart_are_no_numbers():
     plot = named(ROW + 1, PLANT // 2 + 1)
     assert labels(plot)[1] == (PLANT + 1).tolist()
-    assert plot.doubts == ()
+    (doubt,) = plot.doubts
+    assert doubt.startswith("Plants count from 1 in all rows, not by the numbers in their names")
+    clones = np.array([f"clone {one}" for one in PLANT // 2])  # of which a number is only a part
+    assert named(ROW + 1, clones).doubts == ()
     (doubt,) = named(ROW + 1, np.where(PLANT == 4, 8, PLANT + 3)).doubts
     assert doubt.startswith("Plants count from 1 in all rows")
 

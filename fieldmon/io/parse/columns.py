@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from typing import TYPE_CHECKING
+
+from fieldmon.plot import plant_columns
+from fieldmon.plot.plant_columns import (
+    NUMBERED_COLUMNS,
+    PLANT_WORDS,
+    column_called,
+    without_numbering,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -63,47 +70,18 @@ _NAMES = {
     "plot": "plot plotname plotid plotno fieldid field fieldname parcel parcelname block blockname "
     "parcela lote parcelle schlag feld flurstück flurstueck appezzamento campo locality site "
     "חלקה שםחלקה מגרש שדה orchard vineyard talhao talhão perceel",
-    "block": "block blockname blockno blocknr blockid bloc blok bloque blocco bloco cuartel "
-    "בלוק بلوك",
-    "row": "row rowno rownumber rownr rowid reihe zeile fila hilera rang rangée rangee fileira "
-    "filare linha שורה מספרשורה vinerow line rij صف الصف خط الخط",
-    "plant": "plant plantno plantnumber plantid tree treeno treeid treenumber vine vineno vineid "
-    "pflanze rebe baum planta arbol árbol cepa plante arbre cep pied souche pianta albero עץ שתיל "
-    "צמח מספרעץ מספרצמח "
-    "نبتة النبتة نبات النبات شجرة الشجرة نخلة النخلة "
-    "col column quadrat position_in_row positioninrow",
-    "name": "name plotname fieldname parcelname plot field parcel block title label nombre nom "
-    "nome bezeichnung schlagname flurname lage naam parcela lote parcelle schlag שם שםחלקה שםשטח "
-    "שםהחלקה חלקה uniqueid idparcel parcelid fieldid plotid",
 }
-# what may stand behind the word for a row or a plant: ROW_NUM, Plant index
-_NUMBERING = re.compile(r"(?<=\w)(?:number|num|nr|no|nbr|index|idx|id)$")
-_CUT = 10
-_SYNONYMS = {role: tuple(names.split()) for role, names in _NAMES.items()}
-
-
-def plain(name: str) -> str:
-    """Return a column name without capitals, accents, units in brackets and punctuation."""
-    bare = re.sub(r"[(\[].*?[)\]]", "", name)
-    letters = unicodedata.normalize("NFKD", (bare or name).casefold())
-    return "".join(c for c in letters if c.isalnum())
-
-
-_PLAIN = {role: tuple(plain(name) for name in names) for role, names in _SYNONYMS.items()}
+_SYNONYMS = {
+    **{role: tuple(names.split()) for role, names in _NAMES.items()},
+    **{role: PLANT_WORDS[role] for role in ("block", "row", "plant", "name")},
+}
+plain = plant_columns.plain
+_PLAIN = {role: tuple(map(plain, names)) for role, names in _SYNONYMS.items()}
 
 
 def find(role: str, names: Iterable[str], taken: frozenset[str] = frozenset()) -> str | None:
     """Return the column that most likely plays a role, or None."""
-    known = {plain(name): name for name in reversed(list(names)) if name not in taken}
-    exact = next((known[name] for name in _PLAIN[role] if name in known), None)
-    if exact is not None:
-        return exact
-    bare = {_NUMBERING.sub("", name): own for name, own in known.items()}
-    if numbered := next((bare[name] for name in _NUMBERED.get(role, ()) if name in bare), None):
-        return numbered
-    # a shapefile cuts names to ten characters: decimalLon, individual, coordinate
-    cut = {name for name, own in known.items() if len(own) == _CUT}
-    return next((known[name[:_CUT]] for name in _PLAIN[role] if name[:_CUT] in cut), None)
+    return column_called(_PLAIN[role], names, taken, NUMBERED_COLUMNS.get(role, ()))
 
 
 def recognised(names: Iterable[str]) -> frozenset[str]:
@@ -114,8 +92,8 @@ def recognised(names: Iterable[str]) -> frozenset[str]:
 def _is_numbered(name: str) -> bool:
     """Return whether a column numbers rows or plants by its name."""
     own = plain(name)
-    bare = _NUMBERING.sub("", own)
-    return bare != own and any(bare in words for words in _NUMBERED.values())
+    bare = without_numbering(own)
+    return bare != own and any(bare in words for words in NUMBERED_COLUMNS.values())
 
 
 _SPLIT = re.compile(r"[\W_]+|(?<=[a-z])(?=[A-Z])")
@@ -133,18 +111,12 @@ def _split(name: str) -> list[str]:
     return [plain(word) for word in _SPLIT.split(name) if word]
 
 
-_OF_TABLES = frozenset({"line", "linha", "ligne", "rang", "file", "zeile"})
-# the words of a role that a number makes no other thing: a line no. is of a table
-_NUMBERED = {
-    role: tuple(name for name in _PLAIN[role] if name not in _OF_TABLES)
-    for role in ("row", "plant")
-}
 _SAID_OF_ROWS = """
 label labels name code tag sign mark title vine vineyard tree orchard plot block field in of the id
 no nr num number
 """
 _OF_NAMES = frozenset(_SAID_OF_ROWS.split())
-_ROW_WORDS = frozenset(_PLAIN["row"]) - _OF_TABLES | {"rows"}
+_ROW_WORDS = frozenset(NUMBERED_COLUMNS["row"]) | {"rows"}
 _ALL = frozenset(name for names in _PLAIN.values() for name in names)
 
 

@@ -163,6 +163,14 @@ def transformation_from(crs: pyproj.CRS, centre: tuple[float, float]) -> Transfo
     code, name = code_of(flat), flat.name
     if flat.equals(pyproj.CRS(WGS84), ignore_axis_order=True):
         return Transformation(code, name)
+    if flat.is_geocentric:
+        raise FileProblem(
+            worded(
+                "Places must be in degrees or on a map, but {name} counts metres from the middle "
+                "of the earth, and heights are not read. Save the file in EPSG:4326.",
+                name=name,
+            )
+        )
     try:
         rough = _some_way(flat).transform(*centre)
         with warnings.catch_warnings():

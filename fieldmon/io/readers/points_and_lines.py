@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -27,11 +28,10 @@ from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import closed_lines, geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
-from fieldmon.io.parse.values import plain_numbers
-from fieldmon.io.readers.inspection_file.columns import own_column
 from fieldmon.io.readers.places import Plants
 from fieldmon.io.readers.plots import blocks_of
 from fieldmon.plot.near_doubles import near_doubles
+from fieldmon.plot.plant_columns import plant_columns
 from fieldmon.plot.rounding import doubts_of_rounding
 from fieldmon.plot.row_detection import SAME_PLANT_M, distinct, frame_around
 from fieldmon.plot.row_drawing import rows_from_posts
@@ -100,40 +100,18 @@ def _named(
     layer: Layer, options: ReadOptions
 ) -> tuple[list[NDArray[np.str_]], dict[str, str], list[ImportMessage]]:
     """Return what blocks, rows and plants are called ``(n,)``, by which columns, and say so."""
-    names: list[NDArray[np.str_]] = []
-    columns: dict[str, str] = {}
-    for role in ("block", "row", "plant"):
-        taken = frozenset(columns.values())
-        named = options.column(role) or find(role, layer.columns, taken)
-        if role == "plant" and "row" in columns and options.column(role) is None:
-            named = _number_in_row(layer, columns["row"], named)
-        if named is None and role == "plant":
-            named = find("name", layer.columns, taken)
-        if role == "plant" and options.column(role) is None and _is_constant(layer, named):
-            named = None  # it tells no plant from another
-        if named is None:
-            names.append(np.full(len(layer), "", dtype=np.str_))
-            continue
-        columns[role] = named
-        names.append(np.array([text(v) for v in layer.column(named)], dtype=np.str_))
+    cells = cache(lambda name: [text(v) for v in layer.column(name)])
+    told = {role: name for role in ("block", "row", "plant") if (name := options.column(role))}
+    columns = plant_columns(list(layer.columns), cells, told)
+    names = [
+        np.array([""] * len(layer) if name is None else cells(name), np.str_)
+        for name in (columns.block, columns.row, columns.plant)
+    ]
     said = [
         seen(worded("Column {named!r} names the {role}s.", named=named, role=role))
-        for role, named in columns.items()
+        for role, named in columns.said.items()
     ]
-    return names, columns, said
-
-
-def _number_in_row(layer: Layer, row: str, plant: str | None) -> str | None:
-    """Return the column of numbers in the row, where that of the plants has numbers only too.
-
-    Those then count over the whole plot, as in files given out.
-    """
-    number = own_column("number", layer, {row})
-    if number is None or (plant is not None and plain_numbers(layer.column(plant)) is None):
-        return plant
-    together = zip(*(map(text, layer.column(name)) for name in (row, number)), strict=True)
-    tells = 2 * len({*together}) >= len(layer)  # both faces of a plant may be in the file
-    return number if tells else plant
+    return names, columns.said, [*said, *map(doubtful, columns.doubts)]
 
 
 def _in_another_part(
@@ -183,11 +161,6 @@ def _of_near_doubles(lonlat: NDArray[np.float64]) -> list[ImportMessage]:
         return []
     remedy = Remedy("doubles", f"{doubles.within_m:g}", worded("Keep one of each"))
     return [doubtful(doubles.sentence, remedy=remedy)]
-
-
-def _is_constant(layer: Layer, column: str | None) -> bool:
-    """Return whether a column says the same of all, of several."""
-    return column is not None and len(layer) > 1 and len({*map(text, layer.column(column))}) == 1
 
 
 def _corners_among(

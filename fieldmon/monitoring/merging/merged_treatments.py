@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 Held = set[tuple[str | None, int | None]]
 #: what a label may fill in, in words
 _FILLED = dict(zip(treatments.FILLED, ("waiting days", "re-entry hours", "group"), strict=True))
+# of two treatments, which copies had each
+_EACH_BY_ONE = [True, False], [False, True]
 
 
 def merge(
@@ -67,30 +69,47 @@ def alike_but_for_labels(treated: list[Row], held: list[Held]) -> Iterator[str]:
         if row["undone"] != TAKEN_BACK and row["digest"] is not None:
             alike.setdefault(treatments.but_for_labels(row), []).append(row)
     for one, other in (pair for rows in alike.values() for pair in combinations(rows, 2)):
-        of = [[(row["digest"], row["batch"]) in had for had in held] for row in (one, other)]
         names = [name for name in treatments.FILLED if one[name] != other[name]]
-        if sorted(of) != [[False, True], [True, False]] or not names:
+        of = _held_by(one, held), _held_by(other, held)
+        if not names or of not in (_EACH_BY_ONE, _EACH_BY_ONE[::-1]):
             continue
-        here, there = (one, other) if of[0][0] else (other, one)
+        here, there = (one, other) if of == _EACH_BY_ONE else (other, one)
         differ = ", ".join(
             f"{_FILLED[name]} {_or_none(here[name])} here, {_or_none(there[name])} there"
             for name in names
         )
-        named = f"{one['product'] or 'a product that nobody named'} on {one['date']}"
-        counts = [row["undone"] for row in (one, other)].count(COUNTS)
-        if counts == 1 and treatments.known_by(one) & treatments.known_by(other):
-            yield (
-                f"The treatment with {named} was recorded in both, and labels added different "
-                f"values: {differ}. It counts once; the longer waits and all groups hold."
-            )
-        elif counts == 2:
-            old = any(row["by_label"] is None and row[name] is not None
-                      for row in (one, other) for name in names)  # fmt: skip
-            why = " (an earlier version did not note whether a label added that)" if old else ""
-            yield (
-                f"Treatments with {named}, batches {one['batch']} and {other['batch']}, say the "
-                f"same but for {differ}{why}. Both count; if they are one, undo a batch."
-            )
+        counting = [row["undone"] for row in (one, other)].count(COUNTS)
+        if counting == 1 and treatments.known_by(one) & treatments.known_by(other):
+            yield _of_one(one, differ)
+        elif counting == 2:
+            yield _of_two(one, other, names, differ)
+
+
+def _held_by(row: Row, held: list[Held]) -> list[bool]:
+    """Return which copies had a treatment."""
+    return [(row["digest"], row["batch"]) in had for had in held]
+
+
+def _of_one(row: Row, differ: str) -> str:
+    return (
+        f"The treatment with {_named(row)} was recorded in both, and labels added different "
+        f"values: {differ}. It counts once; the longer waits and all groups hold."
+    )
+
+
+def _of_two(one: Row, other: Row, names: list[str], differ: str) -> str:
+    old = any(
+        row["by_label"] is None and row[name] is not None for row in (one, other) for name in names
+    )
+    why = " (an earlier version did not note whether a label added that)" if old else ""
+    return (
+        f"Treatments with {_named(one)}, batches {one['batch']} and {other['batch']}, say the "
+        f"same but for {differ}{why}. Both count; if they are one, undo a batch."
+    )
+
+
+def _named(row: Row) -> str:
+    return f"{row['product'] or 'a product that nobody named'} on {row['date']}"
 
 
 def _or_none(value: object) -> str:
@@ -105,7 +124,7 @@ def of_one_product(treated: list[Row], held: list[Held]) -> Iterator[tuple[int, 
     """
     same: dict[tuple[str, str], list[tuple[int, Row, list[bool]]]] = {}
     for number, row in enumerate(treated, 1):
-        of = [(row["digest"], row["batch"]) in had for had in held]
+        of = _held_by(row, held)
         if row["undone"] == COUNTS and not all(of):
             product = row["date"], plain_name(row["product"] or "")
             same.setdefault(product, []).append((number, row, of))

@@ -40,6 +40,7 @@ IMPOSSIBLE = -1e300
 # no literals: see `frontier`
 _SIDES: Any = np.arange(4)
 _NONE, _BOTH = _SIDES[0], _SIDES[3]
+_UP_TO_HERE, _FROM_HERE = _SIDES[0], _SIDES[1]
 _SAME_PLACE_M = 1e-6
 
 
@@ -58,7 +59,10 @@ class Costs(NamedTuple):
 
 
 class LadderRoom(NamedTuple):
-    """Room for a sweep: worth ``(e, 12)``, cuts, rewards; the best to every state, its reward."""
+    """Room for a sweep: worth ``(e, 12)``, cuts, rewards; the best to every state, its reward.
+
+    `of_side` sums what plants gain and hold on each side, of all and of those passed so far.
+    """
 
     worth: Float
     reward: Float
@@ -218,6 +222,21 @@ def _left_if_better(
 
 
 @inner_loop
+def _better_left(
+    left: tuple[tuple[float, float, int, int], tuple[float, float, int, int]],
+    what: tuple[float, float, float],
+    end: int,
+    sides: int,
+) -> tuple[tuple[float, float, int, int], tuple[float, float, int, int]]:
+    """Return the best of the plants on the left, driven back and ended in, with some more."""
+    (into, ending), (gains, held, deep) = left, what
+    return (
+        _left_if_better(into, (gains - 2.0 * deep, held), end, sides),
+        _left_if_better(ending, (gains - deep, held), end, sides),
+    )
+
+
+@inner_loop
 def _put_from_right(
     room: LadderRoom,
     aisle: tuple[int, int],
@@ -244,7 +263,7 @@ def _put_from_right(
 
 
 @inner_loop
-def _value_in(  # noqa: C901, PLR0912 - one pass over the plants
+def _value_in(
     ladder: Ladder, reward: Float, costs: Costs, state: tuple[int, float, bool], room: LadderRoom
 ) -> None:
     """Value an aisle that is entered and left by the same end, or in which the day ends.
@@ -255,54 +274,67 @@ def _value_in(  # noqa: C901, PLR0912 - one pass over the plants
     metre, stop, change = price * costs.metre_s, price * costs.stop_s, price * costs.change_s
     both_sides = min(price * costs.turn_s, change)
     first, end = ladder.start[k], ladder.start[k + 1]
-    gains_of, held_of = room.of_side[0], room.of_side[1]
-    left_of, left_held_of = room.of_side[2], room.of_side[3]
+    _sum_sides(ladder, reward, (first, end, stop), room)
+    left = (IMPOSSIBLE, 0.0, first, 0), (IMPOSSIBLE, 0.0, first, 0)
+    for i in range(first, end):
+        side = 1 if ladder.upper[i] else 0
+        from_left = metre * ladder.in_m[i]
+        from_right = metre * (ladder.across_m[k] - ladder.in_m[i])
+        if reward[i] > stop:
+            for sides in range(1, 4):
+                gains, held = _of_sides(room, sides, change, _FROM_HERE)
+                if held != 0.0:
+                    gains -= both_sides if sides == 3 else 0.0
+                    what = gains, held, from_right
+                    _put_from_right(room, (k, first), what, (i, sides), left)
+            room.of_side[2, side] += reward[i] - stop
+            room.of_side[3, side] += reward[i]
+            turns = room.of_side[3, 1 - side] > 0.0
+            for sides in range(1, 4):
+                if sides & (side + 1):
+                    gains, held = _of_sides(room, sides, change, _UP_TO_HERE)
+                    gains -= both_sides if sides == 3 and turns else 0.0
+                    left = _better_left(left, (gains, held, from_left), i + 1, sides)
+        elif every and reward[i] > 0.0:
+            gains, held = reward[i] - stop - change, reward[i]
+            _put_from_right(room, (k, first), (gains, held, from_right), (i, side + 1), left)
+            left = _better_left(left, (gains, held, from_left), i + 1, side + 1)
+    into, ending = left
+    if into[2] > first:
+        _put(room, k, FROM_LEFT, into[:2], (into[2], end, into[3], _NONE))
+        _put(room, k, END_LEFT, ending[:2], (ending[2], end, ending[3], _NONE))
+
+
+@inner_loop
+def _sum_sides(
+    ladder: Ladder, reward: Float, state: tuple[int, int, float], room: LadderRoom
+) -> None:
+    """Sum what the plants that pay gain and hold on each side; none of them is passed yet.
+
+    `state`: the first plant of the aisle, that after its last, and what a stop costs.
+    """
+    first, end, stop = state
     room.of_side[:] = 0.0
     for i in range(first, end):
         if reward[i] > stop:
             side = 1 if ladder.upper[i] else 0
-            gains_of[side] += reward[i] - stop
-            held_of[side] += reward[i]
-    into, ending = (IMPOSSIBLE, 0.0, first, 0), (IMPOSSIBLE, 0.0, first, 0)
-    for i in range(first, end):
-        side = 1 if ladder.upper[i] else 0
-        if reward[i] <= stop:
-            if not every or reward[i] <= 0.0:
-                continue
-            gains, held = reward[i] - stop - change, reward[i]
-            deep = metre * (ladder.across_m[k] - ladder.in_m[i])
-            _put_from_right(room, (k, first), (gains, held, deep), (i, side + 1), (into, ending))
-            deep = metre * ladder.in_m[i]
-            into = _left_if_better(into, (gains - 2.0 * deep, held), i + 1, side + 1)
-            ending = _left_if_better(ending, (gains - deep, held), i + 1, side + 1)
-            continue
-        deep = metre * (ladder.across_m[k] - ladder.in_m[i])
-        for sides in range(1, 4):
-            gains, held = -change, 0.0
-            for of in range(2):
-                if sides & (of + 1):
-                    gains += gains_of[of] - left_of[of]
-                    held += held_of[of] - left_held_of[of]
-            if held == 0.0:
-                continue
-            if sides == 3:
-                gains -= both_sides
-            _put_from_right(room, (k, first), (gains, held, deep), (i, sides), (into, ending))
-        left_of[side] += reward[i] - stop
-        left_held_of[side] += reward[i]
-        deep = metre * ladder.in_m[i]
-        for sides in range(1, 4):
-            if not sides & (side + 1):
-                continue
-            gains, held = -change, 0.0
-            for of in range(2):
-                if sides & (of + 1):
-                    gains += left_of[of]
-                    held += left_held_of[of]
-            if sides == 3 and left_held_of[1 - side] > 0.0:
-                gains -= both_sides
-            into = _left_if_better(into, (gains - 2.0 * deep, held), i + 1, sides)
-            ending = _left_if_better(ending, (gains - deep, held), i + 1, sides)
-    if into[2] > first:
-        _put(room, k, FROM_LEFT, into[:2], (into[2], end, into[3], _NONE))
-        _put(room, k, END_LEFT, ending[:2], (ending[2], end, ending[3], _NONE))
+            room.of_side[0, side] += reward[i] - stop
+            room.of_side[1, side] += reward[i]
+
+
+@inner_loop
+def _of_sides(room: LadderRoom, sides: int, change: float, which: int) -> tuple[float, float]:
+    """Return what plants on these sides gain and hold, less a change of aisle.
+
+    `which`: those passed so far, or all others.
+    """
+    gains, held = -change, 0.0
+    for of in range(2):
+        if sides & (of + 1):
+            if which == _UP_TO_HERE:
+                gains += room.of_side[2, of]
+                held += room.of_side[3, of]
+            else:
+                gains += room.of_side[0, of] - room.of_side[2, of]
+                held += room.of_side[1, of] - room.of_side[3, of]
+    return gains, held

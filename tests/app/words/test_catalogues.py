@@ -23,8 +23,10 @@ def test_catalogues_are_as_the_command_writes_them(tmp_path, monkeypatch):
         (tmp_path / f"{code}.po").write_bytes(data)
     monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
     for code in OTHERS:
-        assert catalogues.update(code) == []
-        assert (tmp_path / f"{code}.po").read_bytes() == before[code]
+        open_ = catalogues.update(code)
+        assert open_ == [], f"Run python -m app.words.catalogues, and translate in {code}.po."
+        same = (tmp_path / f"{code}.po").read_bytes() == before[code]
+        assert same, "Run python -m app.words.catalogues, and commit what it writes."
 
 
 @pytest.mark.parametrize("code", OTHERS)

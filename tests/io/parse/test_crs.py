@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.errors import ChoiceNeeded
+from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import ReadOptions
 from fieldmon.io.parse.crs import (
@@ -30,6 +30,11 @@ ITM = (207_000.0, 470_000.0)  # about Paran, new Israeli grid
 )
 def test_a_system_is_named_by_its_code_or_its_name(text, code):
     assert code_of(system(text)) == code
+
+
+def test_metres_from_the_middle_of_the_earth_are_refused():
+    with pytest.raises(FileProblem, match=r"WGS 84 counts metres from the middle.*EPSG:4326"):
+        transformation_from(system("EPSG:4978"), (4_500_000.0, 3_200_000.0))
 
 
 @pytest.mark.parametrize("text", ["EPSG:999999", "somewhere", "x" * 200])

@@ -78,6 +78,7 @@ READERS = {
 @pytest.mark.parametrize("name", FORMATS)
 @pytest.mark.parametrize("make", [usual, crooked])
 def test_every_format_is_read_back_by_another_program(tmp_path, name, make):
+    assert name in READERS, f"Add a reader of {name} to READERS: see CONTRIBUTING, Add a format."
     plan = make()
     paths = write_handoff(plan, tmp_path / f"day{FORMATS[name].endings[0]}")
     assert [int(plant) for plant in READERS[name](paths)] == plan.route.plant.tolist()

@@ -15,6 +15,7 @@ from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find, is_confidence, is_id, is_of_rows, plain, recognised
 from fieldmon.io.parse.result_words import tells_infestation
 from fieldmon.io.parse.values import is_missing, presence, told_number
+from fieldmon.plot.plant_columns import PLANT_WORDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 # The columns of inspections that no pest record has; spellings as in `columns`
 _NAMES = {
-    "number": "number numberinrow plantinrow placeinrow nummerinreihe numeroenfila מספרבשורה",
+    "number": " ".join(PLANT_WORDS["number"]),
     # a running number where there is a better one
     "ordinal": "no nr num nummer numero numéro número מספר",
     "time": "time hour when timestamp datetime inspected inspectedat visited visitedat zeit "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from datetime import datetime, time, timedelta
 from enum import StrEnum
@@ -32,7 +32,7 @@ from fieldmon.cli.season_files import (
     refuse_unrecorded,
     refuse_what_was_chosen,
 )
-from fieldmon.cli.stopped import STOPPED_CODE
+from fieldmon.cli.stopped import STOPPED_CODE, as_at_ctrl_c, told_to_end
 from fieldmon.cli.times import day, day_on
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import SettingError
@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from fieldmon.drive.errand import DrivingRobot
     from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
+    from fieldmon.drive.vda5050.fleet import Vda5050Robot
     from fieldmon.drive.vda5050.mqtt import RobotName
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -186,16 +187,17 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
     """
     from fieldmon.monitoring.transactions import is_season
 
-    if options.plot is None or not is_season(options.plot):
-        _plot(options)
-        return
-    refuse_what_was_chosen(context, _OF_A_SEASON)
-    from fieldmon.drive.one_drive import one_drive
+    with told_to_end(as_at_ctrl_c):
+        if options.plot is None or not is_season(options.plot):
+            _plot(options)
+            return
+        refuse_what_was_chosen(context, _OF_A_SEASON)
+        from fieldmon.drive.one_drive import one_drive
 
-    if _team(context, options, options.plot):
-        return
-    with one_drive(options.plot, _name(options)):
-        _season(options, options.plot)
+        if _team(context, options, options.plot):
+            return
+        with one_drive(options.plot, _name(options)):
+            _season(options, options.plot)
 
 
 def _plot(options: DriveOptions) -> None:
@@ -235,15 +237,18 @@ def _plot(options: DriveOptions) -> None:
 
     with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         robot, recording = driver
-        with _written(partial(_write_bag, recording, begins, options), tables):
+        bag = partial(_write_bag, recording, begins, options)
+        with _written(bag, tables), _home_when_told(robot, so_far, options.serial):
             drive_day(today, aisles, (worker, robot), recording.note, so_far)
 
 
 def _season(options: DriveOptions, file: Path) -> None:
     """Drive what is left of a day of a season, each plant told recorded at once."""
     from fieldmon.drive.day import DrivenDay, drive_day
+    from fieldmon.drive.day_clock import time_results
     from fieldmon.drive.season_day import SeasonDay
     from fieldmon.monitoring import Season
+    from fieldmon.plot.local_clock import grid_clock
 
     if options.robot is not Drives.VDA5050 and not options.made_up:
         raise SettingError(
@@ -271,7 +276,7 @@ def _season(options: DriveOptions, file: Path) -> None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
         _tell_plan(goes_on=today.goes_on)
     before = season.contents([today.batch])[today.batch].n if today.batch is not None else 0
-    begins, so_far = _begins(season, on, today.begun_s), DrivenDay()
+    so_far = DrivenDay()
 
     def tables(*, stopped: bool) -> None:
         _write(so_far, on, options, _name(options), before)
@@ -280,8 +285,14 @@ def _season(options: DriveOptions, file: Path) -> None:
             _tell_stopped(season, on, today.batch)
 
     with _driver(options, season.plot, worker, (season.morning(on), on)) as (robot, recording):
-        bag = partial(_write_bag, recording, begins, options, goes_on=before > 0)
-        with _written(bag, tables):
+
+        def bag() -> None:
+            begins = _begins(season, on, today.begun_s)
+            _write_bag(recording, begins, options, goes_on=before > 0)
+
+        with _written(bag, tables), _home_when_told(robot, so_far, options.serial):
+            if told := time_results(today, grid_clock(season.plot.grid), _live(robot)):
+                _say(told)
             drive_day(today, aisles, (worker, robot), recording.note, so_far)
 
 
@@ -359,7 +370,6 @@ def _team_day(
         one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
         for one in today.robots
     }
-    begins = {one.name: _begins(season, on, today.member(one.name).begun_s) for one in today.robots}
     broker = Broker.of(options.broker)
     begun: dict[str, DrivenDay] = {}
     driven = begun
@@ -370,7 +380,10 @@ def _team_day(
     finally:  # whatever ended it
         for name in sorted(begun):
             _write(begun[name], on, own[name], name, before[name])
-            _write_bag(recordings[name], begins[name], own[name], goes_on=before[name] > 0)
+            begun_s = begun[name].begun_s
+            planned_s = season.begun_s(on, name) if begun_s is None else begun_s
+            begins = _begins(season, on, planned_s)
+            _write_bag(recordings[name], begins, own[name], goes_on=before[name] > 0)
     missing = dict.fromkeys(each.broken for each in driven.values() if each.broken)
     _tell_replanned(today.replanned - 1)
     if today.stops:
@@ -513,6 +526,43 @@ def _driver(
     decides = sampler_of(options.sampler, options.every)
     physics = _physics(options, plot, worker)
     yield simulated_robot(options.robot.value, recording, decides, made_up, physics), recording
+
+
+@contextmanager
+def _home_when_told(robot: DrivingRobot, driven: DrivenDay, name: str) -> Iterator[None]:
+    """Let a live robot end the plant in hand and drive home, as a team's do, when told to end.
+
+    The second time nobody is waited for.
+    """
+    if (live := _live(robot)) is None:
+        yield
+        return
+    from fieldmon.drive.vda5050.team import STOPPING
+
+    def end() -> None:
+        driven.ends += 1
+        if driven.ends > 1 or not live.has_order:
+            raise KeyboardInterrupt
+        with suppress(RuntimeError):  # where something is being printed
+            _say(STOPPING[0].format(names=name))
+
+    live.stops = lambda: driven.ends
+    try:
+        with told_to_end(end, also=("SIGINT",)):
+            yield
+    except KeyboardInterrupt:
+        if live.has_order:
+            _say(f"{STOPPING[1]} The robot still ends what it was ordered last.")
+        raise
+    if driven.ends:
+        raise KeyboardInterrupt
+
+
+def _live(robot: DrivingRobot) -> Vda5050Robot | None:
+    """Return a robot that is driven live; None: it is simulated."""
+    from fieldmon.drive.vda5050.fleet import Vda5050Robot
+
+    return robot if isinstance(robot, Vda5050Robot) else None
 
 
 def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None:

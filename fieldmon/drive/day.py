@@ -57,6 +57,10 @@ class DrivenDay:
         What came of it; None: there was none, or as charged.
     broken
         What broke it off, in a sentence; "": nothing.
+    ends
+        How often somebody asked for its end: no other plant is asked for.
+    begun_s
+        The second of a season's day from which its seconds count; None: as planned.
     """
 
     stops: list[DrivenStop] = field(default_factory=list)
@@ -64,6 +68,8 @@ class DrivenDay:
     home_driven_s: float = 0.0
     home: Visit | None = None
     broken: str = ""
+    ends: int = 0
+    begun_s: float | None = None
 
     def __repr__(self) -> str:
         return f"<DrivenDay: {counted(len(self.stops), 'stop')}, {self.found} found>"
@@ -154,7 +160,7 @@ def drive_day(
     clock = robot_clock(worked, robot.day_s)
     driven = DrivenDay() if driven is None else driven
     driver.begin(aisles, place_m(aisles, day.at), day.gone_s)
-    while (stop := day.ask()) is not None:
+    while not driven.ends and (stop := day.ask()) is not None:
         at, since_s = day.at, day.gone_s
         plants = [stop.plant, *day.ahead(_AHEAD)]
         after = tuple((b, aisles.path(a, b)) for a, b in pairwise(plants))

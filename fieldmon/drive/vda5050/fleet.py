@@ -15,6 +15,7 @@ from fieldmon.compute.ranges import AllowedRange
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.vda5050.crossing import Crossing
 from fieldmon.drive.vda5050.messages import (
+    FASTER,
     LATE_S,
     at_once,
     decoded,
@@ -103,6 +104,9 @@ class Vda5050Robot:
         self._state: dict[str, Any] | None = None
         self._told, self._odd_clock = "", False
         self._traffic = traffic
+        #: seconds of the day that are gone by the plot's clock; None: by the robot's own
+        self.clock: Callable[[], float] | None = None
+        self._begun, self._began = time.monotonic(), datetime.now(UTC)
 
     def begin(self, aisles: Aisles, at_m: Float, gone_s: float) -> None:
         """Take the plot's metres for those east and north of its datum."""
@@ -117,6 +121,18 @@ class Vda5050Robot:
         self._clock_behind_s = 0.0
         if self._traffic is not None:
             self._crossing = Crossing(self._traffic, self._name, aisles, at_m)
+
+    @property
+    def has_order(self) -> bool:
+        """Whether it was sent one in this run."""
+        return self._has_order
+
+    def is_faster(self) -> bool:
+        """Wait until the robot is heard; tell whether it says that its clock is no real one."""
+        state = self._told_once()
+        if isinstance(state, str):
+            return False
+        return any(one.get("infoType") == FASTER for one in state.get("information", []))
 
     def visit(self, errand: Errand) -> Visit:
         """Send the robot to a plant, and wait for what it found."""
@@ -235,13 +251,7 @@ class Vda5050Robot:
 
         A robot by the standard refuses an order while it has another one.
         """
-        why = self._had(
-            lambda _: self._ask("stateRequest", "state"),
-            "told its state",
-            lambda: self._state is not None,
-            lambda state: state,
-        )
-        if isinstance(why, str):
+        if isinstance(why := self._told_once(), str):
             return why
         if (why := self._broken()) or not self._is_busy():
             return why
@@ -253,6 +263,15 @@ class Vda5050Robot:
             lambda state: state if self._status("cancel") in _OVER or not self._is_busy() else None,
         )
         return why if isinstance(why, str) else ""
+
+    def _told_once(self) -> dict[str, Any] | str:
+        """Return what the robot said last, once it was heard, or why it never was."""
+        return self._had(
+            lambda _: self._ask("stateRequest", "state"),
+            "told its state",
+            lambda: self._state is not None,
+            lambda state: state,
+        )
 
     def _had(
         self,
@@ -473,8 +492,13 @@ class Vda5050Robot:
         )
 
     def _at_s(self, told_s: object) -> float:
-        """Return the robot's own clock if it says one, which never goes backwards; else ours."""
-        if told_s is None:
+        """Return the robot's own clock if it says one and it counts; else ours.
+
+        It never goes backwards.
+        """
+        if self.clock is not None:
+            self._gone_s = self._now_s()
+        if self.clock is not None or told_s is None:
             return self._now_s()
         try:
             at_s = float(str(told_s))
@@ -507,6 +531,8 @@ class Vda5050Robot:
         return self._gone_s
 
     def _now_s(self) -> float:
+        if self.clock is not None:
+            return max(self.clock(), self._gone_s)
         return self._gone_s + time.monotonic() - self._begun
 
 

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
 
 ACTION = "inspectPlant"
+#: information of a robot that is simulated, faster than the clock: how many times
+FASTER = "faster"
 MAP = "map"
 #: what was sent so much before what was heard last is not late: a clock was put back
 LATE_S = 60.0

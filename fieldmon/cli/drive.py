@@ -237,9 +237,10 @@ def _plot(options: DriveOptions) -> None:
 
     with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         robot, recording = driver
-        bag = partial(_write_bag, recording, begins, options)
+        bag = partial(_write_bag, (recording, so_far), begins, options)
+        watch = recording.note if _live(robot) is None else recording.note_live
         with _written(bag, tables), _home_when_told(robot, so_far, options.serial):
-            drive_day(today, aisles, (worker, robot), recording.note, so_far)
+            drive_day(today, aisles, (worker, robot), watch, so_far)
 
 
 def _season(options: DriveOptions, file: Path) -> None:
@@ -288,12 +289,13 @@ def _season(options: DriveOptions, file: Path) -> None:
 
         def bag() -> None:
             begins = _begins(season, on, today.begun_s)
-            _write_bag(recording, begins, options, goes_on=before > 0)
+            _write_bag((recording, so_far), begins, options, goes_on=before > 0)
 
         with _written(bag, tables), _home_when_told(robot, so_far, options.serial):
             if told := time_results(today, grid_clock(season.plot.grid), _live(robot)):
                 _say(told)
-            drive_day(today, aisles, (worker, robot), recording.note, so_far)
+            watch = recording.note if _live(robot) is None else recording.note_live
+            drive_day(today, aisles, (worker, robot), watch, so_far)
 
 
 class _Tables(Protocol):
@@ -383,7 +385,8 @@ def _team_day(
             begun_s = begun[name].begun_s
             planned_s = season.begun_s(on, name) if begun_s is None else begun_s
             begins = _begins(season, on, planned_s)
-            _write_bag(recordings[name], begins, own[name], goes_on=before[name] > 0)
+            noted = recordings[name], begun[name]
+            _write_bag(noted, begins, own[name], goes_on=before[name] > 0)
     missing = dict.fromkeys(each.broken for each in driven.values() if each.broken)
     _tell_replanned(today.replanned - 1)
     if today.stops:
@@ -483,7 +486,11 @@ def _begins(season: Season, on: date, begun_s: float) -> datetime:
 
 
 def _write_bag(
-    recording: Recording, begins: datetime, options: DriveOptions, *, goes_on: bool = False
+    noted: tuple[Recording, DrivenDay],
+    begins: datetime,
+    options: DriveOptions,
+    *,
+    goes_on: bool = False,
 ) -> None:
     """Write the bag, if asked for: of a day that goes on, beside that of what was driven before."""
     if options.bag is None:
@@ -491,6 +498,8 @@ def _write_bag(
     from fieldmon.drive.bag import write_bag
 
     to = _next_part(options.bag, Path.exists) if goes_on else options.bag
+    recording, driven = noted
+    recording.end(driven)
     bag, *layouts = write_bag(recording, begins, to)
     beside = " and ".join(path.name for path in layouts)
     typer.echo(f"Bag written to {bag}; layouts beside it: {beside}")
@@ -518,6 +527,7 @@ def _driver(
 
         who = _robot_name(options)
         with live_robot(Broker.of(options.broker), who, str(believed[1]), _say) as live:
+            live.sees = recording.see
             yield live, recording
         return
     from fieldmon.drive.simulated_robots import MadeUp, simulated_robot

@@ -222,6 +222,7 @@ class MemberDay(AskedDay):
 
     def leave(self) -> None:
         """Go to no plant any more: what it set out for is free for others."""
+        super().leave()
         with self._team.lock:
             self._team.errands.pop(self._member.name, None)
 

@@ -212,6 +212,8 @@ class StandIn:
             self.drive_to(there)
         me.place, me.node, me.sequence = there, node["nodeId"], node["sequenceId"]
         me.edges = [one for one in me.edges if one["sequenceId"] > me.sequence]
+        if node["actions"]:
+            self.tell()  # that it is there
         for action in node["actions"]:
             self._do(action)
         return True

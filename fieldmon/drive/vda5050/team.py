@@ -73,10 +73,11 @@ def drive_team(
         def tell(told: str) -> None:
             say(f"{member.name}: {told}")
 
-        watch = None if noted is None else noted.note
+        watch = None if noted is None else noted.note_live
         try:
             with live_robot(broker, robot, str(day.on), tell, day.keeper) as live:
                 live.stops = lambda: day.stops
+                live.sees = None if noted is None else noted.see
                 if begun is not None:
                     begun[member.name] = driven
                 if told := time_results(own, grid_clock(day.season.plot.grid), live):

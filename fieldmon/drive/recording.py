@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 # who is so near to the end of a way is there
-_THERE_M = 0.05
+_THERE_M = 0.15
 # places along a way are looked at so far apart; of two, one further on must be that much nearer
 _STEP_M, _NEARER = 0.05, 0.01
 # who was so near to where a way begins begins there; who moves less between two poses stands

@@ -109,7 +109,7 @@ class Vda5050Robot:
         self.clock: Callable[[], float] | None = None
         #: told where the robot says that it is: seconds, and ``(2,)`` metres of the plot's frame
         self.sees: Callable[[float, Float], None] | None = None
-        self._begun, self._began = time.monotonic(), datetime.now(UTC)
+        self._begun, self._began, self._order_s = time.monotonic(), datetime.now(UTC), math.nan
 
     def begin(self, aisles: Aisles, at_m: Float, gone_s: float) -> None:
         """Take the plot's metres for those east and north of its datum."""

@@ -134,7 +134,7 @@ def _run(command: list[str], env: dict[str, str]) -> int:
     """Run the server until it ends; what ends this program ends it too. Return its exit code."""
     import subprocess
 
-    from fieldmon.cli.stopped import told_to_end
+    from fieldmon.cli.told_to_end import told_to_end
 
     ended = False
     server: subprocess.Popen[bytes] | None = None

@@ -32,8 +32,9 @@ from fieldmon.cli.season_files import (
     refuse_unrecorded,
     refuse_what_was_chosen,
 )
-from fieldmon.cli.stopped import STOPPED_CODE, as_at_ctrl_c, told_to_end
+from fieldmon.cli.stopped import STOPPED_CODE
 from fieldmon.cli.times import day, day_on
+from fieldmon.cli.told_to_end import as_at_ctrl_c, told_to_end
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import SettingError
 from fieldmon.samplers import USUAL_SAMPLER
@@ -209,7 +210,7 @@ def _plot(options: DriveOptions) -> None:
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.monitoring.monitor import Monitor
     from fieldmon.planning.assumptions import assumed_by
-    from fieldmon.plot.local_clock import local_clock
+    from fieldmon.plot.local_clock import local_clock, utc_now
 
     _refuse_written_over(None, (options,))
     worker = options.worker.robot()
@@ -228,7 +229,7 @@ def _plot(options: DriveOptions) -> None:
     tell_assumed(assumed_by((), prior, worker, plot.grid))
     if told := aisles.narrow_sentence():
         typer.echo(told)
-    begins, so_far = local_clock(plot.field).moment(on, time(6)), DrivenDay()
+    clock, so_far = local_clock(plot.field), DrivenDay()
 
     def tables(*, stopped: bool) -> None:
         _write(so_far, on, options, _name(options))
@@ -237,6 +238,8 @@ def _plot(options: DriveOptions) -> None:
 
     with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         robot, recording = driver
+        is_now = _live(robot) is not None and on == clock.today()
+        begins = utc_now() if is_now else clock.moment(on, time(6))
         bag = partial(_write_bag, (recording, so_far), begins, options)
         watch = recording.note if _live(robot) is None else recording.note_live
         with _written(bag, tables), _home_when_told(robot, so_far, options.serial):

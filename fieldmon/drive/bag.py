@@ -270,7 +270,7 @@ def _filled(poses: Float) -> Float:
     long_s = np.diff(poses[:, 0])
     n = np.maximum(np.ceil(long_s / _FIX_S - 1e-9), 1).astype(int)
     k = np.repeat(np.arange(len(n)), n)
-    share = (np.arange(len(k)) - np.repeat(np.cumsum(n) - n, n)) / n[k]
+    share = _FIX_S * (np.arange(len(k)) - np.repeat(np.cumsum(n) - n, n)) / long_s[k]
     between = poses[k] + share[:, None] * np.diff(poses, axis=0)[k]
     between[:, 3] = poses[k, 3]
     return np.concatenate([between, poses[-1:]])

@@ -136,7 +136,7 @@ class Recording:
 
     def _drive_as_seen(self, line_m: Float, there_s: float, done_s: float) -> None:
         """Drive along a line by what was said meanwhile; what was off it, was."""
-        way = _Way.of(line_m)
+        way = _LineDriven.of(line_m)
         told = [one for one in self._seen if one[0] <= done_s + 1e-6]
         self._seen = self._seen[len(told) :]
         since_s = there_s if self._since_s is None else self._since_s
@@ -191,14 +191,14 @@ class _Knot(NamedTuple):
     place_m: Float
 
 
-class _Way(NamedTuple):
+class _LineDriven(NamedTuple):
     """A line ``(k, 2)``, and after how many metres its corners are."""
 
     line_m: Float
     gone_m: Float
 
     @classmethod
-    def of(cls, line_m: Float) -> _Way:
+    def of(cls, line_m: Float) -> _LineDriven:
         steps_m = np.hypot(*np.diff(line_m, axis=0).T)
         return cls(line_m, np.append(0.0, np.cumsum(steps_m)))
 
@@ -215,7 +215,7 @@ class _Way(NamedTuple):
 
 
 def _between(
-    a: _Knot, b: _Knot, way: _Way, heading: float
+    a: _Knot, b: _Knot, way: _LineDriven, heading: float
 ) -> Iterator[tuple[float, tuple[float, float], float]]:
     """Yield seconds, place and heading of an even move, straight unless the way is not.
 

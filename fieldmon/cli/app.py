@@ -132,30 +132,29 @@ def _must_be_free(address: str, port: int) -> None:
 
 def _run(command: list[str], env: dict[str, str]) -> int:
     """Run the server until it ends; what ends this program ends it too. Return its exit code."""
-    import signal
     import subprocess
+
+    from fieldmon.cli.told_to_end import told_to_end
 
     ended = False
     server: subprocess.Popen[bytes] | None = None
 
-    def end(*_: object) -> None:
+    def end() -> None:
         nonlocal ended
         ended = True
         if server is not None:
             server.terminate()
 
-    for name in ("SIGTERM", "SIGHUP"):  # the second is not known everywhere
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), end)
-    server = subprocess.Popen(command, env=env)  # noqa: S603 - our own
-    if ended:  # before there was a server to tell
-        server.terminate()
-    try:
-        code = server.wait()
-    except KeyboardInterrupt:  # which the server has heard too
+    with told_to_end(end):
+        server = subprocess.Popen(command, env=env)  # noqa: S603 - our own
+        if ended:  # before there was a server to tell
+            server.terminate()
         try:
-            code = server.wait(_GOODBYE_S)
-        except subprocess.TimeoutExpired:
-            server.kill()
             code = server.wait()
+        except KeyboardInterrupt:  # which the server has heard too
+            try:
+                code = server.wait(_GOODBYE_S)
+            except subprocess.TimeoutExpired:
+                server.kill()
+                code = server.wait()
     return code if code >= 0 else 128 - code

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from datetime import datetime, time, timedelta
 from enum import StrEnum
@@ -34,6 +34,7 @@ from fieldmon.cli.season_files import (
 )
 from fieldmon.cli.stopped import STOPPED_CODE
 from fieldmon.cli.times import day, day_on
+from fieldmon.cli.told_to_end import as_at_ctrl_c, told_to_end
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import SettingError
 from fieldmon.samplers import USUAL_SAMPLER
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from fieldmon.drive.errand import DrivingRobot
     from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
+    from fieldmon.drive.vda5050.fleet import Vda5050Robot
     from fieldmon.drive.vda5050.mqtt import RobotName
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -186,16 +188,17 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
     """
     from fieldmon.monitoring.transactions import is_season
 
-    if options.plot is None or not is_season(options.plot):
-        _plot(options)
-        return
-    refuse_what_was_chosen(context, _OF_A_SEASON)
-    from fieldmon.drive.one_drive import one_drive
+    with told_to_end(as_at_ctrl_c):
+        if options.plot is None or not is_season(options.plot):
+            _plot(options)
+            return
+        refuse_what_was_chosen(context, _OF_A_SEASON)
+        from fieldmon.drive.one_drive import one_drive
 
-    if _team(context, options, options.plot):
-        return
-    with one_drive(options.plot, _name(options)):
-        _season(options, options.plot)
+        if _team(context, options, options.plot):
+            return
+        with one_drive(options.plot, _name(options)):
+            _season(options, options.plot)
 
 
 def _plot(options: DriveOptions) -> None:
@@ -207,7 +210,7 @@ def _plot(options: DriveOptions) -> None:
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.monitoring.monitor import Monitor
     from fieldmon.planning.assumptions import assumed_by
-    from fieldmon.plot.local_clock import local_clock
+    from fieldmon.plot.local_clock import local_clock, utc_now
 
     _refuse_written_over(None, (options,))
     worker = options.worker.robot()
@@ -226,7 +229,7 @@ def _plot(options: DriveOptions) -> None:
     tell_assumed(assumed_by((), prior, worker, plot.grid))
     if told := aisles.narrow_sentence():
         typer.echo(told)
-    begins, so_far = local_clock(plot.field).moment(on, time(6)), DrivenDay()
+    clock, so_far = local_clock(plot.field), DrivenDay()
 
     def tables(*, stopped: bool) -> None:
         _write(so_far, on, options, _name(options))
@@ -235,15 +238,21 @@ def _plot(options: DriveOptions) -> None:
 
     with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         robot, recording = driver
-        with _written(partial(_write_bag, recording, begins, options), tables):
-            drive_day(today, aisles, (worker, robot), recording.note, so_far)
+        is_now = _live(robot) is not None and on == clock.today()
+        begins = utc_now() if is_now else clock.moment(on, time(6))
+        bag = partial(_write_bag, (recording, so_far), begins, options)
+        watch = recording.note if _live(robot) is None else recording.note_live
+        with _written(bag, tables), _home_when_told(robot, so_far, options.serial):
+            drive_day(today, aisles, (worker, robot), watch, so_far)
 
 
 def _season(options: DriveOptions, file: Path) -> None:
     """Drive what is left of a day of a season, each plant told recorded at once."""
     from fieldmon.drive.day import DrivenDay, drive_day
+    from fieldmon.drive.day_clock import time_results
     from fieldmon.drive.season_day import SeasonDay
     from fieldmon.monitoring import Season
+    from fieldmon.plot.local_clock import grid_clock
 
     if options.robot is not Drives.VDA5050 and not options.made_up:
         raise SettingError(
@@ -271,7 +280,7 @@ def _season(options: DriveOptions, file: Path) -> None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
         _tell_plan(goes_on=today.goes_on)
     before = season.contents([today.batch])[today.batch].n if today.batch is not None else 0
-    begins, so_far = _begins(season, on, today.begun_s), DrivenDay()
+    so_far = DrivenDay()
 
     def tables(*, stopped: bool) -> None:
         _write(so_far, on, options, _name(options), before)
@@ -280,9 +289,16 @@ def _season(options: DriveOptions, file: Path) -> None:
             _tell_stopped(season, on, today.batch)
 
     with _driver(options, season.plot, worker, (season.morning(on), on)) as (robot, recording):
-        bag = partial(_write_bag, recording, begins, options, goes_on=before > 0)
-        with _written(bag, tables):
-            drive_day(today, aisles, (worker, robot), recording.note, so_far)
+
+        def bag() -> None:
+            begins = _begins(season, on, today.begun_s)
+            _write_bag((recording, so_far), begins, options, goes_on=before > 0)
+
+        with _written(bag, tables), _home_when_told(robot, so_far, options.serial):
+            if told := time_results(today, grid_clock(season.plot.grid), _live(robot)):
+                _say(told)
+            watch = recording.note if _live(robot) is None else recording.note_live
+            drive_day(today, aisles, (worker, robot), watch, so_far)
 
 
 class _Tables(Protocol):
@@ -359,7 +375,6 @@ def _team_day(
         one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
         for one in today.robots
     }
-    begins = {one.name: _begins(season, on, today.member(one.name).begun_s) for one in today.robots}
     broker = Broker.of(options.broker)
     begun: dict[str, DrivenDay] = {}
     driven = begun
@@ -370,7 +385,11 @@ def _team_day(
     finally:  # whatever ended it
         for name in sorted(begun):
             _write(begun[name], on, own[name], name, before[name])
-            _write_bag(recordings[name], begins[name], own[name], goes_on=before[name] > 0)
+            begun_s = begun[name].begun_s
+            planned_s = season.begun_s(on, name) if begun_s is None else begun_s
+            begins = _begins(season, on, planned_s)
+            noted = recordings[name], begun[name]
+            _write_bag(noted, begins, own[name], goes_on=before[name] > 0)
     missing = dict.fromkeys(each.broken for each in driven.values() if each.broken)
     _tell_replanned(today.replanned - 1)
     if today.stops:
@@ -470,7 +489,11 @@ def _begins(season: Season, on: date, begun_s: float) -> datetime:
 
 
 def _write_bag(
-    recording: Recording, begins: datetime, options: DriveOptions, *, goes_on: bool = False
+    noted: tuple[Recording, DrivenDay],
+    begins: datetime,
+    options: DriveOptions,
+    *,
+    goes_on: bool = False,
 ) -> None:
     """Write the bag, if asked for: of a day that goes on, beside that of what was driven before."""
     if options.bag is None:
@@ -478,6 +501,8 @@ def _write_bag(
     from fieldmon.drive.bag import write_bag
 
     to = _next_part(options.bag, Path.exists) if goes_on else options.bag
+    recording, driven = noted
+    recording.end(driven)
     bag, *layouts = write_bag(recording, begins, to)
     beside = " and ".join(path.name for path in layouts)
     typer.echo(f"Bag written to {bag}; layouts beside it: {beside}")
@@ -505,6 +530,7 @@ def _driver(
 
         who = _robot_name(options)
         with live_robot(Broker.of(options.broker), who, str(believed[1]), _say) as live:
+            live.sees = recording.see
             yield live, recording
         return
     from fieldmon.drive.simulated_robots import MadeUp, simulated_robot
@@ -513,6 +539,43 @@ def _driver(
     decides = sampler_of(options.sampler, options.every)
     physics = _physics(options, plot, worker)
     yield simulated_robot(options.robot.value, recording, decides, made_up, physics), recording
+
+
+@contextmanager
+def _home_when_told(robot: DrivingRobot, driven: DrivenDay, name: str) -> Iterator[None]:
+    """Let a live robot end the plant in hand and drive home, as a team's do, when told to end.
+
+    The second time nobody is waited for.
+    """
+    if (live := _live(robot)) is None:
+        yield
+        return
+    from fieldmon.drive.vda5050.team import STOPPING
+
+    def end() -> None:
+        driven.ends += 1
+        if driven.ends > 1 or not live.has_order:
+            raise KeyboardInterrupt
+        with suppress(RuntimeError):  # where something is being printed
+            _say(STOPPING[0].format(names=name))
+
+    live.stops = lambda: driven.ends
+    try:
+        with told_to_end(end, also=("SIGINT",)):
+            yield
+    except KeyboardInterrupt:
+        if live.has_order:
+            _say(f"{STOPPING[1]} The robot still ends what it was ordered last.")
+        raise
+    if driven.ends:
+        raise KeyboardInterrupt
+
+
+def _live(robot: DrivingRobot) -> Vda5050Robot | None:
+    """Return a robot that is driven live; None: it is simulated."""
+    from fieldmon.drive.vda5050.fleet import Vda5050Robot
+
+    return robot if isinstance(robot, Vda5050Robot) else None
 
 
 def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None:

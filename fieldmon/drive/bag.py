@@ -16,7 +16,7 @@ from fieldmon.io.atomic_write import require_place, write_whole
 from fieldmon.plot.clearance import half_canopy_m
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
     from datetime import datetime
 
     from fieldmon.drive.errand import Float
@@ -30,8 +30,14 @@ _TALL_M = 1.5
 _SPHERES = 7
 _FOUND = (0.84, 0.15, 0.12, 1.0)
 _CLEAN = (0.13, 0.44, 0.71, 1.0)
+# variance of what nobody knows: heights, and turns but about the vertical
+_UNKNOWN = 1e6
+# how a covariance of sensor_msgs/NavSatFix is known
+_NOT_KNOWN, _KNOWN = 0, 2
+_STATIC = "/tf_static"
 _TOPICS = {
     "/tf": "tf2_msgs/msg/TFMessage",
+    _STATIC: "tf2_msgs/msg/TFMessage",
     "/plan": "nav_msgs/msg/Path",
     "/odom": "nav_msgs/msg/Odometry",
     "/gps/fix": "sensor_msgs/msg/NavSatFix",
@@ -44,8 +50,9 @@ def write_bag(recording: Recording, begins: datetime, to: Path) -> tuple[Path, P
     """Write a driven day as a bag; return it and its layouts for RViz and Foxglove.
 
     The frame ``map`` is metres east and north of the plot's centre, as in the Nav2 files. Topics:
-    the transform to ``base_link``, the plan as it changes, odometry, position fixes, plants by
-    their chance, and what was found.
+    the transform to ``base_link`` (the receiver of positions, ``gps``, is there), the plan as it
+    changes, odometry, position fixes as the robot had them, plants by their chance, and what was
+    found.
 
     Parameters
     ----------
@@ -103,14 +110,17 @@ class _Pen:
         self._bag, self._store, self._begins_s = bag, store, begins_s
         self._type = store.types
         self._topic = {
-            name: bag.add_connection(name, kind, typestore=store) for name, kind in _TOPICS.items()
+            name: bag.add_connection(name, kind, typestore=store, offered_qos_profiles=_offer(name))
+            for name, kind in _TOPICS.items()
         }
 
     def write(self, recording: Recording) -> None:
         """Write a day: poses in time, plans and finds as they come."""
         frame = recording.aisles.grid.frame
-        poses = _thinned(_east_north_poses(frame, recording.track.poses))
-        lonlat = frame.turned(90.0).lonlat(poses[:, 1:3])
+        track = recording.track
+        poses = _filled(_east_north_poses(frame, track.poses))
+        kept = _thinned(poses)
+        poses, moves = poses[kept], _moves(poses)[kept]
         first_s = float(poses[0, 0]) if len(poses) else 0.0
         self._put("/plants", first_s, self._plants(recording))
         planned_s = first_s
@@ -118,13 +128,21 @@ class _Pen:
             self._put("/plan", planned_s, self._plan(planned_s, _places(frame, one.line_m)))
             planned_s = one.at_s
             self._put("/finds", one.at_s, self._find(recording, one.plant, one.found))
-        last_s = -math.inf
-        for k, (at_s, x, y, yaw) in enumerate(poses.tolist()):
-            self._put("/tf", at_s, self._transform(at_s, x, y, yaw))
+        antenna = self._transform(first_s, (0.0, 0.0, 0.0), ("base_link", "gps"))
+        self._put(_STATIC, first_s, antenna)
+        fixes, last_s = [(at_s, x, y) for at_s, x, y in track.fixes], -math.inf
+        for pose, move in zip(poses.tolist(), moves.tolist(), strict=True):
+            at_s = pose[0]
+            self._put("/tf", at_s, self._transform(at_s, pose[1:], ("map", "base_link")))
             if at_s - last_s >= _FIX_S:
                 last_s = at_s
-                self._put("/odom", at_s, self._odometry(at_s, x, y, yaw))
-                self._put("/gps/fix", at_s, self._fix(at_s, *lonlat[k].tolist()))
+                self._put("/odom", at_s, self._odometry(pose, move, track.off_m))
+                if not track.fixes:
+                    fixes.append((at_s, *pose[1:3]))
+        places = np.array([one[1:] for one in fixes]).reshape(-1, 2)
+        lonlat = (frame if track.fixes else frame.turned(90.0)).lonlat(places)
+        for (at_s, _, _), place in zip(fixes, lonlat.tolist(), strict=True):
+            self._put("/gps/fix", at_s, self._fix(at_s, place, track.fix_m))
 
     def _put(self, topic: str, at_s: float, message: Any) -> None:  # noqa: ANN401
         data = self._store.serialize_cdr(message, _TOPICS[topic])
@@ -153,26 +171,32 @@ class _Pen:
     def _vector(self, x: float, y: float, z: float) -> Any:  # noqa: ANN401
         return self._make("geometry_msgs/Vector3", x, y, z)
 
-    def _transform(self, at_s: float, x: float, y: float, yaw: float) -> Any:  # noqa: ANN401
+    def _transform(self, at_s: float, pose: Sequence[float], frames: tuple[str, str]) -> Any:  # noqa: ANN401
+        """Return where a frame is in another: metres, metres, radians."""
+        x, y, yaw = pose
         moved = self._make("geometry_msgs/Transform", self._vector(x, y, 0.0), self._turn(yaw))
-        one = self._make("geometry_msgs/TransformStamped", self._head(at_s), "base_link", moved)
+        head = self._head(at_s, frames[0])
+        one = self._make("geometry_msgs/TransformStamped", head, frames[1], moved)
         return self._make("tf2_msgs/TFMessage", [one])
 
-    def _odometry(self, at_s: float, x: float, y: float, yaw: float) -> Any:  # noqa: ANN401
-        none = np.zeros(36)
-        still = self._make(
-            "geometry_msgs/Twist", self._vector(0.0, 0.0, 0.0), self._vector(0.0, 0.0, 0.0)
+    def _odometry(self, pose: Sequence[float], move: Sequence[float], off_m: float) -> Any:  # noqa: ANN401
+        """Return odometry of a pose, which may be so far off, and of its speed and turn rate."""
+        (at_s, x, y, yaw), (speed_m_s, turn) = pose, move
+        spread = np.diag([off_m**2] * 2 + [_UNKNOWN] * 3 + [off_m**2]).ravel()
+        moves = self._make(
+            "geometry_msgs/Twist", self._vector(speed_m_s, 0.0, 0.0), self._vector(0.0, 0.0, turn)
         )
-        pose = self._make("geometry_msgs/PoseWithCovariance", self._pose(x, y, yaw), none)
-        twist = self._make("geometry_msgs/TwistWithCovariance", still, none)
-        return self._make("nav_msgs/Odometry", self._head(at_s), "base_link", pose, twist)
+        here = self._make("geometry_msgs/PoseWithCovariance", self._pose(x, y, yaw), spread)
+        twist = self._make("geometry_msgs/TwistWithCovariance", moves, spread)
+        return self._make("nav_msgs/Odometry", self._head(at_s), "base_link", here, twist)
 
-    def _fix(self, at_s: float, lon: float, lat: float) -> Any:  # noqa: ANN401
+    def _fix(self, at_s: float, lonlat: Sequence[float], fix_m: float | None) -> Any:  # noqa: ANN401
+        lon, lat = lonlat
         status = self._make("sensor_msgs/NavSatStatus", 2, 15)
-        spread = np.diag([4e-4] * 3).ravel()
-        return self._make(
-            "sensor_msgs/NavSatFix", self._head(at_s, "gps"), status, lat, lon, 0.0, spread, 2
-        )
+        spread = np.zeros(9) if fix_m is None else np.diag([fix_m**2] * 2 + [_UNKNOWN]).ravel()
+        known = _NOT_KNOWN if fix_m is None else _KNOWN
+        head = self._head(at_s, "gps")
+        return self._make("sensor_msgs/NavSatFix", head, status, lat, lon, 0.0, spread, known)
 
     def _plan(self, at_s: float, places: Float) -> Any:  # noqa: ANN401
         poses = [
@@ -239,17 +263,39 @@ def east_north_yaw(frame: Frame) -> float:
     return math.radians(90.0 - frame.bearing_deg)
 
 
-def _thinned(poses: Float) -> Float:
-    """Return poses without those at which the robot only stands, but for one in a while."""
-    if not len(poses):
+def _filled(poses: Float) -> Float:
+    """Return poses, with others where there were none for a while: it moved evenly, or stood."""
+    if len(poses) < 2:
         return poses
+    long_s = np.diff(poses[:, 0])
+    n = np.maximum(np.ceil(long_s / _FIX_S - 1e-9), 1).astype(int)
+    k = np.repeat(np.arange(len(n)), n)
+    share = _FIX_S * (np.arange(len(k)) - np.repeat(np.cumsum(n) - n, n)) / long_s[k]
+    between = poses[k] + share[:, None] * np.diff(poses, axis=0)[k]
+    between[:, 3] = poses[k, 3]
+    return np.concatenate([between, poses[-1:]])
+
+
+def _moves(poses: Float) -> Float:
+    """Return speed (forwards, m/s) and turn rate (rad/s) from each pose to the next, ``(k, 2)``."""
+    step, moves = np.diff(poses, axis=0), np.zeros((len(poses), 2))
+    took_s, yaw = np.maximum(step[:, 0], 1e-3), poses[:-1, 3]
+    moves[:-1, 0] = (np.cos(yaw) * step[:, 1] + np.sin(yaw) * step[:, 2]) / took_s
+    moves[:-1, 1] = (np.mod(step[:, 3] + np.pi, 2 * np.pi) - np.pi) / took_s
+    return moves
+
+
+def _thinned(poses: Float) -> list[int]:
+    """Return which poses are not those at which the robot only stands, but for one in a while."""
+    if not len(poses):
+        return []
     kept, last = [0], poses[0]
     for k in range(1, len(poses)):
         moved = np.abs(poses[k, 1:] - last[1:]).max() > 1e-3
         if moved or poses[k, 0] - last[0] >= _FIX_S or k == len(poses) - 1:
             kept.append(k)
             last = poses[k]
-    return poses[kept]
+    return kept
 
 
 def colour_says(colour: Any) -> bool | None:  # noqa: ANN401 - a message
@@ -284,6 +330,24 @@ def read_bag(path: Path, topics: tuple[str, ...]) -> Iterator[tuple[str, float, 
         raise FileProblem(
             worded("The bag cannot be read: is it whole, and an .mcap of ROS 2?")
         ) from error
+
+
+def _offer(topic: str) -> list[Any]:
+    """Return with which quality a topic is played again: static transforms for who comes late."""
+    if topic != _STATIC:
+        return []
+    from rosbags.interfaces import (  # noqa: PLC0415 - an extra
+        Qos,
+        QosDurability,
+        QosHistory,
+        QosLiveliness,
+        QosReliability,
+        QosTime,
+    )
+
+    never = QosTime(2147483647, 4294967295)
+    kept = QosHistory.KEEP_LAST, 1, QosReliability.RELIABLE, QosDurability.TRANSIENT_LOCAL
+    return [Qos(*kept, never, never, QosLiveliness.AUTOMATIC, never, False)]
 
 
 def _rosbags() -> tuple[Any, Any]:

@@ -22,6 +22,12 @@ if TYPE_CHECKING:
 
 #: plants of the plan after the one asked for that a robot is told of
 _AHEAD = 2
+# a day that ends so many seconds after its hours is late
+_LATE_S = 30.0
+# who drives so many times longer is not as planned
+_SLOW = 1.1
+# ways that are charged less say nothing of how fast a robot drives
+_LEAST_DRIVE_S = 1.0
 
 
 class DrivenStop(NamedTuple):
@@ -42,6 +48,22 @@ class DrivenStop(NamedTuple):
     charged_s: float
     driven_s: float
 
+    @property
+    def drive_s(self) -> float:
+        """Seconds of driving to it that are charged."""
+        return self.charged_s - self.stop.inspect_s
+
+    @property
+    def slowness(self) -> float:
+        """How many times longer than charged it drove; where nobody told, as the whole stop took.
+
+        That is where the robot did not say when it got there.
+        """
+        done_s, there_s = self.visit.done_s, self.visit.there_s
+        if done_s is None or there_s is None:
+            return self.driven_s / self.charged_s
+        return (self.driven_s - (done_s - there_s)) / self.drive_s
+
 
 @dataclass(eq=False)
 class DrivenDay:
@@ -53,20 +75,45 @@ class DrivenDay:
         In order.
     home_charged_s, home_driven_s
         Seconds of the way back to the gate.
+    home_line_m
+        ``(k, 2)`` that way, metres of the plot's frame; None: there was none.
+    late_s
+        Seconds by which the day went past its hours; 0: none.
     home
         What came of it; None: there was none, or as charged.
     broken
         What broke it off, in a sentence; "": nothing.
+    ends
+        How often somebody asked for its end: no other plant is asked for.
+    begun_s
+        The second of a season's day from which its seconds count; None: as planned.
     """
 
     stops: list[DrivenStop] = field(default_factory=list)
     home_charged_s: float = 0.0
     home_driven_s: float = 0.0
+    home_line_m: Float | None = None
+    late_s: float = 0.0
     home: Visit | None = None
     broken: str = ""
+    ends: int = 0
+    begun_s: float | None = None
 
     def __repr__(self) -> str:
         return f"<DrivenDay: {counted(len(self.stops), 'stop')}, {self.found} found>"
+
+    @property
+    def slowness(self) -> float:
+        """How many times longer than charged it drives, at least 1: half its driving took more.
+
+        A pause on one way says nothing of others.
+        """
+        took = [(one.slowness, one.drive_s) for one in self.stops if one.drive_s >= _LEAST_DRIVE_S]
+        if not took:
+            return 1.0
+        ratio, charged = np.array(sorted(took)).T
+        gone = np.cumsum(charged)
+        return max(1.0, float(ratio[np.searchsorted(gone, gone[-1] / 2)]))
 
     @property
     def visits(self) -> list[Visit]:
@@ -136,7 +183,8 @@ def drive_day(
     driven
         Where it is noted, which stays where the day breaks off; None: in one of its own.
 
-    A robot that is stuck ends the day; of a plant that it did not get to nothing is told.
+    A robot that is stuck ends the day; of a plant that it did not get to nothing is told. One that
+    drives slower than charged goes home as much sooner.
 
     Examples
     --------
@@ -154,14 +202,20 @@ def drive_day(
     clock = robot_clock(worked, robot.day_s)
     driven = DrivenDay() if driven is None else driven
     driver.begin(aisles, place_m(aisles, day.at), day.gone_s)
-    while (stop := day.ask()) is not None:
+    while not driven.ends and (stop := day.ask()) is not None:
         at, since_s = day.at, day.gone_s
+        back_s = travel_s(aisles.travel, clock, stop.plant, GATE) if robot.returns else 0.0
+        drive_s, slow = travel_s(aisles.travel, clock, at, stop.plant), driven.slowness
+        ends_s = since_s + slow * (drive_s + back_s) + stop.inspect_s
+        if slow > 1.0 and ends_s > robot.day_s + (_LATE_S if slow < _SLOW else 0.0):
+            day.leave()
+            break
         plants = [stop.plant, *day.ahead(_AHEAD)]
         after = tuple((b, aisles.path(a, b)) for a, b in pairwise(plants))
         line_m = way_m(aisles, at, stop.plant)
         errand = Errand(len(driven.stops) + 1, stop, line_m, after, worked.stop_s)
         visit = driver.visit(errand)
-        charged_s = travel_s(aisles.travel, clock, at, stop.plant) + stop.inspect_s
+        charged_s = drive_s + stop.inspect_s
         driven_s = charged_s if visit.done_s is None else visit.done_s - since_s
         if visit.there:
             day.tell(visit.found, visit.done_s)
@@ -172,10 +226,13 @@ def drive_day(
             return driven
     if robot.returns and driven.stops and day.at != GATE:
         driven.home_charged_s = travel_s(aisles.travel, clock, day.at, GATE)
-        since_s, visit_home = day.gone_s, driver.home(way_m(aisles, day.at, GATE))
+        driven.home_line_m = way_m(aisles, day.at, GATE)
+        since_s, visit_home = day.gone_s, driver.home(driven.home_line_m)
         driven.home, driven.home_driven_s = visit_home, driven.home_charged_s
         if visit_home is not None and visit_home.done_s is not None:
             driven.home_driven_s = visit_home.done_s - since_s
+    late_s = day.gone_s + driven.home_driven_s - robot.day_s
+    driven.late_s = late_s if driven.stops and late_s > _LATE_S else 0.0
     return driven
 
 

@@ -73,6 +73,9 @@ def in_words(driven: DrivenDay) -> str:
             f" Its outline reached {100 * driven.over_m:.0f} cm over the plot's boundary, or into "
             "a hole or a no-go area."
         )
+    if driven.late_s:
+        came = "It came home" if driven.home_charged_s else "Its day ended"
+        said += f" {came} {driven.late_s / 60:.0f} min after its hours."
     return "\n".join([said, *driven.stuck])
 
 

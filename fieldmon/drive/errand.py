@@ -65,6 +65,8 @@ class Visit(NamedTuple):
         Whether it got there: what nobody stood before is no inspection.
     over_m
         How far its outline reached over the plot's boundary, or into a hole or a no-go area.
+    there_s
+        Seconds since the day began, by the robot's clock, when it got there; None: nobody told.
     """
 
     found: bool | None
@@ -74,6 +76,7 @@ class Visit(NamedTuple):
     stuck: str = ""
     there: bool = True
     over_m: float = 0.0
+    there_s: float | None = None
 
     def done_at_s(self, stop: PlantToInspect) -> float:
         """Return when a plant was done: as told, or as charged where nobody told it."""
@@ -119,4 +122,8 @@ class DayToDrive(Protocol):
 
     def tell(self, found: bool | None, at_s: float | None = None) -> None:  # noqa: FBT001 - a result
         """Say what was seen at the plant that was asked for, and when."""
+        ...
+
+    def leave(self) -> None:
+        """Go to no plant any more: what was asked for is not driven to."""
         ...

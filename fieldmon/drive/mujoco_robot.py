@@ -87,6 +87,9 @@ class MujocoRobot:
         self._physics = physics or Physics()
         self._noise = np.random.default_rng(self._physics.seed)
         self._track = track or Track()
+        self._track.fix_m = self._physics.gnss_m
+        # while it stands nobody steers by positions: those are noise of its own
+        self._standing = np.random.default_rng((self._physics.seed, 1))
         self._body = self._physics.body or RobotBody.of(robot)
         self._pace = Pace(robot.speed_m_s)
         self._model: Any = None
@@ -159,10 +162,18 @@ class MujocoRobot:
             return driven._replace(there=False)
         self._note()
         # it stands still: no physics needed
+        self._fixes(errand.look_s)
         self._data.time += errand.look_s
         self._note()
         found = self._look(errand.stop)
         return driven._replace(found=found, done_s=float(self._data.time))
+
+    def _fixes(self, seconds: float) -> None:
+        """Note the positions that it is told while it stands."""
+        if gnss_m := self._physics.gnss_m:
+            for k in range(int(seconds)):
+                x, y = np.add(self.pose[:2], gnss_m * self._standing.standard_normal(2)).tolist()
+                self._track.fix(float(self._data.time) + k, x, y)
 
     def home(self, line_m: Float) -> Visit | None:
         """Drive back to the gate."""
@@ -184,6 +195,7 @@ class MujocoRobot:
             if gnss_m:
                 dx, dy = gnss_m * self._noise.standard_normal(2)
                 x, y = x + dx, y + dy
+                self._track.fix(float(data.time), x, y)
             v, turn = way.command((x, y), yaw, v, _CONTROL_S)
             data.ctrl[:] = self._wheels.commands(v, turn)
             self._step(self._model, data, every)

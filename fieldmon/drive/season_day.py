@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.drive.day_clock import second_now, time_of
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.day_ahead import DayAhead, through
@@ -21,7 +22,7 @@ from fieldmon.plot.local_clock import grid_clock
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from contextlib import AbstractContextManager
-    from datetime import date
+    from datetime import date, time
 
     from fieldmon.monitoring.season_file import Season
     from fieldmon.planning.plan import DayPlan
@@ -77,20 +78,51 @@ class SeasonDay(AskedDay):
         self._source = f"{source} {on}"
         #: plans that it went by, the one it began or went on with included
         self.replanned = 0
-        begun, beside = self.batch is not None, self._who or ""
-        with self._entering():
-            left = left_of_plan(season, on, beside, self.left_out) if begun else None
         #: whether it goes on with what is left of the plan given out last
-        self.goes_on = left is not None and len(left.route) > 0
-        if left is not None and self.goes_on:
-            self._go_by(left)
-        else:
-            self._plan()
+        self.goes_on = self._begin(None)
         super().__init__(self._gone_s)
 
     def __repr__(self) -> str:
         """Say which day of which season."""
         return f"<SeasonDay {self._on} of {self._season.path.name}>"
+
+    def _begin(self, now: time | None) -> bool:
+        """Go on with what is left of the plan given out last, or by a new one; tell which."""
+        with self._entering():
+            last = self._season, self._on, self._who or "", self.left_out
+            left = None if self.batch is None else left_of_plan(*last, now)
+        goes_on = left is not None and len(left.route) > 0
+        if left is not None and goes_on:
+            self._go_by(left)
+        else:
+            self._plan(now)
+        self.replanned = 1
+        return goes_on
+
+    def now_s(self) -> tuple[float, str]:
+        """Return what `second_now` does, of its robot."""
+        return second_now(self._season, self._on, self._who or "")
+
+    def begin_at(self, now_s: float) -> None:
+        """Begin now, or go on, seconds since the day's midnight: results count from then."""
+        if not len(self._season.worked(self._on, self._who or "")):
+            self.begun_s = now_s
+            return
+        clock = grid_clock(self._season.plot.grid)
+        gone_s = clock.seconds_between(self._on, self.begun_s, now_s)
+        if gone_s > self._gone_s + REPLAN_AFTER_S:
+            self.goes_on = self._begin(time_of(now_s))
+            self._clock_s = self._gone_s
+
+    @property
+    def on(self) -> date:
+        """The day."""
+        return self._on
+
+    @property
+    def left_s(self) -> float:
+        """Seconds of the day's hours that are left."""
+        return max(0.0, self._today.scene.robot.day_s - self._gone_s)
 
     @property
     def batch(self) -> int | None:
@@ -146,9 +178,9 @@ class SeasonDay(AskedDay):
         )
         return (wishes or Wishes()).never(tuple(np.flatnonzero(theirs).tolist()))
 
-    def _plan(self) -> None:
+    def _plan(self, now: time | None = None) -> None:
         with self._entering():
-            self._go_by(self._season.plan(self._on, wishes=self._wishes, who=self._who))
+            self._go_by(self._season.plan(self._on, now, wishes=self._wishes, who=self._who))
 
     def _entering(self) -> AbstractContextManager[None]:
         """Let a robot enter where people may not be yet."""
@@ -184,7 +216,11 @@ def begun_batch(season: Season, source: str) -> int | None:
 
 
 def left_of_plan(
-    season: Season, on: date, who: str | Besides = "", left_out: Sequence[tuple[int, int]] = ()
+    season: Season,
+    on: date,
+    who: str | Besides = "",
+    left_out: Sequence[tuple[int, int]] = (),
+    now: time | None = None,
 ) -> DayPlan | None:
     """Return what is left of the plan given out last; None: the day is to be planned anew.
 
@@ -196,8 +232,10 @@ def left_of_plan(
         As of `Season.plan`.
     left_out
         First and last row of each part that is left to others.
+    now
+        Local time; None: that of the last result.
     """
-    ahead, scene = DayAhead.of(season, on), season.scene(on, who=who)
+    ahead, scene = DayAhead.of(season, on), season.scene(on, now, who)
     name = person_key(who) if isinstance(who, str) else ""
     if (kept := ahead.last.get(name)) is None:
         return None

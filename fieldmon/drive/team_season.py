@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.drive.aisle_keeper import AisleKeeper
+from fieldmon.drive.day_clock import second_now
 from fieldmon.drive.season_day import (
     REPLAN_AFTER_S,
     as_inspection,
@@ -141,6 +142,31 @@ class MemberDay(AskedDay):
         #: the second of the day at which its work began, from which seconds count here
         self.begun_s = team.season.begun_s(team.on, member.name)
 
+    def now_s(self) -> tuple[float, str]:
+        """Return what `second_now` does, of its robot."""
+        return second_now(self._team.season, self._team.on, self._member.name)
+
+    def begin_at(self, now_s: float) -> None:
+        """Begin now, or go on, seconds since the day's midnight: results count from then."""
+        season, on = self._team.season, self._team.on
+        if not len(season.worked(on, self._member.name)):
+            self.begun_s = now_s
+            return
+        gone_s = grid_clock(season.plot.grid).seconds_between(on, self.begun_s, now_s)
+        if gone_s > self.gone_s + REPLAN_AFTER_S:
+            self._stands = self._stands._replace(gone_s=gone_s)
+            self._clock_s = gone_s
+
+    @property
+    def on(self) -> date:
+        """The day."""
+        return self._team.on
+
+    @property
+    def left_s(self) -> float:
+        """Seconds of its hours that are left."""
+        return max(0.0, self._member.robot.day_s - self.gone_s)
+
     def __repr__(self) -> str:
         """Say whose day it is."""
         return f"<MemberDay of {self._member.name}: {self._team!r}>"
@@ -196,6 +222,7 @@ class MemberDay(AskedDay):
 
     def leave(self) -> None:
         """Go to no plant any more: what it set out for is free for others."""
+        super().leave()
         with self._team.lock:
             self._team.errands.pop(self._member.name, None)
 

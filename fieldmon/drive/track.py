@@ -11,11 +11,11 @@ if TYPE_CHECKING:
 
     Float = NDArray[np.float64]
 
-_LEAST_S = 0.1
+_LEAST_S, _FIX_S = 0.1, 1.0
 
 
 class Track:
-    """Places in time, ten a second at most.
+    """Places in time, ten a second at most, and what a receiver of positions said, once a second.
 
     Examples
     --------
@@ -30,6 +30,12 @@ class Track:
     def __init__(self) -> None:
         self._rows: list[tuple[float, float, float, float]] = []
         self._last: tuple[float, float, float, float] | None = None
+        #: seconds and metres, where a receiver said another place than the true one
+        self.fixes: list[tuple[float, float, float]] = []
+        #: standard deviation of such a place, to each side; None: not known
+        self.fix_m: float | None = None
+        #: how far the places may be off, to each side
+        self.off_m = 1e-3
 
     def __repr__(self) -> str:
         """Say how many places there are."""
@@ -43,6 +49,11 @@ class Track:
             self._last = None
         else:
             self._last = row
+
+    def fix(self, at_s: float, x_m: float, y_m: float) -> None:
+        """Note where a receiver said that the robot is."""
+        if not self.fixes or at_s >= self.fixes[-1][0] + _FIX_S - 1e-9:
+            self.fixes.append((at_s, x_m, y_m))
 
     @property
     def last_s(self) -> float:

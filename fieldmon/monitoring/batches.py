@@ -189,8 +189,12 @@ def begin(db: sqlite3.Connection, kind: str, source: str, who: str) -> int:
 
 
 def name(db: sqlite3.Connection, batch: int, who: str) -> None:
-    """Say whose a batch is."""
-    db.execute("UPDATE batches SET who = ? WHERE fid = ?", (who, batch))
+    """Say whose a batch is, besides those that it is of already."""
+    (said,) = db.execute("SELECT coalesce(who, '') FROM batches WHERE fid = ?", (batch,)).fetchone()
+    if said != who:
+        both = {*said.split(", "), *who.split(", ")} - {""}
+        names = ", ".join(sorted(both)) if said else who
+        db.execute("UPDATE batches SET who = ? WHERE fid = ?", (names, batch))
 
 
 def must_count(db: sqlite3.Connection, batch: int) -> None:

@@ -149,6 +149,10 @@ class AskedDay(ABC):
         self._asked, self._clock_s = None, now_s
         self._go_on(stop, found, is_late=abs(now_s - stop.done_s) > self.late_s)
 
+    def leave(self) -> None:
+        """Go to no plant any more: what was asked for is free for others, where there are any."""
+        self._asked = None
+
     @abstractmethod
     def _take(self, stop: PlantToInspect, found: bool | None, now_s: float) -> None:  # noqa: FBT001
         """Keep what was seen, and when."""

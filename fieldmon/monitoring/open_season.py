@@ -423,6 +423,15 @@ class OpenSeason:
     def _begun_s(self, contents: SeasonContents, on: date, who: str | Besides) -> float:
         return self._work(contents, on, who).begun_s(contents.settings.day(on))
 
+    def until_s(self, on: date, who: str | Besides = "") -> float:
+        """Return until which second of the day `on` results are of its work; `who` as in `plan`.
+
+        Past midnight it is 86 400 and more.
+        """
+        with self._lock:
+            contents = self._now()
+            return self._work(contents, on, who).until_s(contents.settings.day(on))
+
     def left_s(self, on: date, now: time | None = None, who: str | Besides = "") -> float:
         """Return the seconds left of the working day `on`; `now` and `who` as in `scene`."""
         with self._lock:

@@ -258,8 +258,7 @@ class SeasonInspections(SeasonCorrections):
         made = inspection_table.rows(told, *how)
         repeated_recordings.keep(db, held, zip([one.held for one in more], made, strict=True))
         by = ", ".join(sorted({*map(str, news.who), *map(str, told.who)} - {""}))
-        if into is None:
-            batches.name(db, batch, by)
+        batches.name(db, batch, by)
         batches.end(db, batch, len(news) + len(more), grows=into is not None)
         n_notes = sum(one.is_note for one in more)
         done = Recorded(

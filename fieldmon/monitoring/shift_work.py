@@ -136,6 +136,13 @@ class ShiftWork:
         """
         return self._begun_s(self.own(day), self.resting(day))
 
+    def until_s(self, day: int) -> float:
+        """Return until which second of a day what they inspect is of its work; see `begun_s`.
+
+        Past midnight it is 86 400 and more.
+        """
+        return self._ends_s(day, self.begun_s(day)) + DAY_S
+
     def gone_s(self, day: int, now_s: float | None = None) -> float:
         """Return how many seconds of their working day are gone.
 

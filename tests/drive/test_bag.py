@@ -9,7 +9,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-from fieldmon.drive.bag import write_bag
+from fieldmon.drive.bag import read_bag, write_bag
 from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.recording import Recording
@@ -75,6 +75,45 @@ def test_fixes_are_degrees_on_the_plot(messages, plot):
         assert west - 1e-4 < fix.longitude < east + 1e-4
         assert south - 1e-4 < fix.latitude < north + 1e-4
     assert len(messages["/odom"]) == len(messages["/gps/fix"])
+
+
+def test_odometry_tells_how_fast_the_robot_is(messages, robot):
+    twists = [message.twist for _, message in messages["/odom"]]
+    speeds = np.array([one.twist.linear.x for one in twists])
+    assert speeds.max() == pytest.approx(robot.speed_m_s, rel=0.01)
+    assert (np.abs(speeds) < 1e-6).mean() > 0.5  # it stands to look
+    assert min(one.covariance[0] for one in twists) > 0.0
+    assert all(message.pose.covariance[0] == 1e-6 for _, message in messages["/odom"])
+
+
+def test_the_receivers_frame_is_there_and_its_noise_is_not_known(messages):
+    ((_, static),) = messages["/tf_static"]
+    (gps,) = static.transforms
+    assert (gps.header.frame_id, gps.child_frame_id) == ("base_link", "gps")
+    fixes = [fix for _, fix in messages["/gps/fix"]]
+    assert {fix.header.frame_id for fix in fixes} == {"gps"}
+    # nobody said what a robot without physics hears
+    assert {fix.position_covariance_type for fix in fixes} == {0}
+
+
+def test_fixes_are_those_that_the_robot_had_and_it_turns_as_it_did(plot, robot, tmp_path):
+    made = Recording(plot.aisles.for_robot(robot), robot)
+    made.track.fix_m = 0.3
+    for k in range(50):
+        made.track.add(0.1 * k, 0.05 * k, 0.0, 3.1 + 0.01 * k)  # backwards, and over half a turn
+        made.track.fix(0.1 * k, 0.05 * k + 7.0, 5.0)
+    path, *_ = write_bag(made, BEGINS, tmp_path / "day.mcap")
+    got = {topic: [] for topic in ("/gps/fix", "/odom")}
+    for topic, _, message in read_bag(path, tuple(got)):
+        got[topic].append(message)
+    frame = plot.grid.frame
+    fixes = frame.xy_m(np.array([(one.longitude, one.latitude) for one in got["/gps/fix"]]))
+    assert fixes == pytest.approx(np.array([(0.5 * k + 7.0, 5.0) for k in range(5)]), abs=1e-3)
+    assert {one.position_covariance[0] for one in got["/gps/fix"]} == {0.09}
+    assert {one.position_covariance_type for one in got["/gps/fix"]} == {2}
+    turns = [one.twist.twist.angular.z for one in got["/odom"]]
+    assert turns == pytest.approx([0.1] * len(turns), abs=1e-6)
+    assert got["/odom"][0].twist.twist.linear.x == pytest.approx(0.5 * math.cos(3.1), abs=1e-3)
 
 
 def test_every_plant_stands_there_and_every_find_lights_up(messages, recording):

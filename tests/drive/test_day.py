@@ -1,9 +1,11 @@
 """The loop: asked, driven, told, and what the day comes to."""
 
+import numpy as np
 import pytest
 
 from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
+from fieldmon.drive.day_tables import in_words
 from fieldmon.drive.errand import Visit
 
 
@@ -67,3 +69,38 @@ def test_whoever_watches_is_told_of_each_stop_once_it_is_recorded(monitor, plot,
         )
     assert [number for _, _, number in seen] == [told for _, told, _ in seen]
     assert any(stop.visit.found for stop, _, _ in seen)
+
+
+class Crawls(Slow):
+    """Drives four times slower than charged, home even slower, and says when it got there."""
+
+    def __init__(self, charged, home):
+        super().__init__()
+        self.charged_s, self.times_home = charged, home
+
+    def visit(self, errand):
+        there_s = self.now_s + 4.0 * self.charged_s(errand.line_m)
+        self.now_s = there_s + errand.stop.inspect_s
+        return Visit(found=False, done_s=self.now_s, there_s=there_s)
+
+    def home(self, line_m):
+        return Visit(None, self.now_s + self.times_home * self.charged_s(line_m))
+
+
+@pytest.mark.parametrize("home", [4.0, 20.0])
+def test_a_slow_robot_goes_home_in_time_and_says_where_it_did_not(monitor, plot, robot, home):
+    def charged_s(line_m):
+        return float(np.hypot(*np.diff(line_m, axis=0).T).sum()) / robot.speed_m_s
+
+    with monitor.day() as day:
+        who = robot, Crawls(charged_s, home)
+        driven = drive_day(day, plot.aisles.for_robot(robot), who)
+    assert 3.0 < driven.slowness <= 4.0  # row changes take no time of their own
+    ends_s = driven.stops[-1].visit.done_s + driven.home_driven_s
+    if home == 4.0:
+        assert ends_s < robot.day_s + 30.0
+        assert driven.late_s == 0.0
+        assert "after its hours" not in in_words(driven)
+    else:
+        assert driven.late_s == pytest.approx(ends_s - robot.day_s)
+        assert f"It came home {driven.late_s / 60:.0f} min after its hours." in in_words(driven)

@@ -15,6 +15,7 @@ from fieldmon.compute.ranges import AllowedRange
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.vda5050.crossing import Crossing
 from fieldmon.drive.vda5050.messages import (
+    FASTER,
     LATE_S,
     at_once,
     decoded,
@@ -24,6 +25,7 @@ from fieldmon.drive.vda5050.messages import (
     order_of,
     result_of,
     sent_at,
+    side_of,
 )
 from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.errors import FieldmonError, ObservationError, SettingError
@@ -103,6 +105,11 @@ class Vda5050Robot:
         self._state: dict[str, Any] | None = None
         self._told, self._odd_clock = "", False
         self._traffic = traffic
+        #: seconds of the day that are gone by the plot's clock; None: by the robot's own
+        self.clock: Callable[[], float] | None = None
+        #: told where the robot says that it is: seconds, and ``(2,)`` metres of the plot's frame
+        self.sees: Callable[[float, Float], None] | None = None
+        self._begun, self._began, self._order_s = time.monotonic(), datetime.now(UTC), math.nan
 
     def begin(self, aisles: Aisles, at_m: Float, gone_s: float) -> None:
         """Take the plot's metres for those east and north of its datum."""
@@ -114,9 +121,22 @@ class Vda5050Robot:
         self._gone_s, self._begun = gone_s, time.monotonic()
         self._began = datetime.now(UTC)
         self._own_clock, self._heard_at = False, time.monotonic()
-        self._clock_behind_s = 0.0
+        self._clock_behind_s, self._order_s = 0.0, math.nan
+        self._towards_m: Float | None = None
         if self._traffic is not None:
             self._crossing = Crossing(self._traffic, self._name, aisles, at_m)
+
+    @property
+    def has_order(self) -> bool:
+        """Whether it was sent one in this run."""
+        return self._has_order
+
+    def is_faster(self) -> bool:
+        """Wait until the robot is heard; tell whether it says that its clock is no real one."""
+        state = self._told_once()
+        if isinstance(state, str):
+            return False
+        return any(one.get("infoType") == FASTER for one in state.get("information", []))
 
     def visit(self, errand: Errand) -> Visit:
         """Send the robot to a plant, and wait for what it found."""
@@ -126,8 +146,17 @@ class Vda5050Robot:
         self._known["orderUpdateId"] += 1
         update = self._known["orderUpdateId"]
         action = f"{self._known['orderId']}-{update}-{errand.stop.plant}"
-        order, node = order_of(errand._replace(line_m=line_m), self._places, self._known, action)
-        said = self._done(order, lambda state: self._finished(state, action))
+        stands = self._plant_at(errand)
+        errand = errand._replace(line_m=line_m)
+        order, node = order_of(errand, self._places, self._known, action, stands)
+        there: list[float] = []
+
+        def finished(state: dict[str, Any]) -> dict[str, Any] | None:
+            if not there and state["lastNodeSequenceId"] >= node["sequenceId"]:
+                there.append(self._state_s(state))
+            return self._finished(state, action)
+
+        said = self._done(order, finished)
         # the next update begins at the node where it stands; what was done there is not done again
         self._known["node"] = {**node, "actions": []}
         if isinstance(said, str):
@@ -142,7 +171,17 @@ class Vda5050Robot:
                 f"{result.wrong}: the plant counts as not inspected."
             )
         found = result.found if is_done else None
-        return Visit(found, self._at_s(result.day_s), stuck=self._ended(self._over()))
+        done_s = self._at_s(result.day_s)
+        there_s = min(there[0], done_s) if there else None
+        return Visit(found, done_s, stuck=self._ended(self._over()), there_s=there_s)
+
+    def _plant_at(self, errand: Errand) -> tuple[Float, str]:
+        """Return where a plant stands, metres of the plot's frame, and on which side of the way."""
+        if len(errand.line_m) > 1:
+            self._towards_m = errand.line_m[-1] - errand.line_m[-2]
+        plant_m, towards_m = self._grid.xy_m[errand.stop.plant], self._towards_m
+        side = "" if towards_m is None else side_of(plant_m, errand.line_m[-1], towards_m)
+        return plant_m, side
 
     def home(self, line_m: Float) -> Visit | None:
         """Send the robot back to the gate."""
@@ -154,8 +193,7 @@ class Vda5050Robot:
             return self._not_there(said)
         if self._traffic is not None:
             self._crossing.arrived(GATE)
-        told = [one for one in said.get("information", []) if one.get("infoType") == "day_s"]
-        return Visit(None, self._at_s(told[-1].get("infoDescription") if told else None))
+        return Visit(None, self._at_s(_day_s(said)))
 
     def _cleared(self, line_m: Float, plant: int) -> tuple[Float, str | None]:
         """Return what is left of a way once all aisles on it are the robot's; or why it never is.
@@ -235,13 +273,7 @@ class Vda5050Robot:
 
         A robot by the standard refuses an order while it has another one.
         """
-        why = self._had(
-            lambda _: self._ask("stateRequest", "state"),
-            "told its state",
-            lambda: self._state is not None,
-            lambda state: state,
-        )
-        if isinstance(why, str):
+        if isinstance(why := self._told_once(), str):
             return why
         if (why := self._broken()) or not self._is_busy():
             return why
@@ -253,6 +285,15 @@ class Vda5050Robot:
             lambda state: state if self._status("cancel") in _OVER or not self._is_busy() else None,
         )
         return why if isinstance(why, str) else ""
+
+    def _told_once(self) -> dict[str, Any] | str:
+        """Return what the robot said last, once it was heard, or why it never was."""
+        return self._had(
+            lambda _: self._ask("stateRequest", "state"),
+            "told its state",
+            lambda: self._state is not None,
+            lambda state: state,
+        )
 
     def _had(
         self,
@@ -428,11 +469,24 @@ class Vda5050Robot:
         if kind != "state" or self._late(message):
             return False
         self._state, self._is_lost = message, False
+        if math.isnan(self._order_s) and message["orderId"] == self._known["orderId"]:
+            self._order_s = _seconds(_day_s(message))
+            self._clock_behind_s = max(0.0, self._gone_s - self._order_s)
+        self._see(message)
         if self._stands():
             self._tell("The robot is paused, or driven by hand; waiting.")
         else:
             self._told = ""
         return True
+
+    def _see(self, state: dict[str, Any]) -> None:
+        """Pass on where the robot says that it is, once it has an order of this run."""
+        place = state.get("agvPosition")
+        is_ours = state["orderId"] == self._known["orderId"]
+        if self.sees is None or not is_ours or place is None or not place["positionInitialized"]:
+            return
+        lonlat = self._east_north.lonlat(np.array([[place["x"], place["y"]]]))
+        self.sees(self._state_s(state), self._grid.frame.xy_m(lonlat)[0])
 
     def _stands(self) -> bool:
         """Tell whether somebody has stopped the robot."""
@@ -472,14 +526,22 @@ class Vda5050Robot:
             "here. Charge it."
         )
 
+    def _state_s(self, state: dict[str, Any]) -> float:
+        """Return when a state was told, as `_at_s` counts, where the robot told its clock."""
+        told_s = math.nan if self.clock is not None else _seconds(_day_s(state))
+        at_s = told_s + self._clock_behind_s
+        return self._now_s() if _DAY_S.broken(told_s) else at_s
+
     def _at_s(self, told_s: object) -> float:
-        """Return the robot's own clock if it says one, which never goes backwards; else ours."""
-        if told_s is None:
+        """Return the robot's own clock if it says one and it counts; else ours.
+
+        It never goes backwards.
+        """
+        if self.clock is not None:
+            self._gone_s = self._now_s()
+        if self.clock is not None or told_s is None:
             return self._now_s()
-        try:
-            at_s = float(str(told_s))
-        except ValueError:
-            at_s = math.nan
+        at_s = _seconds(told_s)
         if _DAY_S.broken(at_s):
             if not self._odd_clock:
                 self._odd_clock = True
@@ -489,7 +551,9 @@ class Vda5050Robot:
                 )
             return self._now_s()
         if not self._own_clock and at_s < self._gone_s:  # as of one that was started anew
-            self._clock_behind_s = self._now_s() - at_s
+            took_s = at_s - self._order_s  # by its own clock, if it told that before
+            is_told = took_s >= 0.0
+            self._clock_behind_s = (self._gone_s + took_s if is_told else self._now_s()) - at_s
             self._say(
                 "The robot's clock (day_s) is behind the last result of the day: it is counted on "
                 "from there."
@@ -507,7 +571,23 @@ class Vda5050Robot:
         return self._gone_s
 
     def _now_s(self) -> float:
+        if self.clock is not None:
+            return max(self.clock(), self._gone_s)
         return self._gone_s + time.monotonic() - self._begun
+
+
+def _day_s(state: dict[str, Any]) -> object:
+    """Return what a state says of the robot's own clock; None: nothing."""
+    told = [one for one in state.get("information", []) if one.get("infoType") == "day_s"]
+    return told[-1].get("infoDescription") if told else None
+
+
+def _seconds(told: object) -> float:
+    """Return seconds that were told; NaN where they are none."""
+    try:
+        return float(str(told))
+    except ValueError:
+        return math.nan
 
 
 @contextmanager

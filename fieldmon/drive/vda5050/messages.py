@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 from datetime import UTC, datetime
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -29,9 +30,13 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
 
 ACTION = "inspectPlant"
+#: information of a robot that is simulated, faster than the clock: how many times
+FASTER = "faster"
 MAP = "map"
 #: what was sent so much before what was heard last is not late: a clock was put back
 LATE_S = 60.0
+# what is less to the side stands ahead
+_AHEAD_M = 0.05
 # words for true and false
 _PLAIN = {"true": 1, "yes": 1, "1": 1, "false": 0, "no": 0, "0": 0}
 
@@ -110,7 +115,11 @@ def header_of(manufacturer: str, serial: str, version: str = USUAL_VERSION) -> d
 
 
 def order_of(
-    errand: Errand, places: Callable[[Float], Float], known: dict[str, Any], action_id: str
+    errand: Errand,
+    places: Callable[[Float], Float],
+    known: dict[str, Any],
+    action_id: str,
+    stands: tuple[Float, str] | None = None,
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return an order for an errand, and its last released node, at which the next one begins.
 
@@ -125,6 +134,8 @@ def order_of(
         as ``node`` the last released node of the order before; None: there was none.
     action_id
         Name of the inspection.
+    stands
+        Where the plant stands, ``(2,)`` in the plot's metres, and on which side; None: not said.
     """
     look = {
         "actionId": action_id,
@@ -135,10 +146,32 @@ def order_of(
             {"key": "row", "value": errand.stop.row},
             {"key": "number", "value": errand.stop.number},
             {"key": "seconds", "value": round(errand.look_s, 3)},
+            *([] if stands is None else _stands(places(stands[0][None])[0], stands[1])),
         ],
     }
     return _order([(errand.line_m, [look]), *((line, []) for _, line in errand.ahead)],
                   places, known)  # fmt: skip
+
+
+def side_of(plant_m: Float, at_m: Float, towards_m: Float) -> str:
+    """Return on which side a plant is of who came to a place in a direction, each ``(2,)``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from fieldmon.drive.vda5050.messages import side_of
+    >>> side_of(np.array([5.0, 1.0]), np.array([5.0, 0.0]), np.array([2.0, 0.0]))
+    'left'
+    """
+    (dx, dy), (east, north) = (plant_m - at_m).tolist(), towards_m.tolist()
+    left_m = (east * dy - north * dx) / math.hypot(east, north)
+    return "ahead" if abs(left_m) < _AHEAD_M else "left" if left_m > 0 else "right"
+
+
+def _stands(place_m: Float, side: str) -> list[dict[str, Any]]:
+    """Return the parameters that say where a plant stands."""
+    (x, y), sides = place_m.round(3).tolist(), [{"key": "side", "value": side}] if side else []
+    return [*sides, {"key": "x", "value": x + 0.0}, {"key": "y", "value": y + 0.0}]
 
 
 def home_order(

@@ -10,7 +10,7 @@ import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.drive.vda5050.messages import MAP, decoded, encoded, header_of
+from fieldmon.drive.vda5050.messages import FASTER, MAP, decoded, encoded, header_of
 from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.drive.vda5050.versions import AT_ONCE
 from fieldmon.errors import ObservationError
@@ -59,8 +59,8 @@ class StandIn:
     speed_m_s
         Of driving.
     faster
-        How many times faster than the clock. Seconds told are those of its own day, which begins
-        with each order.
+        How many times faster than the clock, which it tells. Seconds told are those of its own
+        day, which begins with each order.
     """
 
     def __init__(
@@ -74,6 +74,7 @@ class StandIn:
         self._headers = {kind: header_of(*robot) for kind in ("state", "connection")}
         self._look = look
         self.name, self._speed_m_s, self._faster = robot, speed_m_s, faster
+        self._pace = [] if faster == 1.0 else [_told(FASTER, f"{faster:g}")]
         self.self = _Self()
         broken = encoded("connection", header_of(*robot), {"connectionState": "CONNECTIONBROKEN"})
         hears, name = ("order", "instantActions"), f"stand-in-{robot.serial}"
@@ -129,9 +130,7 @@ class StandIn:
             "batteryState": {"batteryCharge": me.battery, "charging": False},
             "operatingMode": "AUTOMATIC",
             "errors": [*me.errors, *me.refusals],
-            "information": [
-                {"infoType": "day_s", "infoLevel": "INFO", "infoDescription": f"{me.day_s:.1f}"}
-            ],
+            "information": [_told("day_s", f"{me.day_s:.1f}"), *self._pace],
             "safetyState": {"eStop": "NONE", "fieldViolation": False},
         }
         self.wire.send("state", encoded("state", self._headers["state"], body))
@@ -213,6 +212,8 @@ class StandIn:
             self.drive_to(there)
         me.place, me.node, me.sequence = there, node["nodeId"], node["sequenceId"]
         me.edges = [one for one in me.edges if one["sequenceId"] > me.sequence]
+        if node["actions"]:
+            self.tell()  # that it is there
         for action in node["actions"]:
             self._do(action)
         return True
@@ -241,6 +242,10 @@ def _action(action: dict[str, Any], status: str) -> dict[str, Any]:
         "actionType": action["actionType"],
         "actionStatus": status,
     }
+
+
+def _told(kind: str, what: str) -> dict[str, Any]:
+    return {"infoType": kind, "infoLevel": "INFO", "infoDescription": what}
 
 
 def _part(one: dict[str, Any], name: str) -> dict[str, Any]:

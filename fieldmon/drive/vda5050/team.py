@@ -6,9 +6,11 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from fieldmon.drive.day import DrivenDay, drive_day
+from fieldmon.drive.day_clock import time_results
 from fieldmon.drive.vda5050.fleet import live_robot
 from fieldmon.drive.vda5050.mqtt import RobotName
 from fieldmon.errors import FieldmonError
+from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.members import TeamMember
 
 #: said at the first and the second Ctrl-C
-_STOPPING = (
+STOPPING = (
     (
         "Stopping: each robot ends the plant in hand and drives home. Ctrl-C again ends at once. "
         "Waited for: {names}."
@@ -71,12 +73,16 @@ def drive_team(
         def tell(told: str) -> None:
             say(f"{member.name}: {told}")
 
-        watch = None if noted is None else noted.note
+        watch = None if noted is None else noted.note_live
         try:
             with live_robot(broker, robot, str(day.on), tell, day.keeper) as live:
                 live.stops = lambda: day.stops
+                live.sees = None if noted is None else noted.see
                 if begun is not None:
                     begun[member.name] = driven
+                if told := time_results(own, grid_clock(day.season.plot.grid), live):
+                    tell(told)
+                driven.begun_s = own.begun_s
                 drive_day(own, own.aisles, (member.robot, live), watch, driven)
         except FieldmonError as error:
             driven.broken = str(error)
@@ -91,7 +97,7 @@ def drive_team(
 
     with ThreadPoolExecutor(len(day.robots), "robot") as threads:
         running = {member.name: threads.submit(one, member) for member in day.robots}
-        for told in _STOPPING:
+        for told in STOPPING:
             try:
                 return _results(running)
             except KeyboardInterrupt:

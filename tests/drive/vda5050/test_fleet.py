@@ -26,6 +26,7 @@ from fieldmon.monitoring import Season
 from fieldmon.monitoring.monitor import Monitor
 from fieldmon.monitoring.settings import MonitoringSettings
 from tests.drive.test_season_day import ON
+from tests.drive.vda5050.bodies import STATE
 from tests.drive.vda5050.conftest import ROBOT
 
 MOTOR = {"errorType": "motor", "errorLevel": "FATAL", "errorDescription": "left wheel"}
@@ -472,3 +473,14 @@ def test_the_clock_of_a_robot_that_was_started_anew_is_counted_on_and_said(plot)
     assert first >= 3600.0
     assert [driver._at_s(told) - first for told in ("70.5", "95.0", None)][:2] == [30.5, 55.0]
     assert ["behind the last result" in one for one in said] == [True]
+
+
+def test_the_first_stop_after_going_on_takes_as_long_as_by_the_robots_own_clock(plot):
+    """Also of one that is faster than ours."""
+    heard, header = queue.Queue(), header_of(*ROBOT)
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT, heard=heard), "day")
+    driver.begin(plot.aisles, np.zeros(2), 3600.0)
+    information = [{"infoType": "day_s", "infoLevel": "INFO", "infoDescription": "12.5"}]
+    heard.put(("state", encoded("state", header, STATE | {"information": information})))
+    assert driver._hear()
+    assert [driver._at_s(told) for told in ("56.5", "100.5")] == [3644.0, 3688.0]

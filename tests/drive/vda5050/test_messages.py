@@ -15,6 +15,7 @@ from fieldmon.drive.vda5050.messages import (
     home_order,
     order_of,
     result_of,
+    side_of,
 )
 from fieldmon.drive.vda5050.rules import problems
 from fieldmon.errors import ObservationError
@@ -48,6 +49,19 @@ def test_the_way_to_the_plant_is_released_and_what_comes_after_is_not():
     )
     told = {one["key"]: one["value"] for one in look["actionParameters"]}
     assert told == {"plant": 7, "row": 2, "number": 3, "seconds": 41.0}
+
+
+@pytest.mark.parametrize(
+    ("plant_m", "side"),
+    [((4, 3), "left"), ((6.5, 2.5), "right"), ((5.01, 4.5), "ahead"), ((9, 9), "")],
+)
+def test_an_order_says_where_a_plant_stands_and_on_which_side(plant_m, side):
+    way, plant_m = errand().line_m, np.array(plant_m, float)
+    assert side in {"", side_of(plant_m, way[-1], way[-1] - way[-2])}
+    order, _ = order_of(errand(), as_it_is, FIRST, "a1", (plant_m, side))
+    look = order["nodes"][-1]["actions"][0]["actionParameters"]
+    told = {one["key"]: one["value"] for one in look}
+    assert (told["x"], told["y"], told.get("side", "")) == (*plant_m, side)
 
 
 def test_an_order_says_seconds_as_people_do():

@@ -23,7 +23,7 @@ class Track:
     >>> track = Track()
     >>> for k in range(4):
     ...     track.add(0.05 * k, 0.1 * k, 0.0, 0.0)
-    >>> track.poses[:, 0].tolist()
+    >>> track.poses[:, 0].round(2).tolist()
     [0.0, 0.1, 0.15]
     """
 

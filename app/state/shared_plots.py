@@ -12,7 +12,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.monitoring import estate_day
 from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.estate_day import EstatePlot
-from fieldmon.monitoring.estate_routes import EstateRoute, NamedPlot, walked
+from fieldmon.monitoring.estate_routes import EstateRoute, LeftOut, NamedPlot, walked
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.plot.local_clock import local_clock
@@ -75,7 +75,7 @@ class PlannedTurn(EstateRoute):
 
 @dataclass(frozen=True, eq=False)
 class SharedPlots:
-    """The plan: its turns, plots for which there is no time, and plots that cannot be planned.
+    """The plan: its turns, plots to which nobody goes, and plots that cannot be planned.
 
     And what is left off as people may not be there yet, who has no plot, of how many, whether the
     plots have robots of several kinds, so that the usual one is taken, and who works in plots with
@@ -83,8 +83,8 @@ class SharedPlots:
     """
 
     turns: tuple[PlannedTurn, ...]
-    waiting: tuple[PlotState, ...] = ()
-    problems: tuple[str, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    problems: tuple[LeftOut, ...] = ()
     closed: tuple[str, ...] = ()
     free: tuple[str, ...] = ()
     n_members: int = 0
@@ -134,6 +134,17 @@ def due(plots: Iterable[PlotState]) -> list[PlotState]:
     return [some[k] for k in estate_day.due([one.days_since for one in some])]
 
 
+def not_due(plots: Iterable[PlotState]) -> list[LeftOut]:
+    """Return the plots that are seen too lately to be planned."""
+    some = [*plots]
+    wanted = {id(one) for one in due(some)}
+    return [
+        LeftOut(one.name, in_words(estate_day.not_due(one.days_since or 0)))
+        for one in some
+        if id(one) not in wanted
+    ]
+
+
 def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> SharedPlots:
     """Return the plan of these plots for a crew."""
     ready, problems = [], []
@@ -142,7 +153,7 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
         try:
             ready.append(_ready(plot))
         except FieldmonError as error:
-            problems.append(f"{texts.isolated(plot.name)}: {of_error(error)}")
+            problems.append(LeftOut(plot.name, of_error(error)))
     known = [one.known for one in ready]
     seasons = [one.season for one in known if one.season is not None]
     # plots of files have the usual robot
@@ -161,7 +172,7 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
             PlannedTurn(**vars(route), state=ready[turn.plot].plot, number=turn.who)
             for turn, route in made.turns
         ),
-        tuple(ready[k].plot for k in made.waiting),
+        made.left_out,
         tuple(problems),
         tuple(
             f"{texts.isolated(one.plot.name)}: {sentence}"

@@ -429,7 +429,7 @@ PLOTS_STATES = {
 }  # fmt: skip
 PLOTS_TIP = "{name}: {expected} infested expected, {seen}"
 PLOTS_TIP_NEW = "{name}: no season yet"
-PLOTS_SEEN = {0: "seen today", None: "never seen", "begun": "begun, less than half of a plan done",
+PLOTS_SEEN = {0: "seen today", None: "never seen", "begun": "begun, less than half a day's work done",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
 PLAN_ALL = "Plan all that are due"
@@ -453,10 +453,8 @@ PLAN_ALL_RULE = (
     "that would get less than a quarter of an hour waits. From plot to plot takes so many minutes, "
     "wherever they lie."
 )
-PLAN_ALL_WAITING = "No time today: {names}."
-PLAN_ALL_WAITING_MANY = (
-    "No time today for {n} plots: those of the table beside which nobody stands."
-)
+PLAN_ALL_LEFT_OUT = "Left out ({why}): {names}."
+PLAN_ALL_LEFT_OUT_MANY = "Left out: {n} plots"
 PLAN_ALL_FREE = "Free today: {names}."
 PLAN_ALL_FREE_MANY = "Free today: {n} of {all}."
 PLAN_ALL_KINDS = "The plots have robots of several kinds: here all are of the usual one."

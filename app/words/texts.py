@@ -429,7 +429,7 @@ PLOTS_STATES = {
 }  # fmt: skip
 PLOTS_TIP = "{name}: {expected} infested expected, {seen}"
 PLOTS_TIP_NEW = "{name}: no season yet"
-PLOTS_SEEN = {0: "seen today", None: "never seen", "begun": "begun, less than half a day's work done",
+PLOTS_SEEN = {0: "seen today", None: "never seen", "begun": "begun, less than half a day done",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
 PLAN_ALL = "Plan all that are due"

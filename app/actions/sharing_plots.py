@@ -18,7 +18,7 @@ from fieldmon.monitoring.estate_routes import PLAN_TABLE, LeftOut, plan_table, s
 from ..state import shared_plots, widget_memory
 from ..state.shared_plots import EstateCrew, SharedPlots
 from ..words import texts
-from ..words.language import about, listed, number
+from ..words.language import about, in_words, listed, number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -59,6 +59,8 @@ def show(plots: list[PlotState], not_among: Iterable[NotAmong] = ()) -> SharedPl
     also = widget_memory.show(st.checkbox, texts.PLAN_ALL_ALSO, key="crew_also", default=False)
     wanted = plots if also else shared_plots.due(plots)
     lately = [] if also else shared_plots.not_due(plots)
+    for said in shared_plots.of_one_plot([one.source for one in plots if one.number is None]):
+        st.warning(in_words(said))
     if not wanted:
         st.info(texts.PLAN_ALL_NONE)
         _say_left_out(lately)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
-from fieldmon.monitoring import estate_day
+from fieldmon.monitoring import estate_day, season_copies
 from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.estate_day import EstatePlot
 from fieldmon.monitoring.estate_routes import EstateRoute, LeftOut, NamedPlot, walked
@@ -35,6 +35,7 @@ from .chosen_day import STARTS
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.estate_day import EstateTurn
     from fieldmon.planning.plan import DayPlan
 
@@ -143,6 +144,18 @@ def not_due(plots: Iterable[PlotState]) -> list[LeftOut]:
         for one in some
         if id(one) not in wanted
     ]
+
+
+def of_one_plot(names: Iterable[str]) -> tuple[Worded, ...]:
+    """Return a sentence on each plot of several seasons here, if one of these is among them."""
+    seasons, wanted, own = [], {*names}, set[str]()
+    for name in seasons_folder.names() if wanted else ():
+        with suppress(FieldmonError):  # what cannot be opened is said where it is to be
+            season = cached.season(seasons_folder.path_of(name))
+            seasons.append(season)
+            own |= {season.planting} if name in wanted else set()
+    among = [one for one in seasons if one.planting in own]
+    return season_copies.of_one_plot(among, texts.isolated)
 
 
 def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> SharedPlots:

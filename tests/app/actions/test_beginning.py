@@ -226,7 +226,7 @@ def test_the_gate_is_set_on_the_map_before_a_season_begins(app, tmp_path):
 
 @pytest.mark.parametrize("said", ["file", "hand"])
 def test_rows_that_a_file_or_a_person_said_begin_with_one_click(app, seasons_folder, said):
-    here = square()
+    here = square(name='a/"b"')
     if said == "file":
         here = here.assign(row_spacing=3.0, plant_spacing=2.0, bearing=10.0)
     upload(app, plot=("plot.geojson", here.to_json().encode()))
@@ -236,7 +236,14 @@ def test_rows_that_a_file_or_a_person_said_begin_with_one_click(app, seasons_fol
     go(app, "today")
     press(app, "Begin a season")
     assert not app.exception
-    assert len([*seasons_folder.glob("*.gpkg")]) == 1
+    (path,) = seasons_folder.glob("*.gpkg")
+    assert path.stem.startswith("a-b 2"), "proposed without signs that no file's name has"
+    assert Season(path).plot.field.name == 'a/"b"'
+    assert "of one plot" not in app.success[0].value
+    if said == "file":  # brought a second time
+        upload(app, plot=("again.geojson", here.to_json().encode()))
+        press(go(app, "today"), "Begin a season")
+        assert "are 2 seasons of one plot: each counts" in app.success[0].value
 
 
 def test_records_left_out_are_said_before_a_season_begins_and_when_it_begins(app):

@@ -141,3 +141,16 @@ def test_rows_are_closed_by_the_hours_at_which_somebody_is_there(
     made = planned(np.unique(line))
     assert (made.turns, [one.why for one in made.left_out]) == ((), ["closed to people"])
     assert "Closed until 06:30" in made.closed[0]
+
+
+@pytest.mark.usefixtures("session")
+def test_two_seasons_of_one_plot_are_said_where_one_of_them_is_asked_for(
+    begun_file, seasons_folder
+):
+    for name in "ab":
+        shutil.copy(begun_file, seasons_folder / f"{name}.gpkg")
+    (said,) = shared_plots.of_one_plot(["a"])
+    assert said.startswith(
+        "\u2068a\u2069 and \u2068b\u2069 are 2 seasons of one plot: each counts."
+    )
+    assert shared_plots.of_one_plot(["c"]) == shared_plots.of_one_plot([]) == ()

@@ -46,7 +46,7 @@ SAMPLE_NOTE = (
     "{day}."
 )
 PLOT_FROM = "Plot or season"
-PLOT_FILE = "Plot: zipped shapefile, {formats}"
+PLOT_FILE = "Plot: zipped shapefile, {formats}, ISOXML ..."
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
 ROWS_FILE = "Rows as lines, or their end posts (optional)"
@@ -112,6 +112,10 @@ DATE = "Day"
 DATE_HELP = "Today by the clock of {zone}, unless you choose another day."
 ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lies"
 OTHER_DAY = "This page is about **{day}**, which is not today ({today})."
+DAY_OUTSIDE = (
+    "A day of the season must be from {first}, when it begins, to {last}, but {day} was chosen. "
+    "This is about the nearest."
+)
 OTHER_DAY_RECORDED = "What you record here is recorded for {day}, unless a file names its day."
 NOT_COME = (
     "Something is recorded of **{day}**, which has not come: it is {today}. No day before counts "

@@ -49,6 +49,9 @@ def test_a_season_begins_and_is_found_again_by_a_new_session(season):
     assert "first day of the season" in texts_of(again)
     assert plants(again).rank.tolist() == plants(app).rank.tolist()
     assert plants(again).lonlat == pytest.approx(plants(app).lonlat, abs=1e-9)
+    again.date_input(key="day Gate 2026").set_value(date(2026, 11, 9)).run()
+    assert again.date_input(key="day Gate 2026").value == date(2026, 11, 16)
+    assert "2026-11-09 was chosen. This is about the nearest" in texts_of(again)
 
 
 def test_a_season_is_never_begun_over_another_and_its_name_stays_in_the_folder(season_app, season):

@@ -216,8 +216,9 @@ def _day(source: str, calendar: Calendar, clock: LocalClock) -> date:
     key = work_day.BOX.format(source=source)
     day = st.session_state[key] = work_day.of(source, calendar)
     zone = clock.zone or texts.ZONE_OF_MACHINE
+    first, last = _ANY_DAY if calendar.first else (None, None)
     st.date_input(
-        texts.DATE, day, *(_ANY_DAY if calendar.first else (None, None)), key=key,
+        texts.DATE, day, first, last, key=key,
         format=chosen_units.units().date_format, help=texts.DATE_HELP.format(zone=zone),
         label_visibility="collapsed",
         on_change=_choose_day, args=(source, key, calendar),

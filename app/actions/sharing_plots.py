@@ -116,8 +116,8 @@ def _say(made: SharedPlots, not_among: Sequence[LeftOut] = ()) -> None:
     for plot, members in made.teams:
         team = listed(texts.isolated(name) for name in members)
         st.markdown(texts.PLAN_ALL_TEAM.format(plot=texts.isolated(plot), names=team))
-    said = (f"{texts.isolated(one.plot)}: {one.why}" for one in made.problems)
-    for problem in (*made.closed, *said):
+    problems = (f"{texts.isolated(one.plot)}: {one.why}" for one in made.problems)
+    for problem in (*made.closed, *problems):
         st.warning(problem)
     if made.turns:
         st.download_button(texts.PLAN_ALL_DOWNLOAD, partial(packed, made, not_among), "routes.zip",

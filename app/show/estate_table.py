@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from ..state.shared_plots import PlannedTurn
 
     Column = Sequence[str | float | None]
-    #: columns by their names, and how they are written
-    Columns = tuple[dict[str, Column], dict[str, ColumnConfig]]
+    #: columns by their names, how wide they are, and how they are written
+    Columns = tuple[dict[str, Column], list[int], dict[str, ColumnConfig]]
 
 # all columns together, in the panel of a narrow phone: a number that is cut is another number
 _ROOM_PX = 300
@@ -43,8 +43,8 @@ def of(
 ) -> tuple[pd.DataFrame, dict[str, ColumnConfig]]:
     """Return the table, a row a plot in their order, and how its columns are written."""
     name = texts.PLOTS_COLUMNS["name"]
-    columns, how = _planned(plots, turns) if turns else _states(plots)
-    px = _ROOM_PX - sum(int(one["width"]) for one in how.values())
+    columns, widths, how = _planned(plots, turns) if turns else _states(plots)
+    px = _ROOM_PX - sum(widths)
     letters = max(_LETTERS, int((px - _BESIDE_PX) / _LETTER_PX) - 1)
     return (
         pd.DataFrame({name: [shortened(plot.name, letters) for plot in plots]} | columns),
@@ -65,7 +65,7 @@ def _planned(plots: list[PlotState], turns: tuple[PlannedTurn, ...]) -> Columns:
     }
     how = {names[k]: column.TextColumn(width=_PLANNED_PX[k]) for k in ("who", "when")}
     finds = column.NumberColumn(format="localized", width=_PLANNED_PX["finds"])
-    return columns, how | {names["finds"]: finds}
+    return columns, [*_PLANNED_PX.values()], how | {names["finds"]: finds}
 
 
 def _who(name: str) -> str:
@@ -84,16 +84,17 @@ def _states(plots: list[PlotState]) -> Columns:
     number = partial(st.column_config.NumberColumn, format="localized")
     columns: dict[str, Column] = {area: _areas(plots)}
     how = {area: number(width=_PX["area"], help=texts.AREA_IS)}
-    if any(plot.expected is not None for plot in plots):
-        known = {
-            "days_since": [plot.days_since for plot in plots],
-            "expected": [_rounded(plot.expected) for plot in plots],
-        }
-        for k, values in known.items():
-            if any(one is not None for one in values):
-                columns[names[k]] = values
-                how[names[k]] = number(width=_PX[k], help=texts.PLOTS_HELP[k])
-    return columns, how
+    widths = [_PX["area"]]
+    known: dict[str, Column] = {
+        "days_since": [plot.days_since for plot in plots],
+        "expected": [_rounded(plot.expected) for plot in plots],
+    }
+    for k, values in known.items():
+        if any(one is not None for one in values):
+            widths.append(_PX[k])
+            columns[names[k]] = values
+            how[names[k]] = number(width=_PX[k], help=texts.PLOTS_HELP[k])
+    return columns, widths, how
 
 
 def shortened(name: str, letters: int = _LETTERS) -> str:

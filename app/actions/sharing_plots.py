@@ -13,7 +13,7 @@ import streamlit as st
 from streamlit.delta_generator import DeltaGenerator
 
 from fieldmon.io.writers.geojson import route_geojson
-from fieldmon.monitoring.estate_routes import PLAN_TABLE, LeftOut, plan_table, stems
+from fieldmon.monitoring.estate_routes import PLAN_TABLE, PlotLeftOut, plan_table, stems
 
 from ..state import shared_plots, widget_memory
 from ..state.shared_plots import EstateCrew, SharedPlots
@@ -75,7 +75,7 @@ def show(plots: list[PlotState], not_among: Iterable[NotAmong] = ()) -> SharedPl
         )
         st.empty()
     made = replace(made, left_out=(*made.left_out, *lately))
-    _say(made, [LeftOut(one.name, one.said) for one in not_among])
+    _say(made, [PlotLeftOut(one.name, one.said) for one in not_among])
     return made
 
 
@@ -94,7 +94,7 @@ def _crew(usual: EstateCrew) -> EstateCrew:
     )
 
 
-def _say(made: SharedPlots, not_among: Sequence[LeftOut] = ()) -> None:
+def _say(made: SharedPlots, not_among: Sequence[PlotLeftOut] = ()) -> None:
     routes = [one.route for one in made.turns]
     plants = sum(len(route) for route in routes)
     finds = sum(route.expected_found for route in routes)
@@ -124,7 +124,7 @@ def _say(made: SharedPlots, not_among: Sequence[LeftOut] = ()) -> None:
                            "application/zip", key="plan_all_files", on_click="ignore")  # fmt: skip
 
 
-def _say_left_out(plots: Sequence[LeftOut]) -> None:
+def _say_left_out(plots: Sequence[PlotLeftOut]) -> None:
     """Name plots to which nobody goes, a line a reason; very many in a fold."""
     why = dict.fromkeys(one.why for one in plots)
     is_many = len(plots) > _MOST_NAMED
@@ -136,7 +136,7 @@ def _say_left_out(plots: Sequence[LeftOut]) -> None:
             st.markdown(texts.PLAN_ALL_LEFT_OUT.format(why=one, names=names))
 
 
-def packed(made: SharedPlots, not_among: Iterable[LeftOut] = ()) -> bytes:
+def packed(made: SharedPlots, not_among: Iterable[PlotLeftOut] = ()) -> bytes:
     """Return the routes as GeoJSON, a file each, and a table of them and of what is left out."""
     out = io.BytesIO()
     files = {f"{stem}.geojson": one for stem, one in stems(made.turns).items()}

@@ -12,7 +12,7 @@ from fieldmon.errors import FieldmonError
 from fieldmon.monitoring import estate_day, season_copies
 from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.estate_day import EstatePlot
-from fieldmon.monitoring.estate_routes import EstateRoute, LeftOut, NamedPlot, walked
+from fieldmon.monitoring.estate_routes import EstateRoute, NamedPlot, PlotLeftOut, walked
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.plot.local_clock import local_clock
@@ -84,8 +84,8 @@ class SharedPlots:
     """
 
     turns: tuple[PlannedTurn, ...]
-    left_out: tuple[LeftOut, ...] = ()
-    problems: tuple[LeftOut, ...] = ()
+    left_out: tuple[PlotLeftOut, ...] = ()
+    problems: tuple[PlotLeftOut, ...] = ()
     closed: tuple[str, ...] = ()
     free: tuple[str, ...] = ()
     n_members: int = 0
@@ -135,12 +135,12 @@ def due(plots: Iterable[PlotState]) -> list[PlotState]:
     return [some[k] for k in estate_day.due([one.days_since for one in some])]
 
 
-def not_due(plots: Iterable[PlotState]) -> list[LeftOut]:
+def not_due(plots: Iterable[PlotState]) -> list[PlotLeftOut]:
     """Return the plots that are seen too lately to be planned."""
     some = [*plots]
     wanted = {id(one) for one in due(some)}
     return [
-        LeftOut(one.name, in_words(estate_day.not_due(one.days_since or 0)))
+        PlotLeftOut(one.name, in_words(estate_day.not_due(one.days_since or 0)))
         for one in some
         if id(one) not in wanted
     ]
@@ -166,7 +166,7 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
         try:
             ready.append(_ready(plot))
         except FieldmonError as error:
-            problems.append(LeftOut(plot.name, of_error(error)))
+            problems.append(PlotLeftOut(plot.name, of_error(error)))
     known = [one.known for one in ready]
     seasons = [one.season for one in known if one.season is not None]
     # plots of files have the usual robot

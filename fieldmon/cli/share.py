@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn
-    from fieldmon.monitoring.estate_routes import EstateRoutes, LeftOut, NamedPlot
+    from fieldmon.monitoring.estate_routes import EstateRoutes, NamedPlot, PlotLeftOut
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.plan import DayPlan
 
@@ -180,17 +180,17 @@ def _name(season: Season) -> str:
 
 def _due(
     seasons: Sequence[Season], told: date | None, *, every: bool
-) -> tuple[list[tuple[Season, EstatePlot]], list[LeftOut]]:
+) -> tuple[list[tuple[Season, EstatePlot]], list[PlotLeftOut]]:
     """Return the seasons that share the day, with their plots; and those that are left out."""
     from fieldmon.monitoring.estate_day import EstatePlot, days_since, due, not_due
-    from fieldmon.monitoring.estate_routes import LeftOut
+    from fieldmon.monitoring.estate_routes import PlotLeftOut
 
-    begun, left_out = [], list[LeftOut]()
+    begun, left_out = [], list[PlotLeftOut]()
     for season in seasons:
         tell_drafts(season.drafts)
         on = day_on(season.plot.field, told)
         if on < season.settings.begins:
-            left_out.append(LeftOut(_name(season), f"begins on {season.settings.begins}"))
+            left_out.append(PlotLeftOut(_name(season), f"begins on {season.settings.begins}"))
         else:
             begun.append((season, on))
     since = [days_since(season, on) for season, on in begun]
@@ -200,11 +200,11 @@ def _due(
         if k in wanted:
             shared.append((season, EstatePlot.of(season, on)))
         else:
-            left_out.append(LeftOut(_name(season), not_due(since[k] or 0)))
+            left_out.append(PlotLeftOut(_name(season), not_due(since[k] or 0)))
     return shared, left_out
 
 
-def _tell_left_out(one: LeftOut) -> None:
+def _tell_left_out(one: PlotLeftOut) -> None:
     typer.echo(f"Left out: {one.plot} ({one.why}).")
 
 

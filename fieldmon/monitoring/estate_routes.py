@@ -79,7 +79,7 @@ class NamedPlot:
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class PlotLeftOut:
     """A plot to which nobody goes that day: why, and sentences on what is closed there."""
 
     plot: str
@@ -105,7 +105,7 @@ class EstateRoutes:
 
     turns: tuple[tuple[EstateTurn, EstateRoute], ...]
     closed: tuple[tuple[str, ...], ...]
-    left_out: tuple[LeftOut, ...]
+    left_out: tuple[PlotLeftOut, ...]
     free: tuple[str, ...]
 
 
@@ -142,7 +142,7 @@ def walked(
     return EstateRoutes(
         tuple(turns), closed,
         tuple(
-            LeftOut(one.name, said(_why(one.known.scene, closed[k])), closed[k])
+            PlotLeftOut(one.name, said(_why(one.known.scene, closed[k])), closed[k])
             for k, one in enumerate(plots)
             if k not in there
         ),
@@ -166,7 +166,7 @@ def stems(routes: Iterable[EstateRoute]) -> dict[str, EstateRoute]:
 
 def plan_table(
     files: Mapping[str, EstateRoute],
-    left_out: Iterable[LeftOut] = (),
+    left_out: Iterable[PlotLeftOut] = (),
     free: Iterable[str] = (),
 ) -> bytes:
     """Return the table of an estate's day as CSV that a spreadsheet reads.

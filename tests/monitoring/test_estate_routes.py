@@ -12,8 +12,8 @@ from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn, share_estate
 from fieldmon.monitoring.estate_routes import (
     EstateRoute,
-    LeftOut,
     NamedPlot,
+    PlotLeftOut,
     plan_table,
     stems,
     walked,
@@ -54,7 +54,7 @@ def test_the_table_tells_each_route_once_and_all_its_files():
 def test_the_table_tells_where_nobody_goes_and_who_goes_nowhere():
     data = plan_table(
         {"01-a.gpx": a_route("a")},
-        [LeftOut("b", "no time"), LeftOut("c", "closed", ("Closed until 06:30.",))],
+        [PlotLeftOut("b", "no time"), PlotLeftOut("c", "closed", ("Closed until 06:30.",))],
         ["Bo"],
     )
     rows = [*csv.DictReader(io.StringIO(data.decode("utf-8-sig")))]
@@ -67,7 +67,7 @@ def test_the_table_tells_where_nobody_goes_and_who_goes_nowhere():
 
 def test_no_name_in_the_table_is_run_by_a_spreadsheet():
     named = replace(a_route("=1+1"), who="+cmd", closed=["@a is closed."])
-    data = plan_table({"01-a.gpx": named}, [LeftOut("-b", "@w", ("=c is closed.",))], ["\t=d"])
+    data = plan_table({"01-a.gpx": named}, [PlotLeftOut("-b", "@w", ("=c is closed.",))], ["\t=d"])
     rows = [*csv.DictReader(io.StringIO(data.decode("utf-8-sig")))]
     assert [(one["plot"], one["who"], one["closed"]) for one in rows] == [
         ("'=1+1", "'+cmd", "'@a is closed."), ("'-b", "", "'=c is closed."), ("", "'\t=d", ""),
@@ -101,7 +101,7 @@ def test_what_comes_of_a_shared_day_is_who_is_where_what_is_closed_and_who_is_fr
     assert set(made.free) == {"Ann", "Ben", "Cy"} - busy
     assert made.closed[0][0].startswith("CLOSED UNTIL 06:00 ON 2026-04-08 AFTER SOAP")
     assert made.closed[1:] == ((), ())
-    left_out = LeftOut("a", "CLOSED TO PEOPLE", made.closed[0])
+    left_out = PlotLeftOut("a", "CLOSED TO PEOPLE", made.closed[0])
     assert made.left_out == (left_out,), "it is closed, and has not too little time"
 
 
@@ -114,8 +114,8 @@ def test_a_plot_whose_hours_are_too_short_for_a_stop_waits(tmp_path):
         return SimpleNamespace(route=())
 
     made = walked(shared, [plot], members, plan)
-    assert (made.turns, made.left_out, made.free) == ((), (LeftOut("a", "no time"),), ("Ann",))
+    assert (made.turns, made.left_out, made.free) == ((), (PlotLeftOut("a", "no time"),), ("Ann",))
     seen = replace(plot.known.scene, last_inspected=np.full(len(plot.known.scene.chance), 0))
     plot = replace(plot, known=replace(plot.known, scene=seen))
     made = walked(share_estate([plot.known], members, time(6)), [plot], members, plan)
-    assert made.left_out == (LeftOut("a", "all of it was inspected today"),)
+    assert made.left_out == (PlotLeftOut("a", "all of it was inspected today"),)

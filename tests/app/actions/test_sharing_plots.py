@@ -15,7 +15,7 @@ from app.actions import sharing_plots
 from app.state import estate, shared_plots
 from app.state.shared_plots import EstateCrew
 from app.words import texts
-from fieldmon.monitoring.estate_routes import LeftOut
+from fieldmon.monitoring.estate_routes import PlotLeftOut
 from tests.app.driving import go, layer, map_of, press, texts_of
 
 
@@ -47,10 +47,10 @@ def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
 def test_the_files_hold_each_route_and_a_table(session):  # noqa: ARG001 - read within it
     nursery = [one for one in estate.plots()[0] if one.name == "Nursery"]
     made = shared_plots.planned(nursery, EstateCrew(robot_hours=1), lambda *_: None)
-    made = replace(made, left_out=(LeftOut("Hill", "not due"),))
+    made = replace(made, left_out=(PlotLeftOut("Hill", "not due"),))
     (turn,) = made.turns
     with zipfile.ZipFile(
-        io.BytesIO(sharing_plots.packed(made, [LeftOut("gone", "torn")]))
+        io.BytesIO(sharing_plots.packed(made, [PlotLeftOut("gone", "torn")]))
     ) as archive:
         assert sorted(archive.namelist()) == ["01-Nursery.geojson", "plan.csv"]
         route = json.loads(archive.read("01-Nursery.geojson"))
@@ -79,8 +79,10 @@ def said(monkeypatch):
 
 def test_plots_left_out_are_named_by_reason_and_very_many_in_a_fold(said):
     for n, words in ((2, "Left out (no time): \u2068Plot 0\u2069"), (96, "Left out: 96 plots")):
-        left_out = [LeftOut(f"Plot {k}", "no time") for k in range(n)]
-        sharing_plots._say(shared_plots.SharedPlots((), (*left_out, LeftOut("Hill", "not due"))))
+        left_out = [PlotLeftOut(f"Plot {k}", "no time") for k in range(n)]
+        sharing_plots._say(
+            shared_plots.SharedPlots((), (*left_out, PlotLeftOut("Hill", "not due")))
+        )
         told = [one for one in said if one.startswith("Left out")]
         assert told[0].startswith(words.replace("96", "97"))
         assert told[-1] == "Left out (not due): \u2068Hill\u2069."
@@ -111,7 +113,7 @@ def test_who_has_no_plot_is_said_to_be_free(said):
         shared_plots.SharedPlots(
             (),
             (),
-            (LeftOut("Hill", "broken"),),
+            (PlotLeftOut("Hill", "broken"),),
             free=free,
             n_members=2,
             several_kinds=True,

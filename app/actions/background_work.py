@@ -19,22 +19,36 @@ _STEP_S, _STEPS = 0.05, 18
 
 
 def buttons(
-    work: WatchedComparison | DriveRun | LiveDrive, label: str, *, key: str, over: bool
-) -> bool:
+    work: WatchedComparison | DriveRun | LiveDrive, label: str, *, key: str, over: bool,
+    stop: str = texts.STOP,
+) -> bool:  # fmt: skip
     """Offer to begin and to stop it; return whether it is at work. `over`: nothing is left to do.
 
     It begins before its button is drawn, by what is chosen now: so no second run has to tell the
     buttons.
     """
-    if (tab := browser.tab()) is not None:
-        work.watch(*tab)
+    _watch(work, key)
     if st.session_state.get(key) and not over:
         work.start()
     at_work = work.running
     with st.container(horizontal=True):
         st.button(label, type="primary", key=key, disabled=at_work or over)
-        st.button(texts.STOP, key=f"{key}_stop", on_click=work.stop, disabled=not at_work)
+        st.button(stop, key=f"{key}_stop", on_click=work.stop, disabled=not at_work)
     return at_work
+
+
+def _watch(work: WatchedComparison | DriveRun | LiveDrive, key: str) -> None:
+    """Note that this tab watches it, and no more what its buttons were for before.
+
+    That is out of reach: it waits, and ends if nobody comes back to it.
+    """
+    if (tab := browser.tab()) is None:
+        return
+    work.watch(*tab)
+    before = st.session_state.get(f"{key} watched")
+    if before is not None and before is not work:
+        before.leave(tab[0])
+    st.session_state[f"{key} watched"] = work
 
 
 def show_progress(running: WatchedComparison) -> None:

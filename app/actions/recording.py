@@ -16,6 +16,7 @@ from fieldmon.errors import ContradictionError, FieldmonError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.options import Upload
 from fieldmon.io.parse import result_words
+from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring.inspection_import import read_brought, record_saved
 from fieldmon.monitoring.transactions import MAGIC
 from fieldmon.plot.grid import plant_at, plant_numbers
@@ -84,15 +85,15 @@ def show(choices: Choices) -> None:
 def take_plant(choices: Choices, layer: str, index: int) -> None:
     """Take the plant that was tapped as the one to be recorded; nothing is recorded by it."""
     if layer.startswith("plants"):
-        numbered = plant_numbers(
-            choices.plot.grid, np.array([min(index, len(choices.plot.grid) - 1)])
-        )
+        plant = np.array([min(index, len(choices.plot.grid) - 1)])
+        numbered, face = plant_numbers(choices.plot.grid, plant), faces(choices.plot.grid, plant)
         boxes = FreshBoxes(_ONE, choices)
         boxes.empty()  # a result that was said of another plant is none of this one
         row, number = int(numbered.line[0]), int(numbered.number[0])
         typed = f"{row}" if choices.plot.grid.row_names else row
         boxes.put("one_row", typed)
         boxes.put("one_plant", number)
+        boxes.put("one_face", int(face[0]) or None)
         boxes.put(_TAPPED, (typed, number))
         plant_history.take_plant(choices, layer, index)
 
@@ -109,12 +110,14 @@ def _show_one(choices: Choices) -> None:
     else:
         show(left.number_input, texts.HISTORY_ROW, 0, None, box="one_row")
     show(right.number_input, texts.HISTORY_PLANT, 0, None, box="one_plant")
+    if (choices.plot.grid.twin >= 0).any():
+        show(st.segmented_control, texts.HISTORY_FACE, [1, 2], box="one_face")
     show(
         st.segmented_control, texts.RESULT, [FOUND, CLEAN, SKIPPED, GONE],
         box="one_result", format_func=texts.RESULTS_OF.__getitem__,
     )  # fmt: skip
     show(st.number_input, texts.COUNT, 0, None, box="one_count")
-    _ask_who(boxes)
+    _ask_who(boxes, stays=True)
     acting.at_press(texts.RECORD_BUTTON, _record_one, choices, key="record_one", boxes=boxes)
     correcting.show(choices, _plant_typed(choices))
 
@@ -126,16 +129,20 @@ def _plant_typed(choices: Choices) -> int | None:
     if {None, ""} & {row, number}:
         return None
     try:
-        return _plant_meant(choices, row, number)
+        return _plant_meant(choices, row, number, said("one_face"))
     except FieldmonError:  # it is said once a result is to be recorded
         return None
 
 
-def _plant_meant(choices: Choices, row: str | int, number: int) -> int:
+def _plant_meant(choices: Choices, row: str | int, number: int, face: int | None) -> int:
     grid = choices.plot.grid
     if tuple(FreshBoxes(_ONE, choices).said(_TAPPED) or ()) == (row, number):
-        return plant_at(grid, int(row), number)
-    return plant_meant(grid, f"{row}", int(number))
+        plant = plant_at(grid, int(row), number)
+    else:
+        plant = plant_meant(grid, f"{row}", int(number))
+    if face is None and grid.twin[plant] >= 0:
+        raise SettingError(texts.ONE_FACE_UNSAID)
+    return plant_history.of_face(grid, plant, face or 1)
 
 
 @notices.reporting
@@ -144,7 +151,7 @@ def _record_one(choices: Choices) -> str:
     row, number, result, count = map(said, ("one_row", "one_plant", "one_result", "one_count"))
     if {None, ""} & {row, number, result}:
         raise SettingError(texts.ONE_UNSAID)
-    plant = _plant_meant(choices, row, number)
+    plant = _plant_meant(choices, row, number, said("one_face"))
     counted = np.array([np.nan if count is None or result != FOUND else float(count)])
     result, note = as_kept(result)
     results = Inspections.of(
@@ -196,12 +203,11 @@ class _Marks:
         self, choices: Choices, plants: np.ndarray, *, value: list[int], key: str
     ) -> list[int]:
         """Show the stops, those of `value` marked already; return those marked now."""
-        numbered, stops = plant_numbers(choices.plot.grid, plants), np.arange(len(plants)) + 1
+        stops = np.arange(len(plants)) + 1
         self._begun = frozenset(value)
         table = pd.DataFrame(
             {
-                **day.row_column(choices.plot.grid, numbered.line),
-                texts.COLUMN_PLANT: numbered.number,
+                **day.place_columns(choices.plot.grid, plants),
                 texts.LEGEND_STATES["found"]: np.isin(stops, value),
             },
             index=pd.Index(stops, name=texts.STOP_NUMBER),
@@ -342,12 +348,16 @@ def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes, *, confir
     return texts.CORRECTED.format(n=n)
 
 
-def _ask_who(boxes: FreshBoxes, help_: str | None = None) -> None:
-    """Ask where a team works who inspected: nobody, unless one of it or another name is said."""
+def _ask_who(boxes: FreshBoxes, help_: str | None = None, *, stays: bool = False) -> None:
+    """Ask where a team works who inspected: nobody, unless one of it or another name is said.
+
+    Who `stays` inspected what is recorded next, too: the box says so.
+    """
     if team := boxes.choices.team_that_day:
         boxes.show(
-            st.selectbox, texts.INSPECTED_BY, [_NOBODY, *team], box="who", default=_NOBODY,
-            help=help_, accept_new_options=True, format_func=lambda who: who or texts.NOBODY_SAID,
+            st.selectbox, texts.INSPECTED_BY, [_NOBODY, *team], box="who", stays=stays,
+            default=_NOBODY, help=help_, accept_new_options=True,
+            format_func=lambda who: who or texts.NOBODY_SAID,
         )  # fmt: skip
 
 

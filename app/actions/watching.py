@@ -43,7 +43,9 @@ def robot(key: str, scene: Scene) -> LiveDrive | None:
         st.error(of_error(error))
         return None
     live = cached_simulations.live_drive(key, broker, name, scene)
-    at_work = background_work.buttons(live, texts.DRIVE_WATCH, key="drive_watch", over=False)
+    at_work = background_work.buttons(
+        live, texts.DRIVE_WATCH, key="drive_watch", over=False, stop=texts.DRIVE_WATCH_STOP
+    )
     st.fragment(_standing, run_every=1.0 if at_work else None)(live, at_work=at_work)
     return live
 

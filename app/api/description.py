@@ -181,7 +181,12 @@ PLOT: dict[str, Any] = {
         },
         "plants": {
             "type": "object",
-            "properties": {"lon": _NUMBERS, "lat": _NUMBERS, "number": _LIST},
+            "properties": {
+                "lon": _NUMBERS,
+                "lat": _NUMBERS,
+                "number": _LIST,
+                "face": _LIST | {"description": "1 or 2 where plants have two, inspected apart."},
+            },
         },
     },
 }

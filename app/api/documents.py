@@ -18,6 +18,7 @@ from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring import kept_open
 from fieldmon.monitoring.day_ahead import (
     DayAhead,
@@ -55,6 +56,7 @@ def plot_document(season: Season) -> tuple[str, bytes]:
     """Return a short name of what the plot is, and its document; it never changes."""
     grid, field = season.plot.grid, season.plot.field
     lonlat, rows = np.round(grid.lonlat(), _DIGITS), grid.unbroken
+    two_faces = bool((grid.twin >= 0).any())
     document = {
         "name": field.name,
         "boundary": _geometry(field.boundary),
@@ -74,6 +76,7 @@ def plot_document(season: Season) -> tuple[str, bytes]:
             "lon": lonlat[:, 0].tolist(),
             "lat": lonlat[:, 1].tolist(),
             "number": season.plant_numbers.number.tolist(),
+            **({"face": faces(grid, np.arange(len(grid))).tolist()} if two_faces else {}),
         },
     }
     made = _json(document)

@@ -31,7 +31,7 @@ def show(choices: Choices, kinds: tuple[str, ...] = ()) -> None:
     if (season := choices.season) is None:
         return
     if not kinds:
-        _show_not_come(choices, season)
+        _show_left_out(choices, season)
         _show_found_again(choices)
     found = season.cautions(choices.on, choices.units.in_sentences(choices.on))
     _warn([one for one in found if not kinds or one.kind in kinds])
@@ -53,7 +53,7 @@ def show_today(choices: Choices, plan: DayPlan) -> None:
     """Show what counts on the day itself: where not to enter, a harvest to come, finds again."""
     if (season := choices.season) is None:
         return
-    _show_not_come(choices, season)
+    _show_left_out(choices, season)
     _show_found_again(choices)
     if not chosen_day.route(choices).worked:
         if left_off := _left_off(choices, season, plan):
@@ -100,10 +100,13 @@ def not_come(choices: Choices, last: date) -> str:
     return f"{said} {texts.NOT_COME_CORRECT.format(correct=texts.CORRECT_WHEN)}"
 
 
-def _show_not_come(choices: Choices, season: Season) -> None:
-    """Say so on the pages of days before, which show nothing of it."""
-    if said := not_come(choices, season.last_recorded()):
+def _show_left_out(choices: Choices, season: Season) -> None:
+    """Say so on the pages of days before, which show none of it, and which drafts do not count."""
+    ahead = season.recorded_ahead()
+    if ahead is not None and (said := not_come(choices, ahead)):
         st.warning(said)
+    if season.drafts:
+        st.warning("\n".join(f"- {in_words(sentence)}" for sentence in season.drafts))
 
 
 def _show_found_again(choices: Choices) -> None:

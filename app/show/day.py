@@ -12,6 +12,7 @@ import streamlit as st
 
 from fieldmon.compute.wording import chance_figure
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring.day_figures import flagged_said
 from fieldmon.planning.bound_wording import PROVED, share_above
 from fieldmon.planning.explain import explain
@@ -46,11 +47,9 @@ _MOST_OTHERWISE = 20
 def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
     """Return the stops of a day's route in order, as a table."""
     route = shown.route
-    numbered = plant_numbers(choices.plot.grid, route.plant)
     columns = {
         texts.COLUMN_ARRIVE: [f"{shown.at(s):%H:%M:%S}" for s in route.arrive_s.tolist()],
-        **row_column(choices.plot.grid, numbered.line),
-        texts.COLUMN_PLANT: numbered.number,
+        **place_columns(choices.plot.grid, route.plant),
         texts.COLUMN_CHANCE: [in_words(chance_figure(p, 1)) for p in route.believed.tolist()],
     }
     if shown.worked:
@@ -60,10 +59,17 @@ def stops(choices: Choices, shown: DayRoute) -> pd.DataFrame:
     return pd.DataFrame(columns, pd.RangeIndex(1, len(route) + 1, name=texts.STOP_NUMBER))
 
 
-def row_column(grid: PlantGrid, line: NDArray[np.int64]) -> dict[str, object]:
-    """Return the column of a table that says the row: numbers, or texts where rows have names."""
-    named = [grid.line_signs[k] for k in line.tolist()] if grid.row_names else line
-    return {texts.COLUMN_ROW: named} if grid.in_rows else {}
+def place_columns(grid: PlantGrid, plants: NDArray[np.integer]) -> dict[str, object]:
+    """Return the columns of a table that say where plants stand, with the face of one of two.
+
+    Rows are numbers, or texts where they have names; where there are none, there is no column.
+    """
+    numbered = plant_numbers(grid, plants)
+    line = numbered.line
+    row = [grid.line_signs[k] for k in line.tolist()] if grid.row_names else line
+    face = {texts.COLUMN_FACE: faces(grid, plants)} if (grid.twin >= 0).any() else {}
+    return {**({texts.COLUMN_ROW: row} if grid.in_rows else {}),
+            texts.COLUMN_PLANT: numbered.number, **face}  # fmt: skip
 
 
 def headline(choices: Choices, plan: DayPlan) -> str:

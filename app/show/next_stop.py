@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import chance_figure
+from fieldmon.io.writers.day_file import with_face
 from fieldmon.plot.grid import plant_numbers
 
 from ..words import texts
@@ -48,7 +49,8 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
         plant,
         lonlat,
         (texts.NEXT_PLACE if grid.in_rows else texts.NEXT_ALONE).format(
-            row=grid.line_signs[int(numbered.line[0])], plant=numbered.number[0]
+            row=grid.line_signs[int(numbered.line[0])],
+            plant=in_words(with_face(grid, plant, int(numbered.number[0]))),
         ),
         texts.NEXT_WAY.format(
             metres=units.metres(drive_m), compass=texts.COMPASS[sector],

@@ -14,6 +14,7 @@ import streamlit as st
 from fieldmon.compute.wording import chance_figure
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring import photos
 from fieldmon.pests.weather import DAY_S
 from fieldmon.plot.grid import plant_at, plant_numbers
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from .map_view import MapContent, Selected, Tapped
 
 _ROW, _PLANT, _TAPPED = "history row", "history plant", "history tapped"
+_FACE = "history face"
 # a number tapped is the row's own, whoever else has it for a name
 _TAPPED_AT = "history tapped at"
 _MOST_PHOTOS = 3
@@ -64,10 +66,13 @@ def take_plant(choices: Choices, layer: str, index: int) -> None:
     """Take the plant that was tapped as the one whose history is shown."""
     if layer.startswith("plants"):
         grid = choices.plot.grid
-        numbered = plant_numbers(grid, np.array([min(index, len(grid) - 1)]))
+        plant = np.array([min(index, len(grid) - 1)])
+        numbered, face = plant_numbers(grid, plant), int(faces(grid, plant)[0])
         row, number = int(numbered.line[0]), int(numbered.number[0])
         st.session_state[_row_box(grid)] = f"{row}" if grid.row_names else row
         st.session_state[_PLANT] = number
+        if face:
+            st.session_state[_FACE] = face
         st.session_state[_TAPPED_AT] = f"{row}", number
         st.session_state[_TAPPED] = True
 
@@ -77,9 +82,9 @@ def tapped(choices: Choices) -> tuple[int, ...]:
     if not st.session_state.get(_TAPPED):
         return ()
     grid = choices.plot.grid
-    row, number = (widget_memory.value(key, 1) for key in (_row_box(grid), _PLANT))
+    row, number, face = (widget_memory.value(key, 1) for key in (_row_box(grid), _PLANT, _FACE))
     try:
-        return (_plant(grid, f"{row}", number),)
+        return (of_face(grid, _plant(grid, f"{row}", number), face),)
     except FieldmonError:
         return ()  # its history says why
 
@@ -126,7 +131,17 @@ def _asked(grid: PlantGrid) -> int:
     else:
         row = f"{show_box(st.number_input, texts.HISTORY_ROW, 0, key=key, default=lowest_row)}"
     number = show_box(st.number_input, texts.HISTORY_PLANT, 0, key=_PLANT, default=lowest)
-    return _plant(grid, row, number)
+    plant, face = _plant(grid, row, number), 1
+    if grid.twin[plant] >= 0:
+        face = show_box(
+            st.segmented_control, texts.HISTORY_FACE, [1, 2], key=_FACE, default=1, required=True
+        )
+    return of_face(grid, plant, face)
+
+
+def of_face(grid: PlantGrid, plant: int, face: int) -> int:
+    """Return the face, 1 or 2, of a plant that is its first one; itself where it has but one."""
+    return int(grid.twin[plant]) if face == 2 and grid.twin[plant] >= 0 else plant
 
 
 def _row_box(grid: PlantGrid) -> str:

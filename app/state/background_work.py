@@ -24,6 +24,7 @@ class BackgroundWork:
         self._stop = threading.Event()
         self._thread: threading.Thread | None = None
         self._tabs: dict[str, Callable[[], bool]] = {}
+        self._unseen_since_s: float | None = None
 
     @property
     def running(self) -> bool:
@@ -33,6 +34,7 @@ class BackgroundWork:
     def begin(self) -> None:
         """Begin, or go on where it was stopped."""
         self._stop.clear()
+        self._unseen_since_s = None
         self._thread = threading.Thread(target=self._work, daemon=True)
         self._thread.start()
 
@@ -44,23 +46,34 @@ class BackgroundWork:
         """Note a tab that watches it; `is_open` tells, in any thread, whether it still does."""
         self._tabs[tab] = is_open
 
+    def leave(self, tab: str) -> None:
+        """Note that a tab that is open shows something else in its place."""
+        self.watch(tab, lambda: False)
+
     def wait(self, timeout_s: float) -> None:
         """Wait for the end."""
         if self._thread is not None:
             self._thread.join(timeout_s)
 
     def work(self) -> None:
-        """Do it, asking after every step for `_stop`, or `_is_over` where it can go on later."""
+        """Do it, asking after every step `_is_over_here`, or `_is_over` where none may wait."""
         raise NotImplementedError
 
-    def _is_over(self) -> bool:
+    def _is_over_here(self) -> bool:
         """Return whether it is to end; while no tab is open any more, wait for one for a while."""
-        until = time.monotonic() + UNSEEN_S
-        while not (over := self._stop.is_set()) and not self._is_watched():
-            if time.monotonic() >= until:
-                return True
+        while not (over := self._is_over()) and self._unseen_since_s is not None:
             self._stop.wait(_EVERY_S)
         return over
+
+    def _is_over(self) -> bool:
+        """Return whether it is to end: it was stopped, or no tab has been open for a while."""
+        if self._is_watched():
+            self._unseen_since_s = None
+        elif self._unseen_since_s is None:
+            self._unseen_since_s = time.monotonic()
+        since_s = self._unseen_since_s
+        is_left = since_s is not None and time.monotonic() - since_s >= UNSEEN_S
+        return self._stop.is_set() or is_left
 
     def _is_watched(self) -> bool:
         tabs = [*self._tabs.values()]  # others may come meanwhile

@@ -154,7 +154,7 @@ class WatchedComparison(BackgroundWork):
 
     def work(self) -> None:
         """Simulate what is not there yet; stopped after a season, what is there is kept."""
-        run(self._experiment, executor.here(), self._made, stop=self._is_over)
+        run(self._experiment, executor.here(), self._made, stop=self._is_over_here)
 
     def seasons(self) -> dict[Strategy, list[SeasonMetrics]]:
         """Return the seasons of all seeds that every strategy has been through."""

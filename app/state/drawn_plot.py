@@ -17,8 +17,8 @@ from shapely import LineString, Polygon
 
 from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
+from fieldmon.io.parse.degrees import positions_in_cells
 from fieldmon.io.parse.geometry import LARGEST_M2, SMALLEST_M2, area_m2, steps_m
-from fieldmon.io.parse.values import positions_in_cells
 from fieldmon.plot.planting import Planting
 
 from ..words import language, texts

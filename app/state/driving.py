@@ -105,7 +105,7 @@ class DriveRun(BackgroundWork):
         driver = simulated_robot(self._kind, recording, self._sampler, self._made_up)
 
         def watch(stop: DrivenStop, errand: Errand) -> None:
-            if self._stop.is_set():
+            if self._is_over_here():
                 raise _StoppedError
             recording.note(stop, errand)
             self.gone_s = recording.stops[-1].at_s

@@ -1,6 +1,7 @@
 """Boxes for what was done on a day: empty on each day and in each season, and once it is kept.
 
-What was said in them and not kept yet is there again on another page and after a reload. What is
+What was said in them and not kept yet is there again on another page and after a reload. One that
+stays holds what was said in it though the others are emptied, in its tab and on its day. What is
 said while another day's or the emptied boxes are on their way, in those still in view, is said in
 the ones to come.
 """
@@ -16,7 +17,7 @@ import streamlit as st
 from . import widget_memory
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
 
     from .choices import Choices
 
@@ -31,6 +32,7 @@ _READ = {
     "when_day ": date.fromisoformat,
 }
 _MOVED = "boxes filled from another day's"
+_STAYING, _STAYED = "boxes that stay", "what stayed in boxes"
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,17 +67,24 @@ class FreshBoxes:
 
     def hold_anything(self) -> bool:
         """Return whether something is said in a box that is shown."""
-        said = (widget_memory.value(key) for key, of in _shown().items() if of == self._times)
-        return any(one not in (None, "", []) for one in said)
+        return any(of == self._times for _, of, _ in _said())
 
-    def show(self, widget: Callable[..., T], *arguments: object, box: str, **settings: object) -> T:
-        """Show a box with what was said in it and not kept yet."""
+    def show(
+        self, widget: Callable[..., T], *arguments: object, box: str, stays: bool = False,
+        **settings: object,
+    ) -> T:  # fmt: skip
+        """Show a box with what was said in it and not kept yet.
+
+        One that `stays` is not emptied with the others, in this tab and on this day.
+        """
         late: dict[tuple[str, str], object] = st.session_state.get(_LATE, {})
         if (self.form, box) in late:
             self.put(box, late.pop((self.form, box)))
         _shown()[self.key(box)] = self._times
         where: dict[str, tuple[str, str]] = st.session_state.setdefault(_WHERE, {})
         where[self.key(box)] = self.form, box
+        if stays:
+            st.session_state.setdefault(_STAYING, set()).add(self.key(box))
         return widget_memory.show(widget, *arguments, key=self.key(box), **settings)
 
     def said(self, box: str) -> Any:  # noqa: ANN401 - whatever the widget holds
@@ -96,9 +105,14 @@ class FreshBoxes:
             del _held()[key]
         emptied = [key for key, of in _shown().items() if of == self._times]
         hold(emptied)
+        staying = st.session_state.get(_STAYING, set()).intersection(emptied)
+        stay = {st.session_state[_WHERE][key][1]: widget_memory.value(key) for key in staying}
         for key in emptied:
             del _shown()[key]
         st.session_state[self._times] = self.times + 1
+        for box, value in stay.items():
+            self.put(box, value)
+            st.session_state.setdefault(_STAYED, {})[self.key(box)] = value
 
 
 def hold(keys: Iterable[str] | None = None) -> None:
@@ -159,13 +173,14 @@ def _held() -> dict[str, tuple[object, object]]:
 
 
 def unfinished() -> dict[str, Any]:
-    """Return what was said in all boxes and not kept yet, as JSON can hold it; empty: nothing."""
-    said = {key: [of, widget_memory.value(key)] for key, of in _shown().items()}
-    boxes = {
-        key: [of, str(one) if isinstance(one, date | time) else one]
-        for key, (of, one) in said.items()
-        if one not in (None, "", [])
-    }
+    """Return what was said in all boxes and not kept yet, as JSON can hold it; empty: nothing.
+
+    What stayed in a box counts beside what was said since alone: of itself it is this tab's.
+    """
+    said = [*_said()]
+    stayed = [*_said(stayed=True)]
+    said += [one for one in stayed if any(of == one[1] for _, of, _ in said)]
+    boxes = {key: [of, str(one) if isinstance(one, date | time) else one] for key, of, one in said}
     if not boxes:
         return {}
     emptied = [str(key) for key in st.session_state if str(key).startswith(_TIMES)]
@@ -179,6 +194,15 @@ def take(said: dict[str, Any]) -> None:
         _shown()[key] = of
         read = next((read for box, read in _READ.items() if key.startswith(box)), None)
         widget_memory.first(key, read(value) if read and isinstance(value, str) else value)
+
+
+def _said(*, stayed: bool = False) -> Iterator[tuple[str, str, Any]]:
+    """Yield of each box in which something was said its key, its count and that; or what stayed."""
+    before = st.session_state.get(_STAYED, {})
+    for key, of in [*_shown().items()]:
+        value = widget_memory.value(key)
+        if value not in (None, "", []) and (value == before.get(key)) == stayed:
+            yield key, of, value
 
 
 def _shown() -> dict[str, str]:

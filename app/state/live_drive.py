@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import secrets
 import threading
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +13,7 @@ from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard, RobotWatcher
 from fieldmon.monitoring.belief_settings import BeliefSettings
 
-from .background_work import UNSEEN_S, BackgroundWork
+from .background_work import BackgroundWork
 from .driving import DayInTime
 
 if TYPE_CHECKING:
@@ -26,7 +25,7 @@ _EVERY_S = 0.25
 
 
 class LiveDrive(BackgroundWork):
-    """What a robot does now, for whoever looks; it ends when nobody looks any more.
+    """What a robot does now, for whoever looks; nothing is sent, whether anybody looks or not.
 
     Parameters
     ----------
@@ -41,24 +40,24 @@ class LiveDrive(BackgroundWork):
         self._where, self.scene = (broker, robot), scene
         self._watcher: RobotWatcher | None = None
         self._believed: list[tuple[float, Float]] = []
-        self._lock, self._seen_at = threading.Lock(), time.monotonic()
+        self._lock = threading.Lock()
 
     def start(self) -> None:
         """Begin to listen."""
         if not self.running:
             self.problem, self._believed, self._watcher = None, [], None
-            self._seen_at = time.monotonic()
             self.begin()
 
     def work(self) -> None:
-        """Listen until it is stopped, or nobody looks."""
+        """Listen until it is stopped, or no tab that looks is open any more."""
         broker, robot = self._where
         # another name each time: what was missed by one who is gone is of no use
         wire = Wire(broker, f"fieldmon-seen-{secrets.token_hex(4)}", robot, HEARS)
         watcher = RobotWatcher(wire, self.scene.grid)
         self._watcher = watcher
         try:
-            while time.monotonic() - self._seen_at < UNSEEN_S and not self._stop.wait(_EVERY_S):
+            while not self._is_over():  # what is told while no tab is open is heard all the same
+                self._stop.wait(_EVERY_S)
                 with self._lock:
                     watcher.take()
         finally:
@@ -66,7 +65,6 @@ class LiveDrive(BackgroundWork):
 
     def heard(self) -> Heard:
         """Return how the robot stands."""
-        self._seen_at = time.monotonic()
         if (watcher := self._watcher) is None:
             return _NOT_YET
         with self._lock:
@@ -75,7 +73,6 @@ class LiveDrive(BackgroundWork):
 
     def seen(self) -> tuple[DayInTime, tuple[Float, int], Heard]:
         """Return the day so far with what is believed, the way ordered, and how it stands."""
-        self._seen_at = time.monotonic()
         watcher = self._watcher
         if watcher is None:
             return DayInTime(Trace(np.empty((0, 4)), ()), []), (np.empty((0, 2)), 0), _NOT_YET

@@ -578,10 +578,12 @@ TODAY_DONE = Plural(
 )
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance"
+COLUMN_FACE = "face"
 MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
 
 # -- what stands beside a thing on the map that is pointed at
 TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
+TIP_FACE = "{number}, face {face}"
 TIP_ALONE, NEXT_ALONE = "plant {plant}{note}", "Plant {plant}"
 SCOUT_LAST_ALONE = "Last: plant {plant}: {result}"
 TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
@@ -808,7 +810,7 @@ DECIDE_FILES = {
 
 HOT_TITLE = "Hot spots"
 HISTORY, HISTORY_TAP = "History of a plant", "Tap a plant on the map, or give its row and number."
-HISTORY_ROW, HISTORY_PLANT = "Row", "Plant"
+HISTORY_ROW, HISTORY_PLANT, HISTORY_FACE = "Row", "Plant", "Face"
 HISTORY_NOW = Text("Chance of infestation now: **{now}** (first morning: {first}).")
 HISTORY_BETWEEN = Text("If the plot had fewer or more than expected: {low} to {high}.")
 HISTORY_CHANCE = (
@@ -932,6 +934,10 @@ MOVED_HERE = (
 ONE_UNSAID = (
     "Row, plant and result must be said before they are recorded, but one of them is empty. Fill "
     "in all three."
+)
+ONE_FACE_UNSAID = (
+    "A plant with two faces must be recorded with the one that was inspected, but none is chosen. "
+    "Choose its face, or tap it on the map."
 )
 _CONTRADICTING = (
     "what is recorded or brought of the same plants and day. Nothing is recorded yet. Which holds?"
@@ -1112,7 +1118,8 @@ SCOUT_LAST = "Last: row {row}, plant {plant}: {result}"
 # -- comparing
 COMPARE_INTRO = (
     "Seasons are simulated on this plot: the start is drawn from today's chance map, and every "
-    "strategy meets the same insects. Less loss (infested plants times days) is better."
+    "strategy meets the same insects. Less loss (infested plants times days) is better. Once this "
+    "tab is closed it waits, and stops after two minutes; *Go on* continues."
 )
 COMPARE_ASSUMED = (
     "Assumed: insects spread to the plants next to them only, and plants found are treated at once."
@@ -1133,11 +1140,12 @@ DRIVE_SOURCE = "Which day"
 DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day", "live": "Live"}
 DRIVE_LIVE = (
     "A robot that speaks VDA 5050, listened to where its messages are exchanged. Nothing is sent "
-    "and nothing is recorded here: `fieldmon drive --robot vda5050` does that."
+    "and nothing is recorded here: `fieldmon drive --robot vda5050` does that, and goes on when "
+    "you stop watching or close this tab."
 )
 DRIVE_BROKER, DRIVE_MANUFACTURER, DRIVE_SERIAL = "MQTT broker", "Manufacturer", "Serial number"
 DRIVE_VDA = "Version of VDA 5050"
-DRIVE_WATCH = "Watch"
+DRIVE_WATCH, DRIVE_WATCH_STOP = "Watch", "Stop watching"
 DRIVE_LAG = "Heard {seconds} s ago; what the map shows is up to a second older."
 DRIVE_NOT_HEARD = "The robot was not heard yet. Is it on, and are its names right?"
 DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago."
@@ -1146,7 +1154,8 @@ DRIVE_FAILED = "The robot reports an error that it cannot mend: {said}"
 DRIVE_ROBOT = "Robot"
 DRIVE_ROBOTS = {"charged": "Planned times", "mujoco": "Physical simulation"}
 DRIVE_MADE_UP = (
-    "The finds are made up: insects are drawn from the chance map, on this share of the plants."
+    "The finds are made up: insects are drawn from the chance map, on this share of the plants. "
+    "Once this tab is closed the drive waits, and is given up after two minutes."
 )
 DRIVE_SHARE = "Infested plants (%)"
 DRIVE_RUN = "Drive the day"
@@ -1247,7 +1256,8 @@ SCOUT_PAGE = {
     "loading": "Loading ...", "route_done": "The route is done.",
     "no_route": "You have no route: you are not of the team, and without rows. Ask for a code with "
     "rows.",
-    "place": "Row {row}, plant {plant}", "no_position": "No position yet", "there": "You are there",
+    "place": "Row {row}, plant {plant}", "face": TIP_FACE,
+    "no_position": "No position yet", "there": "You are there",
     "photo_asked": "A photo is asked for.", "photo_asked_of": "A photo is asked for: {note}",
     "asked": "Photos asked for: {n}", "photo_comes": "The photo is being kept ...",
     "kept": "Kept: {what}", "keeping": "Being kept: {what}",

@@ -50,8 +50,9 @@ class Corrections:
     file: Annotated[
         Path | None,
         typer.Argument(
-            help="Inspections exported from the season (QGIS: its layer inspections) and changed "
-            "there; without it, what was changed in the season's own file is meant.",
+            help="Inspections exported from the season (fieldmon export --of inspections; QGIS: "
+            "its layer inspections) and changed there; without it, what was changed in the "
+            "season's own file is meant.",
         ),
     ] = None
     contradicting: Annotated[
@@ -68,12 +69,12 @@ class Corrections:
 def correct(season: SeasonFile, asked: Corrections, moved: CorrectedTime) -> None:
     """Accept inspections that QGIS or another program changed, as somebody's corrections.
 
-    Until then the season refuses to go on, and names the rows. A FILE is the layer inspections, all
-    of it or some, exported and changed: what it says otherwise is corrected, and nothing deleted or
-    added. With --inspection and --date
-    or --time the day or time of one is corrected instead. Corrections that contradict what else is
-    recorded of the same plants and days are listed, and nothing is taken, unless --contradicting is
-    given. fieldmon undo brings back what stood there before.
+    Until then the season refuses to go on, and names the rows. A FILE is the layer inspections, or
+    the table of fieldmon export, all of it or some, changed: what it says otherwise is corrected,
+    and nothing deleted or added. With --inspection and --date or --time the day or time of one is
+    corrected instead. Corrections that contradict what else is recorded of the same plants and days
+    are listed, and nothing is taken, unless --contradicting is given. fieldmon undo brings back
+    what stood there before.
 
     Example: fieldmon correct season.gpkg --who Ann
     Example: fieldmon correct season.gpkg edited.gpkg --who Ann

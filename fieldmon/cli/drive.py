@@ -6,8 +6,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import datetime, time, timedelta
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Protocol
 
 import typer
 
@@ -38,7 +39,7 @@ from fieldmon.errors import SettingError
 from fieldmon.samplers import USUAL_SAMPLER
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Sequence
+    from collections.abc import Callable, Collection, Iterator, Sequence
     from datetime import date
 
     from fieldmon.drive.day import DrivenDay
@@ -171,7 +172,8 @@ _OF_A_SEASON = {
 def drive(context: typer.Context, options: DriveOptions) -> None:
     """Drive a day on a plot or in a season: plant by plant, learning from each find.
 
-    On a plot finds are simulated, and only -o and --bag write files.
+    On a plot finds are simulated, and only -o and --bag write files, also at Ctrl-C; the same
+    command then begins anew.
 
     In a season every result is in the file before the next plant is asked for. A day is one batch,
     and after a crash the same command continues from the last plant. A simulated robot makes up
@@ -185,8 +187,7 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
     from fieldmon.monitoring.transactions import is_season
 
     if options.plot is None or not is_season(options.plot):
-        driven, on = _plot(options)
-        _write(driven, on, options, _name(options))
+        _plot(options)
         return
     refuse_what_was_chosen(context, _OF_A_SEASON)
     from fieldmon.drive.one_drive import one_drive
@@ -197,11 +198,11 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
         _season(options, options.plot)
 
 
-def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
-    """Drive a day on a plot of which nothing but records is known."""
+def _plot(options: DriveOptions) -> None:
+    """Drive a day on a plot of which nothing but records is known, and write what came of it."""
     import numpy as np
 
-    from fieldmon.drive.day import drive_day
+    from fieldmon.drive.day import DrivenDay, drive_day
     from fieldmon.infestation.prior import prior_chance
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.monitoring.monitor import Monitor
@@ -225,11 +226,17 @@ def _plot(options: DriveOptions) -> tuple[DrivenDay, date]:
     tell_assumed(assumed_by((), prior, worker, plot.grid))
     if told := aisles.narrow_sentence():
         typer.echo(told)
+    begins, so_far = local_clock(plot.field).moment(on, time(6)), DrivenDay()
+
+    def tables(*, stopped: bool) -> None:
+        _write(so_far, on, options, _name(options))
+        if stopped:
+            typer.echo("The day is not over; the same command begins it anew.")
+
     with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         robot, recording = driver
-        driven = drive_day(today, aisles, (worker, robot), recording.note)
-    _write_bag(recording, local_clock(plot.field).moment(on, time(6)), options)
-    return driven, on
+        with _written(partial(_write_bag, recording, begins, options), tables):
+            drive_day(today, aisles, (worker, robot), recording.note, so_far)
 
 
 def _season(options: DriveOptions, file: Path) -> None:
@@ -265,21 +272,39 @@ def _season(options: DriveOptions, file: Path) -> None:
         _tell_plan(goes_on=today.goes_on)
     before = season.contents([today.batch])[today.batch].n if today.batch is not None else 0
     begins, so_far = _begins(season, on, today.begun_s), DrivenDay()
-    with _driver(options, season.plot, worker, (season.morning(on), on)) as (robot, recording):
-        try:
-            try:
-                drive_day(today, aisles, (worker, robot), recording.note, so_far)
-            finally:
-                _write_bag(recording, begins, options, goes_on=before > 0)
-        except BaseException as end:  # whatever ended it: what was driven is written
-            _write(so_far, on, options, _name(options), before)
-            _tell_replanned(today.replanned - 1)
+
+    def tables(*, stopped: bool) -> None:
+        _write(so_far, on, options, _name(options), before)
+        _tell_replanned(today.replanned - 1)
+        if stopped:
             _tell_stopped(season, on, today.batch)
-            if isinstance(end, KeyboardInterrupt):
-                raise SystemExit(STOPPED_CODE) from end  # what was written is said already
-            raise
-    _write(so_far, on, options, _name(options), before)
-    _tell_replanned(today.replanned - 1)
+
+    with _driver(options, season.plot, worker, (season.morning(on), on)) as (robot, recording):
+        bag = partial(_write_bag, recording, begins, options, goes_on=before > 0)
+        with _written(bag, tables):
+            drive_day(today, aisles, (worker, robot), recording.note, so_far)
+
+
+class _Tables(Protocol):
+    """Writes the tables of a day, and says what came of it."""
+
+    def __call__(self, *, stopped: bool) -> None: ...
+
+
+@contextmanager
+def _written(bag: Callable[[], None], tables: _Tables) -> Iterator[None]:
+    """Write what was driven, whatever ends the day; at Ctrl-C end the command so."""
+    try:
+        try:
+            yield
+        finally:
+            bag()
+    except BaseException as end:
+        tables(stopped=True)
+        if isinstance(end, KeyboardInterrupt):
+            raise SystemExit(STOPPED_CODE) from end  # what was written is said already
+        raise
+    tables(stopped=False)
 
 
 def _team(context: typer.Context, options: DriveOptions, file: Path) -> bool:
@@ -336,16 +361,17 @@ def _team_day(
     }
     begins = {one.name: _begins(season, on, today.member(one.name).begun_s) for one in today.robots}
     broker = Broker.of(options.broker)
-    driven = drive_team(today, broker, _robot_name(options), _say, recordings)
-    missing: dict[str, None] = {}
-    for name, mine in own.items():
-        each = driven[name]
-        if each.broken:
-            missing[each.broken] = None
-            if not each.stops:
-                continue
-        _write(each, on, mine, name, before[name])
-        _write_bag(recordings[name], begins[name], mine, goes_on=before[name] > 0)
+    begun: dict[str, DrivenDay] = {}
+    driven = begun
+    try:
+        driven = drive_team(today, broker, _robot_name(options), _say, recordings, begun)
+    except KeyboardInterrupt:  # who would not wait
+        today.stops += 1
+    finally:  # whatever ended it
+        for name in sorted(begun):
+            _write(begun[name], on, own[name], name, before[name])
+            _write_bag(recordings[name], begins[name], own[name], goes_on=before[name] > 0)
+    missing = dict.fromkeys(each.broken for each in driven.values() if each.broken)
     _tell_replanned(today.replanned - 1)
     if today.stops:
         _tell_stopped(season, on, today.batch)
@@ -451,12 +477,18 @@ def _write_bag(
         return
     from fieldmon.drive.bag import write_bag
 
-    to, part = options.bag, 2
-    while goes_on and to.exists():
-        to, part = options.bag.with_stem(f"{options.bag.stem}-{part}"), part + 1
+    to = _next_part(options.bag, Path.exists) if goes_on else options.bag
     bag, *layouts = write_bag(recording, begins, to)
     beside = " and ".join(path.name for path in layouts)
     typer.echo(f"Bag written to {bag}; layouts beside it: {beside}")
+
+
+def _next_part(path: Path, is_there: Callable[[Path], bool]) -> Path:
+    """Return where what was driven since a day went on is written: beside what was before."""
+    to, part = path, 2
+    while is_there(to):
+        to, part = path.with_stem(f"{path.stem}-{part}"), part + 1
+    return to
 
 
 @contextmanager
@@ -529,9 +561,12 @@ def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before
         return
     from fieldmon.io.atomic_write import write_whole
 
-    write_whole(options.output, day_table(driven, on, name, before))
-    write_whole(stops_path(options.output), stop_table(driven))
-    typer.echo(f"Written to {options.output} and {stops_path(options.output)}")
+    to = options.output
+    if before:
+        to = _next_part(to, lambda path: path.exists() or stops_path(path).exists())
+    write_whole(to, day_table(driven, on, name, before))
+    write_whole(stops_path(to), stop_table(driven))
+    typer.echo(f"Written to {to} and {stops_path(to)}")
 
 
 def _refuse_written_over(season: Season | None, each: Collection[DriveOptions]) -> None:

@@ -45,8 +45,8 @@ def export(
 ) -> None:
     """Write treatments, inspections or the log of one season or several as a table.
 
-    A .json holds inspections as IPM Decisions' field observations; inspections without a time
-    stand at noon.
+    Inspections that were changed in the table are corrected with fieldmon correct. A .json holds
+    inspections as IPM Decisions' field observations; inspections without a time stand at noon.
 
     Example: fieldmon export season.gpkg --of inspections -o inspections.csv
     """

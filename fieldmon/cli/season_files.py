@@ -68,13 +68,13 @@ def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:
     `flag` names the option that tells it. A later day that was recorded is doubted in any case.
     """
     last, today = season.last_date(), day_on(season.plot.field, None)
-    if last <= max(today, season.settings.begins):
-        return season.day_meant() if told is None else told
-    recorded = season.last_recorded()
-    _tell_recorded_ahead(season, recorded)
+    if (recorded := season.recorded_ahead()) is not None:
+        _tell_recorded_ahead(season, recorded)
     if told is not None:
         return told
     meant, was = season.day_meant(), "recorded" if last == recorded else "planned"
+    if last <= max(today, season.settings.begins):
+        return meant
     typer.echo(
         f"seen: {last} was {was} already, and it is {today} on the plot: this is of {meant}. "
         f"For another day give {flag} YYYY-MM-DD.",

@@ -101,15 +101,18 @@ def day_in(
 ) -> Any:  # noqa: ANN401 - as above
     """Return the day of a text, a time or numpy's day; anything else as it is.
 
-    `local` gives the plot's time of a moment that names its zone; None: the plot is not known, and
-    such a moment raises `SettingError`.
+    A text may say a time, as what it writes may. `local` gives the plot's time of a moment that
+    names its zone; None: the plot is not known, and such a moment raises `SettingError`.
 
     Examples
     --------
     >>> import numpy as np
-    >>> day_in("2026-11-18"), day_in(np.datetime64("2026-11-18")), day_in("soon")
+    >>> day_in("2026-11-18T07:00"), day_in(np.datetime64("2026-11-18")), day_in("soon")
     (datetime.date(2026, 11, 18), datetime.date(2026, 11, 18), 'soon')
     """
+    if isinstance(given, str):
+        with suppress(ValueError):
+            given = datetime.fromisoformat(given)
     day = given
     if isinstance(given, datetime):
         if given.tzinfo is not None:
@@ -117,9 +120,6 @@ def day_in(
                 raise SettingError(_no_plot(given))
             given = local(given)
         day = given.date()
-    elif isinstance(given, str):
-        with suppress(ValueError):
-            day = date.fromisoformat(given)
     elif type(given).__name__ == "datetime64":
         day = given.astype("datetime64[D]").item()
     return day if isinstance(day, date) else given

@@ -67,8 +67,12 @@ class Plan(Protocol):
         ...
 
 
+def _most_per_look(*, is_share: bool) -> float:
+    return 1.0 if is_share else np.inf
+
+
 def _check_threshold(threshold: float, *, is_share: bool) -> None:
-    if not 0.0 < threshold < (1.0 if is_share else np.inf):
+    if not 0.0 < threshold < _most_per_look(is_share=is_share):
         raise SettingError(
             "The threshold of a plan must be above 0"
             + (" and below 1" if is_share else "")
@@ -147,7 +151,7 @@ class WaldPlan:
     @property
     def most_per_look(self) -> float:
         """Return the most that one look can count: 1 for presence."""
-        return 1.0 if self.counts == "presence" else np.inf
+        return _most_per_look(is_share=self.counts == "presence")
 
     @property
     def evidence(self) -> tuple[float, float]:
@@ -276,7 +280,7 @@ class IwaoPlan:
     @property
     def most_per_look(self) -> float:
         """Return the most that one look can count: 1 for presence."""
-        return 1.0 if self.law is None else np.inf
+        return _most_per_look(is_share=self.law is None)
 
     def lines(self, n: int) -> StopLines:
         """Return the stop lines for 1 to n looks: they open like a parabola."""
@@ -340,7 +344,7 @@ class BayesPlan:
     @property
     def most_per_look(self) -> float:
         """Return the most that one look can count: 1 for presence."""
-        return 1.0 if self.counts == "presence" else np.inf
+        return _most_per_look(is_share=self.counts == "presence")
 
     def chance_above(self, looks: Any, total: Any) -> Any:  # noqa: ANN401 - arrays or numbers
         """Return the chance that the mean is above the threshold, `total` counted in `looks`."""

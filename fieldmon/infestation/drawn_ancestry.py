@@ -18,12 +18,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from fieldmon.compute.jit import inner_loop, routine
+from fieldmon.infestation.ancestry_arrays import OPEN, Weights, Worked
 from fieldmon.infestation.ancestry_moves import (
-    OPEN,
     TRIED,
-    Infestations,
-    Weights,
-    Worked,
     begin,
     go_to_one,
     move,
@@ -35,6 +32,8 @@ from fieldmon.infestation.cell_squares import NOBODY, empty_squares
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from fieldmon.infestation.infestations import Infestations
 
     Floats = NDArray[np.floating[Any]]
     Ints = NDArray[np.int64]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.infestation.ancestry import ToldNight
+from fieldmon.infestation.ancestry_night import ToldNight, overnight
 from fieldmon.infestation.chance_bounds import AS_GOOD_AS_CLEAN, LEAST_CHANCE, MOST_CHANCE
 from fieldmon.infestation.clustering import leaning
 from fieldmon.infestation.origins import ANYWHERE, BY_ADJACENT, BY_EDGE, JUMPED, N_ORIGINS
@@ -80,7 +80,7 @@ def with_ancestry(evening: Map, morning: Map, spread: Spread) -> Map:
     night = ToldNight(sends, evening.told_from_outside(spread), wind_m_s=morning.wind_m_s)
     if isinstance(spread, PestSpread):
         night = night._replace(length=(spread.days, *spread.warmth))
-    ancestry, chance = replace(evening.ancestry, hiding=hiding).overnight(night)
+    ancestry, chance = overnight(replace(evening.ancestry, hiding=hiding), night)
     if chance is not None:
         # a logarithmic pool of both maps (Genest & Zidek 1986)
         odds = _BOTH * _odds(chance) ** _ANCESTRY * _odds(morning.chance) ** _ORIGINS

@@ -6,11 +6,15 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Literal, Self, TypeAlias
+from typing import TYPE_CHECKING, Literal, Self, TypeAlias
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plants_outside import FAR
+
+if TYPE_CHECKING:
+    from fieldmon.plot.field import Field
 
 DateOrder: TypeAlias = Literal["dmy", "mdy", "ymd"]
 
@@ -295,6 +299,23 @@ class RecordOptions(ReadOptions):
                     date_order=self.date_order,
                 )
             )
+
+
+@dataclass(frozen=True)
+class ZonedOptions(RecordOptions):
+    """What can be chosen of records whose times are of a zone.
+
+    Parameters
+    ----------
+    zone
+        The time zone (``"Asia/Jerusalem"``, ``"+02:00"``): each kind says of which times.
+    """
+
+    zone: str | None = None
+
+    def on(self, field: Field) -> Self:
+        """Return these options with the time zone in which a plot lies, where none was told."""
+        return self if self.zone else replace(self, zone=local_clock(field).zone or None)
 
 
 _YES, _NO = {"yes", "true", "1", "on"}, {"no", "false", "0", "off"}

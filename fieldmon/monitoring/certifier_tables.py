@@ -11,8 +11,10 @@ import numpy as np
 
 from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.infestation.inspections import RESULT_NAMES
+from fieldmon.io.readers.inspection_file.inspection_rows import mark_in_table
 from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import faces
+from fieldmon.monitoring import inspection_lots
 from fieldmon.monitoring.cautions import groups, label_of, waits
 from fieldmon.monitoring.inspection_table import time_text
 from fieldmon.plot.named_rows import place_in_words
@@ -117,6 +119,8 @@ def inspections_table(season: SeasonInspections) -> Table:
     """Return a line for each inspection that counts: recorded again, they change nothing."""
     with season.one_moment():
         done, corrected = season.history.inspections, season.corrected_by()
+        with season.store.reading() as db:
+            marks = inspection_lots.digests(db)
     numbered, plot, grid = season.plant_numbers, season.plot.field.name, season.plot.grid
     plants, of = np.unique(done.plant, return_inverse=True)
     lon, lat = np.round(grid.lonlat(plants), 7).T
@@ -143,9 +147,11 @@ def inspections_table(season: SeasonInspections) -> Table:
         "lon": lon[of].tolist(),
         "lat": lat[of].tolist(),
         "result": results,
-        "count": counts,
+        # spreadsheets of other languages take 2.0 for a text or a date
+        "count": _each(done.count, lambda n: int(n) if n.is_integer() else n),
         **beside,
         "face": [face or None for face in faces(grid, done.plant).tolist()],
+        "digest": [*map(mark_in_table, marks)],
     }
 
 

@@ -6,6 +6,7 @@ which plant and when; what does not stays a draft, and is told of.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -23,6 +24,9 @@ from fieldmon.monitoring.schema import INSPECTIONS
 
 if TYPE_CHECKING:
     import sqlite3
+    from datetime import date
+
+    from numpy.typing import NDArray
 
     from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.plot.grid import PlantGrid, PlantNumbers
@@ -63,7 +67,7 @@ class Draft(NamedTuple):
             "Finding {row} (fid, in the layer Findings), which another program added, does not "
             "count: {why} Mend it there, or delete it.",
             row=self.row,
-            why=self.why if self.why.endswith(".") else f"{self.why}.",
+            why=self.why if self.why.endswith(".") else worded("{why}.", why=self.why),
         )
 
 
@@ -78,18 +82,26 @@ def read(
     plot: tuple[PlantGrid, PlantNumbers],
     settings: MonitoringSettings,
     held: Inspections,
+    today: date,
 ) -> list[Draft]:
     """Return the drafts of a season, besides those that say no more than it holds already.
 
-    `held` are the inspections that count. Of two drafts that contradict, the first counts.
+    `held` are the inspections that count. Of two drafts that contradict, the first counts. One of
+    a day after `today` does not, where others are of days that have come.
     """
     names = ("geom", *(column.kept for column in COLUMNS))
     wanted = f"SELECT fid, {', '.join(names)} FROM inspections WHERE {_DRAFTS} ORDER BY fid"  # noqa: S608 - ours
+    # as in `_looked_up`
+    from fieldmon.io.readers.date_doubts import amid_past  # noqa: PLC0415
+
     rows = db.execute(wanted).fetchall()
-    drafts = []
+    drafts, first = [], _first_day(held, [dict(zip(names, one[1:], strict=True)) for one in rows])
     for row, *values in rows:
         try:
             one = _inspection(dict(zip(names, values, strict=True)), plot[0])
+            if ahead := amid_past(np.append(first, one.date), today):
+                drafts.append(Draft(row, None, next(iter(ahead.values()))))
+                continue
             inspection_table.rows(one, *plot, settings, (0, ""))  # whether it fits the season
             if said_before(one, held).any():
                 for more in repeated_recordings.additions(one, held):
@@ -98,11 +110,22 @@ def read(
                 continue
             contradictions(one, held).refuse(plot[0])
         except (FieldmonError, ValueError, TypeError) as error:
-            drafts.append(Draft(row, None, str(error)))
+            why = error.args[0] if isinstance(error, FieldmonError) else str(error)
+            drafts.append(Draft(row, None, why))
         else:
             held = held.and_those(one)
             drafts.append(Draft(row, one))
     return drafts
+
+
+def _first_day(held: Inspections, said: list[dict[str, Any]]) -> NDArray[np.datetime64]:
+    """Return the first day of what is held and of what drafts say, ``(k,)``: one, or none."""
+    days = [*held.date[:1]]
+    for one in said:
+        with suppress(ValueError):
+            days.append(np.datetime64(str(one["date"])[:10], "D"))
+    known = np.array(days, "datetime64[D]")
+    return np.sort(known[~np.isnat(known)])[:1]
 
 
 def keep(

@@ -13,7 +13,7 @@ from fieldmon.io.import_report import doubtful
 from fieldmon.io.options import Upload, source_name
 from fieldmon.monitoring import findings, repeated_recordings
 from fieldmon.monitoring.batches import Recorded
-from fieldmon.monitoring.exported_inspections import edits_in
+from fieldmon.monitoring.exported_inspections import edits_in, read_exported
 from fieldmon.monitoring.transactions import MAGIC, connect, copy_season, is_season
 
 if TYPE_CHECKING:
@@ -120,7 +120,10 @@ def read_brought(
     if copy is not None:
         (folder / "new").mkdir()
         source = counting_copy(copy, folder / "new", corrected)
-    rows = read_inspection_rows(source, options)
+    if copy is None:
+        rows = read_exported(season, source, options)
+    else:
+        rows = read_inspection_rows(source, options)
     read = _dated_on_plot(season, rows, options)
     n_changed = 0
     if copy is None:

@@ -66,7 +66,23 @@ def load(db: sqlite3.Connection, begins: date) -> Inspections:
     every = {name: np.concatenate([piece[name] for piece in pieces]) for name in _DTYPES}
     day, second = every["date"], every["second"]
     every["date"] = np.datetime64(begins, "D") + day
-    return Inspections(**every).take(np.lexsort((second, np.isnan(second), day)))
+    return Inspections(**every).take(_in_order(day, second))
+
+
+def digests(db: sqlite3.Connection) -> list[str]:
+    """Return by which digest the file knows each inspection that `load` returns, as ordered."""
+    found = db.execute(
+        "SELECT digest, day, time FROM inspections WHERE undone = 0 AND digest IS NOT NULL "
+        "ORDER BY fid"
+    ).fetchall()
+    day = np.array([of for _, of, _ in found], np.int64)
+    second = np.array([second_of(at) for _, _, at in found], np.float64)
+    return [found[k][0] for k in _in_order(day, second).tolist()]
+
+
+def _in_order(day: NDArray[Any], second: NDArray[Any]) -> NDArray[np.intp]:
+    """Return by day; within a day by time, untimed ones last."""
+    return np.lexsort((second, np.isnan(second), day))
 
 
 def keep(db: sqlite3.Connection) -> None:

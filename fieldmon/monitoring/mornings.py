@@ -16,8 +16,8 @@ import numpy as np
 import fieldmon.infestation
 import fieldmon.pests
 from fieldmon.compute.digest import digest
-from fieldmon.infestation.ancestry import Ancestry
 from fieldmon.infestation.cohorts import Age, Cohorts
+from fieldmon.infestation.kept_ancestry import ancestry_of, arrays_of
 from fieldmon.infestation.latency import Latency
 from fieldmon.infestation.origins import OriginCounts
 from fieldmon.infestation.pairs import PairApproximation
@@ -215,7 +215,7 @@ def _arrays(morning: Belief) -> Arrays | None:
     if not isinstance(morning, TracedPairs):
         return None
     latency = {} if morning.latency is None else vars(morning.latency)
-    ancestry = {} if morning.ancestry is None else morning.ancestry.arrays
+    ancestry = {} if morning.ancestry is None else arrays_of(morning.ancestry)
     return {
         "chance": morning.chance,
         "pair_chance": morning.pair_chance,
@@ -306,7 +306,7 @@ def _of_traced(
     pest = first.pest
     own: dict[str, object] = {
         "counts": OriginCounts(*arrays.pop("counts")),
-        "ancestry": Ancestry.of_arrays(first.grid, ancestry, pest) if ancestry else None,
+        "ancestry": ancestry_of(first.grid, ancestry, pest) if ancestry else None,
     }
     latency = _taken_out(arrays, _LATENCY)
     if latency:

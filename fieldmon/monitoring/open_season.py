@@ -323,6 +323,15 @@ class OpenSeason:
         days = [*history.days[-1:].tolist(), *(one.day for one in history.treatments)]
         return self.settings.date(max(days, default=0))
 
+    def recorded_ahead(self) -> date | None:
+        """Return the last day of which something counts, if it has not come; None: it has.
+
+        A slip in a date hides what was seen from every day before.
+        """
+        history, today = self.history, local_clock(self.plot.field).today()
+        is_anything = len(history.inspections) or len(history.treatments)
+        return last if is_anything and (last := self.last_recorded()) > today else None
+
     def day_meant(self) -> date:
         """Return the day that is meant where none is named: the last date, but today at most.
 

@@ -200,6 +200,26 @@ def refuse_more(db: sqlite3.Connection) -> None:
         refuse(db)
 
 
+def refuse_days_to_come(db: sqlite3.Connection, today: date) -> None:
+    """Raise `FileProblem` if an inspection was given a day after `today`, beside days before."""
+    # readers take a tenth of a second to import
+    from fieldmon.io.readers.date_doubts import amid_past  # noqa: PLC0415
+
+    for change in waiting(db):
+        if change.layer != INSPECTIONS.name or change.what == "delete":
+            continue
+        before = rows_that_count.as_it_was(change.before).get("date") if change.before else None
+        first = "SELECT min(date) FROM inspections WHERE undone = 0 AND fid <> ?"
+        told = "SELECT date FROM inspections WHERE fid = ?"
+        days = [before, *(db.execute(one, (change.row,)).fetchone()[0] for one in (first, told))]
+        try:
+            known = np.array([str(day or "")[:10] for day in days], "datetime64[D]")
+        except ValueError:  # what is no day is refused by its name
+            continue
+        if known[2] != known[0] and (why := amid_past(known, today).get(2)):
+            raise _senseless(db, change, why)
+
+
 def correct(
     db: sqlite3.Connection,
     plot: tuple[PlantGrid, PlantNumbers],
@@ -362,19 +382,23 @@ def _made_anew(
     try:
         (made,) = inspection_table.rows(_inspection(row), *plot, settings, (batch, ""))
     except (FieldmonError, ValueError, TypeError, KeyError) as error:
-        raise FileProblem(
-            worded(
-                "A changed inspection must say plant, date and result as the others do, but "
-                "{change} and does not ({error}). Mend it with the program that changed it; "
-                "nothing was taken.",
-                change=_faced(db, change).sentence(),
-                error=error,
-            )
-        ) from error
+        raise _senseless(db, change, error) from error
     values = dict(zip(INSPECTIONS.names, made, strict=True))
     values["geom"] = beside_plot(db, values["geom"])
     del values["undone"]
     return values
+
+
+def _senseless(db: sqlite3.Connection, change: OutsideChange, why: object) -> FileProblem:
+    return FileProblem(
+        worded(
+            "A changed inspection must say plant, date and result as the others do, but "
+            "{change} and does not ({error}). Mend it with the program that changed it; "
+            "nothing was taken.",
+            change=_faced(db, change).sentence(),
+            error=why,
+        )
+    )
 
 
 def _refuse_twice(db: sqlite3.Connection, change: OutsideChange, mark: object) -> None:

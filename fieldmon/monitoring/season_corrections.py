@@ -13,6 +13,7 @@ from fieldmon.monitoring.people import written_in
 from fieldmon.monitoring.season_copies import SeasonCopies
 from fieldmon.monitoring.settings import seconds
 from fieldmon.monitoring.transactions import Store
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
@@ -29,11 +30,12 @@ class SeasonCorrections(SeasonCopies):
 
         They are a batch of their own, of `who` corrects; undoing it brings back what was before.
         What says nothing else than before is put back as it was, and is none. Raise `FileProblem`
-        if more than inspections was changed, or what makes no sense;
+        if more than inspections was changed, or what makes no sense, as a day to come;
         `ContradictionError` if they contradict what else is recorded and are not `confirmed`.
         """
         with self._lock, self.store.writing() as db:
             outside_changes.refuse_more(db)
+            outside_changes.refuse_days_to_come(db, local_clock(self.plot.field).today())
             settings, plot = settings_of(db), (self.plot.grid, self.plant_numbers)
             who = written_in(db, who)
             taken = outside_changes.correct(db, plot, settings, who)
@@ -131,6 +133,7 @@ class SeasonCorrections(SeasonCopies):
                 )
             )
         with Store(copy).reading() as theirs:
+            outside_changes.refuse_days_to_come(theirs, local_clock(self.plot.field).today())
             plot, who = (self.plot.grid, self.plant_numbers), written_in(db, who)
             taken = copy_corrections.take(db, theirs, plot, settings_of(db), (name, who))
         self._may_be_taken(db, taken, confirmed=confirmed)

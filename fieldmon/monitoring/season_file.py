@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fieldmon.compute.arguments import must_be_language
-from fieldmon.compute.array_arguments import array_of
+from fieldmon.compute.array_arguments import array_of_plants
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
@@ -47,7 +47,7 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator
     from datetime import date
 
     from numpy.typing import NDArray
@@ -124,7 +124,7 @@ class Season(SeasonPlans, SeasonFrames):
         observations: Observations | None = None,
         settings: MonitoringSettings | None = None,
         messages: Iterable[KeptMessage] | None = None,
-        risk: Floats | Sequence[Any] | None = None,
+        risk: Any = None,  # noqa: ANN401 - held to its kind below
         **chosen: Any,  # noqa: ANN401 - fields of the settings
     ) -> Season:
         """Begin a season in a new file, whole or not at all.
@@ -144,7 +144,8 @@ class Season(SeasonPlans, SeasonFrames):
             that are left out.
         risk
             ``(n,)`` one more chance of being infested at the start, from a raster for instance,
-            see `fieldmon.infestation.prior.prior_chance`; None: none.
+            see `fieldmon.infestation.prior.prior_chance`; None: none. Of pandas its index must be
+            the plants', 0, 1, 2...
         chosen
             Settings one by one instead, as ``begins=date(2026, 11, 18)`` or
             ``robot=Robot(hours=4)``. A time that names a zone is its day on the plot.
@@ -164,7 +165,7 @@ class Season(SeasonPlans, SeasonFrames):
         if messages is None:
             warn_of_left_out(observations, begins, plot.field)
         if risk is not None:
-            risk = array_of(np.float64, "A risk map", risk)
+            risk = array_of_plants(np.float64, "A risk map", risk)
         prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
         told = settings.robot.detects
         history = nothing_yet(plot, settings, prior, observations, told)
@@ -252,12 +253,10 @@ class Season(SeasonPlans, SeasonFrames):
         Raise `SettingError` if there is none, or as `change` does.
         """
         with self._lock, self.store.writing() as db:
-            before, begins = (
-                settings_log.as_written_now(settings_log.now(db)),
-                settings_of(db).begins,
-            )
+            before, seen = settings_log.as_written_now(settings_log.now(db)), settings_of(db)
             settings = settings_log.undo(db)
-            _refuse_other_days(db, begins, settings.begins)
+            _must_work(settings, self.plot, seen)
+            _refuse_other_days(db, seen.begins, settings.begins)
             self._log_change(db, before, who, back=True)
             self._refresh(db)
         return settings

@@ -36,12 +36,15 @@ class SeasonFrames(SeasonInspections, SeasonTreatments, SeasonEstimates):
     ) -> GeoDataFrame:
         """Return what the season holds with its places, EPSG:4326; changing it changes no season.
 
+        Across longitude 180 places run from 0 to 360, as the plot's boundary does.
+
         Parameters
         ----------
         of
             ``"inspections"``: a point for each that counts, with ``plant`` (number in the grid,
             from 0), ``row`` and ``number`` (from 1), ``date``, ``time``, ``result`` (clean, found
-            or skipped), ``count`` (NaN: not counted), ``who``, ``corrected_by`` and ``notes``.
+            or skipped), ``count`` (NaN: not counted), ``who``, ``corrected_by``, ``notes`` and
+            ``digest``, by which ``fieldmon correct`` knows them.
             ``"treatments"``: the outline of each that counts, with the columns of
             ``fieldmon export --of treatments``.
             ``"plants"``: a point for each plant, with its chance on the ``morning`` and after what
@@ -97,7 +100,7 @@ def _inspections(season: SeasonInspections) -> GeoDataFrame:
 
     with season.one_moment():
         done, table = season.inspections, inspections_table(season)
-    frame = plant_frame(season.plot.grid, done.plant)
+    frame = plant_frame(season.plot.grid, done.plant, season.plot.field.boundary)
     columns = {name: pd.Series(column) for name, column in table.items() if name not in _OF_PLANT}
     columns = {"date": pd.Series(done.date.astype("datetime64[s]"))} | columns
     columns["count"] = pd.Series(done.count.copy())
@@ -123,7 +126,7 @@ def _plants(season: SeasonEstimates, on: date) -> GeoDataFrame:
     """Return a point for each plant, with its chance on the morning and the evening of a day."""
     with season.one_moment():
         chances = {"morning": season.morning(on), "evening": season.evening(on)}
-    frame = plant_frame(season.plot.grid)
+    frame = plant_frame(season.plot.grid, boundary=season.plot.field.boundary)
     for name, chance in chances.items():
         frame.insert(len(frame.columns) - 1, name, chance)
     return frame

@@ -40,6 +40,7 @@ from fieldmon.monitoring.people import as_written, names_written, written_in
 from fieldmon.monitoring.season_corrections import SeasonCorrections
 from fieldmon.monitoring.told_detection import said_now
 from fieldmon.pests.weather import DAY_S
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
@@ -391,17 +392,18 @@ class SeasonInspections(SeasonCorrections):
         They are a batch of their own. Return a sentence for each that does not count, and why; it
         stays as it is. Where more was changed, nothing is taken before that is settled.
         """
-        plot = self.plot.grid, self.plant_numbers
+        plot, today = (self.plot.grid, self.plant_numbers), local_clock(self.plot.field).today()
         with self._lock, self.store.reading() as db:
             if not drafts.any_waiting(db) or outside_changes.waiting(db):
                 return ()
             known = self._read(db)
-            found = drafts.read(db, plot, known.settings, known.history.inspections)
+            found = drafts.read(db, plot, known.settings, known.history.inspections, today)
         if any(one.inspection is not None for one in found):
             try:
                 with self._writing() as db:
                     before = self._read(db)
-                    found = drafts.read(db, plot, before.settings, before.history.inspections)
+                    held = before.history.inspections
+                    found = drafts.read(db, plot, before.settings, held, today)
                     good = [one for one in found if one.inspection is not None]
                     self._take_drafts(db, good, before.settings)
             except FileProblem as error:  # who may only read it reads it without them

@@ -17,7 +17,7 @@ from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.near_doubles import near_doubles
 from fieldmon.plot.plant_names import FACES, PlantNames
 from fieldmon.plot.planting import Planting
-from fieldmon.plot.projection import metres_per_unit
+from fieldmon.plot.projection import goes_round, metres_per_unit
 from fieldmon.plot.rounding import doubts_of_rounding
 
 if TYPE_CHECKING:
@@ -28,10 +28,19 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _DEGREES = "EPSG:4326"
+# no plot reaches so far
+_NEAR_180 = 175.0
 
 
-def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> GeoDataFrame:
+def plant_frame(
+    grid: PlantGrid,
+    plants: NDArray[np.integer] | None = None,
+    boundary: MultiPolygon | None = None,
+) -> GeoDataFrame:
     """Return the given plants ``(k,)``, or all, as points in EPSG:4326.
+
+    Across longitude 180 they lie in one piece: within the `boundary` as it is drawn; where it is
+    not told, from 0 to 360.
 
     Columns ``plant`` (number in the grid, from 0), ``block`` where there are several, ``row`` and
     ``number`` (from 1; in no rows there is no ``row``), ``row_name`` where the plot's file has
@@ -51,9 +60,24 @@ def plant_frame(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> G
     if (grid.twin >= 0).any():
         columns["face"] = np.where(twin < 0, 1, np.where(chosen < twin, 1, 2))
     lon, lat = grid.lonlat(chosen).T
+    lon = _in_one_piece(lon, grid, boundary)
     return geopandas.GeoDataFrame(
         columns, geometry=geopandas.points_from_xy(lon, lat), crs=_DEGREES
     )
+
+
+def _in_one_piece(
+    lon: NDArray[np.float64], grid: PlantGrid, boundary: MultiPolygon | None
+) -> NDArray[np.float64]:
+    """Return longitudes of a plot's plants so that all that belongs to it lies in one piece."""
+    if boundary is None:
+        across = abs(grid.frame.lon) > _NEAR_180 and goes_round(grid.lonlat()[:, 0])
+        return lon % 360.0 if across else lon
+    west, _, east, _ = boundary.bounds
+    if west >= -180.0 and east <= 180.0:
+        return lon
+    turned: NDArray[np.float64] = lon + 360.0 * np.round(((west + east) / 2 - lon) / 360.0)
+    return turned
 
 
 class FacesOfFrame(NamedTuple):

@@ -372,6 +372,8 @@ class Plot:
     def to_geopandas(self) -> GeoDataFrame:
         """Return the plants as points, EPSG:4326, with ``plant``, ``row`` and ``number``.
 
+        They lie within ``field.boundary``: across longitude 180, from 0 to 360 as that does.
+
         Examples
         --------
         >>> import fieldmon as fm
@@ -381,7 +383,7 @@ class Plot:
         """
         from fieldmon.plot.frames import plant_frame  # noqa: PLC0415 - loads GeoPandas
 
-        return plant_frame(self.grid)
+        return plant_frame(self.grid, boundary=self.field.boundary)
 
     @property
     def n_plants(self) -> int:

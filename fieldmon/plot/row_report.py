@@ -34,6 +34,9 @@ _WORTH_A_WORD = 0.01
 _CLOSE, _PAIRED, _FEW = 0.6, 0.4, 6
 # where so many have a third as near as that one, give or take, some of a line are missing instead
 _AS_NEAR, _IN_LINE = 1.25, 0.1
+# pairs along their rows have gaps of one size between them, so many at least; where some of a line
+# are missing, gaps are of many, and of a few nobody can tell
+_ALIKE, _FEW_GAPS = 0.6, 6
 # plants of a double row stand about as far from its middle, much unlike plants that stray, and
 # mostly by turns: the greatest spread of how far, the least share of changes of side, the least
 # distance and the least number
@@ -319,7 +322,7 @@ def row_report(
         said.misnamed,
         said.label is not None and len(xy_m) >= LEAST_TRACED,
         said.of_trial,
-        _paired_share(xy_m),
+        _paired_share(xy_m, row),
         *_zigzag(left_m, row),
         _two_gaps(grid),
         _nearly_square(grid, found, said),
@@ -374,17 +377,37 @@ def told_by_hand(report: RowReport, grid: PlantGrid, given: Mapping[str, float])
     return report
 
 
-def _paired_share(xy_m: NDArray[np.float64]) -> float:
-    """Return the share of plants that are much nearer to one other than to any third."""
+def _paired_share(xy_m: Float, row: NDArray[np.integer]) -> float:
+    """Return the share of plants that are much nearer to one other than to any third.
+
+    Plants come row by row, along each. None are where such ones are what is left of a line.
+    """
     if len(xy_m) < _FEW:
         return 0.0
     from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
 
     near_m, third_m = cKDTree(xy_m).query(xy_m, k=3)[0][:, 1:].T
     paired = near_m < _CLOSE * third_m
-    if paired.any() and np.mean(third_m < _AS_NEAR * np.median(near_m[paired])) > _IN_LINE:
+    if not paired.any():
+        return 0.0
+    pair_m = float(np.median(near_m[paired]))
+    if np.mean(third_m < _AS_NEAR * pair_m) > _IN_LINE:
+        return 0.0
+    apart_m = np.where(np.diff(row) == 0, np.hypot(*np.diff(xy_m, axis=0).T), np.inf)
+    beside_m = np.minimum(np.append(apart_m, np.inf), np.insert(apart_m, 0, np.inf))
+    is_along = np.mean(beside_m[paired] < _AS_NEAR * near_m[paired]) > 0.5
+    between_m = np.sort(apart_m[(apart_m > pair_m / _CLOSE) & np.isfinite(apart_m)])
+    if is_along and not _are_alike(between_m):
         return 0.0
     return float(np.mean(paired))
+
+
+def _are_alike(gaps_m: Float) -> bool:
+    """Return whether gaps, from the least on, are mostly of one size, and enough to tell."""
+    if len(gaps_m) < _FEW_GAPS:
+        return False
+    alike = np.searchsorted(gaps_m, _AS_NEAR * gaps_m, "right") - np.arange(len(gaps_m))
+    return bool(alike.max() >= _ALIKE * len(gaps_m))
 
 
 def _zigzag(left_m: Float, row: NDArray[np.integer]) -> tuple[float, float]:

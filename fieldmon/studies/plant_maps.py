@@ -15,8 +15,9 @@ from fieldmon.infestation.observations import PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.tables import read_text_table
 from fieldmon.io.options import ReadOptions, RecordOptions
+from fieldmon.io.parse.dates import dates
 from fieldmon.io.parse.result_words import MAYBE_GONE, ResultWords, plain_word
-from fieldmon.io.parse.values import dates, decimal_mark, is_missing, number, numbers
+from fieldmon.io.parse.values import decimal_mark, is_missing, number, numbers
 from fieldmon.io.readers.inspection_file.results import result_of
 from fieldmon.io.readers.known_rows import VERY_FAR_M
 from fieldmon.plot.layout import rectangle

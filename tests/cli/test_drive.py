@@ -128,11 +128,14 @@ def test_a_day_that_is_stopped_says_what_is_kept_and_writes_its_table(
     _, _, err, _ = run("plan", short, "--date", BEGINS, "--no-bound", "-o", "r.csv")
     assert "those who are out have their own" in err
     monkeypatch.setattr(ChargedRobot, "visit", visit)
-    held = (tmp_path / "day.mcap").read_bytes()
+    first = [tmp_path / name for name in ("day.mcap", "day.csv", "day.stops.csv")]
+    held = [path.read_bytes() for path in first]
     _, out, _, made = run(*words, "day.mcap")
     assert "follows what is left of the plan given out last" in out
-    assert (tmp_path / "day.mcap").read_bytes() == held
-    assert {"day-2.mcap", "day-2.rviz", "day-2.foxglove.json"} <= {path.name for path in made}
+    assert [path.read_bytes() for path in first] == held
+    second = {"day-2.mcap", "day-2.rviz", "day-2.foxglove.json", "day-2.csv", "day-2.stops.csv"}
+    assert second <= {path.name for path in made}
+    assert table(tmp_path / "day-2.csv")[0]["stops_before"] == "3"
 
 
 def test_a_day_past_midnight_says_so_and_writes_its_tables(run, season, tmp_path):
@@ -214,14 +217,34 @@ def test_a_teams_robots_have_their_own_serial_numbers_and_none_is_given(run, sea
     assert "names as serial numbers (robot-1, robot-2), but --serial was given too" in err
 
 
-@pytest.mark.parametrize("stops", [0, 1])
+def test_a_day_on_a_plot_that_is_stopped_writes_what_was_driven(run, tmp_path, monkeypatch):
+    visit, left = ChargedRobot.visit, iter([True] * 3)
+
+    def stopped(robot, errand):
+        if not next(left, False):
+            raise KeyboardInterrupt
+        return visit(robot, errand)
+
+    monkeypatch.setattr(ChargedRobot, "visit", stopped)
+    code, out, err, _ = run(*PLOT, "-o", "day.csv", "--bag", "day.mcap")
+    assert code == 130
+    assert "the same command begins it anew" in out
+    assert "nothing was written" not in err
+    assert len(table(tmp_path / "day.stops.csv")) == 3
+    assert len([*read_bag(tmp_path / "day.mcap", ("/finds",))]) == 3
+
+
+@pytest.mark.parametrize("stops", [0, 1, 2])
 def test_a_team_that_breaks_off_writes_the_tables_of_those_that_drove(
-    run, season, monkeypatch, stops
+    run, season, tmp_path, monkeypatch, stops
 ):
-    def drive_team(day, *_):
+    def drive_team(day, *told):
         stop, day.stops = day.member("robot-1").ask(), stops
         driven = DrivenDay([DrivenStop(stop, Visit(found=False), 40.0, 40.0)])
-        return {"robot-1": driven, "robot-2": DrivenDay(broken="It has no order.")}
+        told[-1].update({"robot-1": driven, "robot-2": DrivenDay(broken="It has no order.")})
+        if stops > 1:
+            raise KeyboardInterrupt
+        return told[-1]
 
     monkeypatch.setattr("fieldmon.drive.vda5050.team.drive_team", drive_team)
     run("change", season, "--robots", "2")
@@ -230,7 +253,9 @@ def test_a_team_that_breaks_off_writes_the_tables_of_those_that_drove(
     assert code == (130 if stops else 2), err
     assert "nothing was written" not in err
     assert ("It has no order." in err) == (not stops)
-    assert {one.name for one in made} == {"day-robot-1.csv", "day-robot-1.stops.csv"}
+    wanted = {f"day-robot-{n}{end}" for n in (1, 2) for end in (".csv", ".stops.csv")}
+    assert {one.name for one in made} == wanted  # also of who came to no plant, as of one robot
+    assert [table(tmp_path / f"day-robot-{n}.csv")[0]["stops"] for n in (1, 2)] == ["1", "0"]
     assert (f"0 results of {BEGINS} in the season" in out) == bool(stops)
 
 

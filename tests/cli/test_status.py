@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import replace
-from datetime import timedelta
+from datetime import UTC, datetime, time, timedelta
 
 import numpy as np
 import pytest
@@ -131,6 +131,16 @@ def test_a_day_recorded_that_has_not_come_is_doubted(run, season, ahead, doubted
     for mended in (f"correct {season} --who NAME --inspection 1 --date YYYY-MM-DD",
                    f"undo {season} --inspection 1\n"):  # fmt: skip
         assert (f"fieldmon {mended}" in err) == doubted
+
+
+def test_a_find_of_a_first_day_that_has_not_come_is_doubted(run, season, monkeypatch):
+    kept = Season(season)
+    eve = datetime.combine(kept.settings.begins - timedelta(days=1), time(12), UTC)
+    monkeypatch.setattr("fieldmon.plot.local_clock.utc_now", lambda: eve)
+    assert "has not come" not in run("status", season)[2]
+    on = np.datetime64(kept.settings.begins)
+    kept.record(Inspections.of(np.array([1]), np.array([1]), on), "typed in")
+    assert f"the last day recorded, {on}, has not come" in run("status", season)[2]
 
 
 def test_a_day_ahead_that_was_only_planned_is_not_to_be_undone(run, season):

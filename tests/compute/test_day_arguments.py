@@ -35,6 +35,7 @@ def test_days_are_dates_texts_or_numpys_and_no_numbers():
     [
         ("2026-11-18", date(2026, 11, 18)),
         (datetime(2026, 11, 18, 5), date(2026, 11, 18)),
+        ("2026-11-18T05:00", date(2026, 11, 18)),  # as `plan_day` takes it
         (np.datetime64("2026-11-18T05"), date(2026, 11, 18)),
         (np.datetime64(10**9, "D"), np.datetime64(10**9, "D")),
         (3, 3),
@@ -51,6 +52,7 @@ def test_a_text_that_is_no_day_is_refused():
 
 def test_a_moment_is_the_day_on_the_plot_and_refused_where_none_is_known():
     late = datetime(2026, 11, 18, 23, 30, tzinfo=UTC)
-    assert day_in(late, lambda moment: moment + timedelta(hours=2)) == date(2026, 11, 19)
-    with pytest.raises(SettingError, match="must be the plot's own, but 2026-11-18 23:30"):
-        day_in(late)
+    for said in (late, "2026-11-18T23:30+00:00"):
+        assert day_in(said, lambda moment: moment + timedelta(hours=2)) == date(2026, 11, 19)
+        with pytest.raises(SettingError, match="must be the plot's own, but 2026-11-18 23:30"):
+            day_in(said)

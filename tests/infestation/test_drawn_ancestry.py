@@ -5,12 +5,13 @@ from itertools import product
 import numpy as np
 import pytest
 
-from fieldmon.infestation.ancestry_moves import Infestations, Weights
+from fieldmon.infestation.ancestry_arrays import Weights
 from fieldmon.infestation.cell_squares import NOBODY
 from fieldmon.infestation.drawn_ancestry import (
     DrawnSums,
     draw_ancestries,
 )
+from fieldmon.infestation.infestations import Infestations
 from fieldmon.infestation.jump_landing import landing_of
 from fieldmon.plot.layout import rectangle
 

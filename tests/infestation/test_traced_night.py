@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fieldmon.infestation.ancestry_night import ToldNight, overnight
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.chance_bounds import AS_GOOD_AS_CLEAN
 from fieldmon.infestation.clustering import leaning
@@ -17,7 +18,7 @@ from fieldmon.infestation.traced_evening import inspected
 from fieldmon.infestation.traced_night import _of_late, brought_from_afar, by_origins
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Movement, Pest
-from tests.infestation.traced_maps import FEW, FLAT, GRID, LEARNING, N, mid_season, seen
+from tests.infestation.traced_maps import FEW, FLAT, GRID, LEARNING, QUIET, N, mid_season, seen
 
 
 @pytest.mark.parametrize(
@@ -111,3 +112,16 @@ def test_what_lands_anywhere_is_what_all_plants_that_move_send_there(tells_apart
         from_outside = 0.01 * belief.counts.scale[ANYWHERE]
         landed = 0.3 * sum(sends * moves) / 12
         assert brought[ANYWHERE] == pytest.approx(np.full(12, from_outside + landed))
+
+
+def test_both_maps_are_pooled():
+    """By the ancestry most: where it says more than the other map the pool says more, too."""
+    plants = np.arange(0, N, 3, dtype=np.int32)
+    found = plants % 11 == 0
+    belief = TracedPairs.of(GRID, FLAT).learn(plants, found, Learning())
+    alone = replace(belief, ancestry=None).overnight(QUIET)
+    _, chance = overnight(belief.ancestry, ToldNight(0.3))
+    pooled = belief.overnight(QUIET).chance
+    odds = [p / (1.0 - p) for p in (chance, alone.chance, pooled)]
+    assert odds[2] == pytest.approx(1.15 * odds[0] ** 0.63 * odds[1] ** 0.42)
+    assert np.corrcoef(chance, pooled)[0, 1] > 0.9

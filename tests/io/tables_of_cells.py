@@ -12,6 +12,11 @@ def column(values):
     return cells
 
 
+def cells(*values):
+    """Return a column of these values."""
+    return column(values)
+
+
 def table(**columns):
     """Return a table; the names of its columns are those of the arguments."""
     return Layer("table", {name: column(values) for name, values in columns.items()})

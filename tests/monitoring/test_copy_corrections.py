@@ -1,6 +1,7 @@
 """A finding corrected or deleted in a copy comes into the season, with its author."""
 
 import shutil
+from datetime import UTC, datetime
 
 import pytest
 
@@ -96,14 +97,20 @@ def test_a_deleted_finding_is_found_where_the_season_has_other_numbers_by_now(pa
     assert season.take_corrections(brought, "brought.gpkg", "Ann") == 0
 
 
-def test_what_makes_no_sense_or_is_not_here_is_refused_whole(path, copy):
+def test_what_makes_no_sense_or_is_not_here_is_refused_whole(path, copy, monkeypatch):
+    monkeypatch.setattr(
+        "fieldmon.plot.local_clock.utc_now", lambda: datetime(2026, 11, 5, 12, tzinfo=UTC)
+    )
     outside(copy, "DELETE FROM inspections WHERE fid = 2",
             "UPDATE inspections SET result = 'maybe' WHERE fid = 1")  # fmt: skip
     season = Season(path)
     with pytest.raises(FileProblem, match="maybe"):
         season.take_corrections(copy, "copy.gpkg", "Ann")
     assert len(season.history.inspections) == 12
-    outside(copy, "UPDATE inspections SET result = 'found' WHERE fid = 1")
+    outside(copy, "UPDATE inspections SET result = 'found', date = '2026-11-06' WHERE fid = 1")
+    with pytest.raises(FileProblem, match="2026-11-06, has not come"):
+        season.take_corrections(copy, "copy.gpkg", "Ann")
+    outside(copy, "UPDATE inspections SET date = '2026-04-06' WHERE fid = 1")
     season.undo()
     with pytest.raises(FileProblem, match="no longer"):
         season.take_corrections(copy, "copy.gpkg", "Ann")

@@ -2,6 +2,7 @@
 
 import sqlite3
 from contextlib import closing
+from datetime import UTC, date, datetime
 
 import pytest
 
@@ -73,10 +74,16 @@ def test_a_plant_added_as_gone_is_kept_as_skipped_and_gone(path, notes, kept):
         ({"result": "maybe"}, "none of"),
         ({"date": "2020-01-01"}, "began on"),
         ({"date": "soon"}, "soon"),
+        ({"date": "2026-11-06"}, "its day, 2026-11-06, has not come, but others of the file have"),
         ({"plant": 99999, "plant_says": 1}, "none of 0 to"),
     ],
 )
-def test_a_point_that_says_too_little_stays_a_draft_and_the_others_count(path, said, why):
+def test_a_point_that_says_too_little_stays_a_draft_and_the_others_count(
+    path, monkeypatch, said, why
+):
+    monkeypatch.setattr(
+        "fieldmon.plot.local_clock.utc_now", lambda: datetime(2026, 11, 5, 12, tzinfo=UTC)
+    )
     bad = dict(said)
     if bad.pop("plant_says", None):
         outside(path, "SELECT 1")
@@ -98,6 +105,17 @@ def test_a_point_that_says_too_little_stays_a_draft_and_the_others_count(path, s
     assert Season(path).drafts == season.drafts  # said until it is mended
     outside(path, "DELETE FROM inspections WHERE fid = 13")
     assert Season(path).drafts == ()
+
+
+def test_where_no_other_day_has_come_a_draft_of_a_day_to_come_counts(path, monkeypatch):
+    """It is a rehearsal."""
+    monkeypatch.setattr(
+        "fieldmon.plot.local_clock.utc_now", lambda: datetime(2026, 1, 5, 12, tzinfo=UTC)
+    )
+    add(path, date="2026-11-06")
+    season = Season(path)
+    assert season.drafts == ()
+    assert season.recorded_ahead() == date(2026, 11, 6)
 
 
 def test_what_contradicts_the_season_is_said_and_does_not_count(path):

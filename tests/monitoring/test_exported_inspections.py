@@ -1,5 +1,7 @@
 """Inspections exported from a season, changed in another program, are corrected only when told."""
 
+import csv
+import io
 import shutil
 
 import numpy as np
@@ -11,6 +13,7 @@ from fieldmon.errors import FieldmonError, FileProblem, ObservationError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.certifier_tables import csv_bytes, inspections_table
 from fieldmon.monitoring.exported_inspections import edited_copy
 from fieldmon.monitoring.inspection_import import read_brought
 from tests.monitoring.seasons import BEGINS
@@ -136,3 +139,95 @@ def test_a_changed_export_is_told_from_plants_inspected_anew_on_another_day(seas
     (tmp_path / "moved").mkdir()
     read = read_brought(season, tmp_path / "moved.gpkg", OPTIONS, tmp_path / "moved")
     assert read.changed == 2
+
+
+@pytest.fixture
+def varied(season):
+    """Give a season with finds and clean plants, at times to the second, by several people."""
+    n = 12
+    season.record(
+        Inspections.of(
+            np.arange(310, 310 + n), np.arange(n) % 2, np.datetime64("2026-05-01") + np.arange(n),
+            second=[np.nan, *(30_000.0 + 61 * np.arange(1, n))], who=["Ann", "Jörg", "דנה"] * 4,
+            count=np.where(np.arange(n) % 2, np.arange(n) / 2, np.nan), notes=["", "+3, or 4"] * 6,
+            detects=np.full(n, 0.3),
+        ),
+        "varied",
+    )  # fmt: skip
+    # said again by another, with what the first left open
+    season.record(Inspections.of([300], [0], BEGINS, notes=["seen, too"], who=["Eve"]), "again")
+    return season
+
+
+def a_table(season):
+    """Return the lines of the table that the command exports."""
+    data = csv_bytes([inspections_table(season)]).decode("utf-8-sig")
+    return [*csv.DictReader(io.StringIO(data, newline=""))]
+
+
+def from_spreadsheet(season, lines, folder, *, delimiter=",", code="utf-8-sig", day="", clock=""):
+    """Return how many corrections, and what else, a table brings that a spreadsheet saved."""
+    said = [{**line} for line in lines]
+    for line in said:
+        year, month, on = line["date"].split("-")
+        line["date"] = day.format(y=year, m=int(month), d=int(on)) or line["date"]
+        hour, _, rest = line["time"].partition(":")
+        if clock and rest:
+            line["time"] = clock.format(h=int(hour), m=rest[:2], s=rest[3:])
+        for name in ("lon", "lat", "count", "detects") if delimiter == ";" else ():
+            line[name] = line[name].replace(".", ",")
+    text = io.StringIO(newline="")
+    table = csv.DictWriter(text, [*said[0]], delimiter=delimiter)
+    table.writeheader()
+    table.writerows(said)
+    shutil.rmtree(folder / "table", ignore_errors=True)
+    (folder / "table").mkdir()
+    file = folder / "table" / "edited.csv"
+    file.write_bytes(text.getvalue().encode(code, errors="replace"))
+    edited = edited_copy(season, file, OPTIONS, folder / "table")
+    n = season.take_corrections(edited.path, file.name, "Cid")
+    return n, edited.n_added, edited.n_notes
+
+
+def test_the_table_that_is_exported_comes_back_as_spreadsheets_save_it(varied, tmp_path):
+    lines = a_table(varied)
+    plants = [(int(line["row"]), int(line["number"])) for line in lines]
+    numbers, done = varied.plant_numbers, varied.history.inspections
+    assert plants == [*zip(numbers.line[done.plant], numbers.number[done.plant], strict=True)]
+    german = {"delimiter": ";", "day": "{d:02d}.{m:02d}.{y}"}
+    american = {"day": "{m}/{d}/{y}", "clock": "{h}:{m}:{s}"}
+    minutes = {"day": "{d:02d}/{m:02d}/{y}", "clock": "{h}:{m}"}
+    ways = ({}, german, german | {"code": "cp1252"}, american, minutes, {"delimiter": "\t"})
+    for way in ways:  # what says the same is no correction, nor a note
+        assert from_spreadsheet(varied, lines, tmp_path, **way) == (0, 0, 0), way
+    edited = [{**line} for line in lines]
+    of = {line["who"] + line["date"]: line for line in edited}
+    of["Ann2026-05-04"].update(result="clean", count="")
+    of["Jörg2026-05-02"].update(who="Dan", notes="other")
+    of["דנה2026-05-03"].update(number="2", lon="", lat="")
+    edited.append({**lines[0], "row": "1", "number": "2", "lon": "", "lat": "", "digest": ""})
+    for way in ways[1:4]:
+        assert from_spreadsheet(varied, edited, tmp_path, **way) == (3, 1, 1), way
+        now = varied.history.inspections
+        (moved,) = numbers.number[now.plant[now.date == np.datetime64("2026-05-03")]]
+        assert moved == 2, way
+        assert "Dan" in now.who.tolist()
+        assert varied.verify() == ()
+        varied.undo()
+
+
+def test_a_table_that_cannot_be_taken_is_refused_and_says_what_to_do(varied, tmp_path):
+    lines = a_table(varied)
+    elsewhere = [{**line, "digest": f"{line['digest'][:-1]}x"} for line in lines]
+    other = [{**line, "digest": f"i{line['digest'][:0:-1]}"} for line in lines]
+    moved = [{**line} for line in lines]
+    moved[3]["number"] = "2"
+    erased = [{**line, "result": "", "count": ""} if line["notes"] else line for line in lines]
+    for said, wanted in (
+        (elsewhere, r"with their columns result and digest .*fieldmon export --of inspections"),
+        (lines + other, r"Export this season alone, and anew"),
+        (moved, r"empty its position if the plant is right"),
+        (erased, r"no result any more: left unknown\. Mend it there"),  # once
+    ):
+        with pytest.raises(FieldmonError, match=wanted):
+            from_spreadsheet(varied, said, tmp_path)

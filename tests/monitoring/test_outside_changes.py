@@ -3,6 +3,7 @@
 import shutil
 import sqlite3
 from contextlib import closing
+from datetime import UTC, datetime
 
 import pyogrio
 import pytest
@@ -225,12 +226,16 @@ def test_the_log_says_what_was_corrected(path):
     assert said.endswith(" was deleted")
 
 
-def test_a_correction_that_makes_no_sense_is_refused_and_nothing_is_taken(path):
+def test_a_correction_that_makes_no_sense_is_refused_and_nothing_is_taken(path, monkeypatch):
+    monkeypatch.setattr(
+        "fieldmon.plot.local_clock.utc_now", lambda: datetime(2026, 11, 5, 12, tzinfo=UTC)
+    )
     for column, bad, says in (
         ("result", "maybe", "maybe"),
         ("plant", "99999", "from another plot"),
         ("date", "soon", "soon"),
         ("date", "2020-01-01", "began on"),
+        ("date", "2026-11-06", "its day, 2026-11-06, has not come"),
     ):
         outside(
             path,

@@ -4,6 +4,7 @@ from dataclasses import fields, replace
 from datetime import time, timedelta
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
@@ -206,6 +207,10 @@ def test_a_season_begins_today_on_the_plot_without_records_unless_told_otherwise
     today = season.settings.begins
     assert np.array_equal(season.morning(today), other.morning(today))
     risk = np.full(len(plot.grid), 0.3)
+    other = pd.Series(risk)[::-1]
+    with pytest.raises(SettingError, match="in the plants' order"):
+        Season.create(tmp_path / "c.gpkg", plot, settings=season.settings, risk=other)
+    risk = other.sort_index()
     risky = Season.create(tmp_path / "c.gpkg", plot, settings=season.settings, risk=risk)
     assert (risky.morning(today) > season.morning(today)).all()
     assert np.array_equal(Season(risky.path).morning(today), risky.morning(today))
@@ -262,6 +267,10 @@ def test_a_season_is_neither_begun_nor_changed_so_that_nobody_can_work(
         settings_log.change(db, replace(first, **chosen))
     season = Season(season.path)
     season.change(replace(season.settings, seed=5), season.settings)
+    season.change(first, season.settings)
+    with pytest.raises(SettingError, match=said):
+        season.undo_change()
+    assert season.settings == first
 
 
 def test_settings_are_changed_by_settings_or_a_sentence(season):

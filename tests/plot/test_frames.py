@@ -10,6 +10,7 @@ import shapely
 from shapely import LineString, MultiPolygon, Point, box
 
 from fieldmon.errors import ImportDoubt, PlotError, SettingError
+from fieldmon.plot.field import Field
 from fieldmon.plot.frames import plant_frame
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.plant_names import PlantNames
@@ -39,6 +40,22 @@ def test_plants_come_out_where_they_stand_with_row_and_number():
 def test_some_plants_come_out_in_the_order_asked_for():
     grid = rectangle(3, 4, Planting())
     assert plant_frame(grid, np.array([7, 2]))["plant"].tolist() == [7, 2]
+
+
+@pytest.mark.parametrize("west", [179.9995, 179.9999, -180.0005])
+def test_plants_across_180_lie_in_their_boundary_and_come_back(west):
+    """A plot on Taveuni, Fiji."""
+    area = MultiPolygon([box(west, -16.9, west + 0.001, -16.8993)])
+    plot = Plot.of(Field("Taveuni", area), Planting())
+    frame = plot.to_geopandas()
+    assert shapely.contains(area.buffer(1e-9), frame.geometry.to_numpy()).all()
+    some = plant_frame(plot.grid, np.array([3, len(plot.grid) - 1]))  # whose boundary is not known
+    assert (some.geometry.x > 179).all()
+    back = Plot.from_geopandas(frame)
+    np.testing.assert_allclose(
+        back.grid.lonlat()[:, 0] % 360, plot.grid.lonlat()[:, 0] % 360, atol=1e-9
+    )
+    assert len(back.grid) == len(plot.grid)
 
 
 def test_faces_are_told_apart_where_both_are_inspected():

@@ -1,5 +1,6 @@
 """Which rows measured plants stand in: straight, bent, named; and what is doubtful about it."""
 
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from shapely import MultiPolygon
 
+from fieldmon.errors import FieldmonError
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
 from fieldmon.plot.grid import block_number
@@ -168,13 +170,29 @@ def test_rows_to_the_north_run_along_0_degrees_and_not_along_180():
     assert str(RowDirection(179.7, 3, 4.0)) == "3 rows along 0 degrees"
 
 
-@pytest.mark.parametrize("missing", [0.3, 0.4, 0.6])
+@pytest.mark.parametrize("missing", [0.3, 0.4, 0.6, 0.7])
 def test_plants_that_are_missing_make_no_pairs_of_those_left(missing):
     k, j = np.divmod(np.arange(20 * 60), 60)
     xy_m = np.stack([1.5 * j, 3.0 * k], axis=1)
     left = np.random.default_rng(3).random(len(xy_m)) > missing
     plot = plot_around("gaps", FRAME.lonlat(xy_m[left]))
     assert plot.rows.paired_share == 0.0
+
+
+@pytest.mark.parametrize(("n", "left"), [(6, 7), (12, 14), (30, 30)])
+def test_few_plants_left_of_three_rows_are_no_pairs_and_pairs_are(n, left):
+    k, j = np.divmod(np.arange(3 * n), n)
+    xy_m = np.stack([1.5 * j, 3.0 * k], axis=1)
+    paired = 0
+    for seed in range(10):
+        kept = np.sort(np.random.default_rng(seed).permutation(len(xy_m))[:left])
+        with suppress(FieldmonError):  # too few tell no rows
+            paired += plot_around("gaps", FRAME.lonlat(xy_m[kept])).rows.paired_share >= 0.4
+    assert paired <= 1
+    two = np.stack([2.0 * (j // 2) + 0.4 * (j % 2), 3.0 * k], axis=1)
+    report = plot_around("pairs", FRAME.lonlat(two)).rows
+    assert report.paired_share == 1.0
+    assert "stand in close pairs" in " ".join(report.doubts)
 
 
 def in_blocks(spacings_m):

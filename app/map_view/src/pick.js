@@ -67,7 +67,9 @@ export function rowsUnder(rows, here, reachM) {
 // Return what is said of a plant: where it stands, what is believed of it, and what is known of it.
 export function tipOf({ places, ranks, values, notes, tips }, k) {
   const note = tips.values ? chanceOf(tips, values[k]) : tips.ranks?.[ranks[k]] ?? "";
-  const known = { row: tips.rows?.[places.row[k]] ?? places.row[k], plant: places.number[k], note };
+  const number = places.number[k], face = tips.faces && places.face?.[k];
+  const plant = face ? tips.faces.replace("{number}", number).replace("{face}", face) : number;
+  const known = { row: tips.rows?.[places.row[k]] ?? places.row[k], plant, note };
   const said = tips.text.replace(/\{(\w+)\}/g, (_, name) => known[name]);
   return notes && tips.notes?.[notes[k]] ? `${said}\n${tips.notes[notes[k]]}` : said;
 }

@@ -67,10 +67,10 @@ function together(made, parts) {
   return new_;
 }
 
-// Plants' places: a head of six doubles (n, lon, lat, step in degrees of latitude, 0, 0); then
-// offsets of lon and lat as floats, rows and numbers in the row as integers, n each.
+// Plants' places: a head of six doubles (n, lon, lat, step in degrees of latitude, 1 where plants have two
+// faces, 0); then offsets of lon and lat as floats, rows, numbers in the row and these faces as integers, n each.
 export function placesOf(buffer) {
-  const [n, lon0, lat0, step] = new Float64Array(buffer, 0, 6);
+  const [n, lon0, lat0, step, faced] = new Float64Array(buffer, 0, 6);
   const part = (Kind, at) => new Kind(buffer, 48 + 4 * n * at, n);
   const east = part(Float32Array, 0), north = part(Float32Array, 1);
   const lon = new Float64Array(n), lat = new Float64Array(n);
@@ -85,5 +85,5 @@ export function placesOf(buffer) {
   }
   const half = step / 2, wide = half / Math.cos((lat0 * Math.PI) / 180);
   bounds[0] -= wide; bounds[1] -= half; bounds[2] += wide; bounds[3] += half;
-  return { n, lon, lat, bounds, step, row: part(Int32Array, 2), number: part(Int32Array, 3) };
+  return { n, lon, lat, bounds, step, row: part(Int32Array, 2), number: part(Int32Array, 3), face: faced ? part(Int32Array, 4) : null };
 }

@@ -90,6 +90,8 @@ test("what is said of a plant is where it stands, what is believed, and what is 
   assert.equal(tipOf({ places, ranks: [0, 1], tips: { ...tips, ranks: ["", ": found"] } }, 1), "row 3, plant 8: found");
   assert.equal(tipOf({ places, ranks: [0, 1], tips }, 0), "row 3, plant 7");
   assert.equal(tipOf({ places, ranks: [0, 1], tips: { ...tips, rows: { 3: "3 · Top" } } }, 0), "row 3 · Top, plant 7");
+  const faced = { places: { ...places, face: [2, 0] }, ranks: [0, 1], tips: { ...tips, faces: "{number}, face {face}" } };
+  assert.deepEqual([tipOf(faced, 0), tipOf(faced, 1)], ["row 3, plant 7, face 2", "row 3, plant 8"]);
 });
 
 test("a chance is said with what it would be at both ends of the plot's level, on its odds", () => {

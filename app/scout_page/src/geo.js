@@ -10,14 +10,14 @@ export function metresPerDegree(lat) {
 
 /** What the phone keeps of the plot's document: plants in metres east and north of its middle. */
 export function laidOut(document, digest) {
-  const { lon, lat, number } = document.plants, n = lon.length;
+  const { lon, lat, number, face } = document.plants, n = lon.length;
   const lon0 = (low(lon) + high(lon)) / 2, lat0 = (low(lat) + high(lat)) / 2;
   const [kx, ky] = metresPerDegree(lat0);
   const x = new Float32Array(n), y = new Float32Array(n);
   for (let i = 0; i < n; i++) { x[i] = (lon[i] - lon0) * kx; y[i] = (lat[i] - lat0) * ky; }
   const plot = {
     digest, name: document.name, zone: document.zone, lon0, lat0, kx, ky, x, y,
-    number: Int32Array.from(number), start: Int32Array.from(document.rows.start),
+    number: Int32Array.from(number), face: face && Int8Array.from(face), start: Int32Array.from(document.rows.start),
     row: Int32Array.from(document.rows.row), sign: document.rows.sign, aisle: Int32Array.from(document.rows.aisle), side: Int8Array.from(document.rows.side),
     rowSpacing: document.row_spacing_m, plantSpacing: document.plant_spacing_m,
   };

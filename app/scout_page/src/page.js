@@ -11,6 +11,11 @@ const REST_MS = 250;
 const STAGES = ["egg", "young", "adult", "web"];
 // the word of a result; that of a plant that is gone goes before "could not inspect"
 const resultOf = (one) => say(one.gone ? "gone" : one.result);
+// where a plant stands; of two faces in one place, which
+function placeOf(plot, plant) {
+  const number = plot.number[plant], face = plot.face?.[plant];
+  return say("place", { row: signOf(plot, plant), plant: face ? say("face", { number, face }) : number });
+}
 const whoSays = (some) => some.map((one) => say("who_says", { who: one.who, result: resultOf(one) })).join(", ");
 // so many plants that contradict are named; in the app all are
 const MOST_NAMED = 3;
@@ -225,7 +230,7 @@ export class Page {
     this.last.hidden = !one;
     if (!one) return this.last.replaceChildren();
     const isKept = one.state !== "writing", { plot } = this.field;
-    const what = `${say("place", { row: signOf(plot, one.plant), plant: plot.number[one.plant] })}: ${resultOf(one)}`;
+    const what = `${placeOf(plot, one.plant)}: ${resultOf(one)}`;
     Object.assign(this.last.dataset, { plant: one.plant, kept: isKept });
     const n = this.field.added();
     this.last.textContent = `${say(isKept ? "kept" : "keeping", { what })}${n ? ` · ${say("added", { n })}` : ""}`;
@@ -240,7 +245,7 @@ export class Page {
   /** Where others say otherwise of a plant, as the season told it. */
   #contradictions() {
     const { field } = this, { plot } = field, all = field.contradictions();
-    const line = ({ plant, said }) => say("contradiction", { what: `${say("place", { row: signOf(plot, plant), plant: plot.number[plant] })}: ${whoSays(said)}` });
+    const line = ({ plant, said }) => say("contradiction", { what: `${placeOf(plot, plant)}: ${whoSays(said)}` });
     const lines = all.slice(0, MOST_NAMED).map((one) => h("p", { class: "bad contradiction", "data-plant": one.plant }, line(one)));
     return all.length > MOST_NAMED ? [...lines, h("p", { class: "bad" }, say("and_more", { n: all.length - MOST_NAMED }))] : lines;
   }
@@ -265,7 +270,7 @@ export class Page {
       this.menu.close();
       this.#act(() => field.answer(again)).then(() => { this.#draw(); this.onTold?.(); });
     } }, say(name));
-    const which = (one) => h("li", {}, `${say("place", { row: signOf(plot, one.plant), plant: plot.number[one.plant] })}: ${resultOf(one)}`);
+    const which = (one) => h("li", {}, `${placeOf(plot, one.plant)}: ${resultOf(one)}`);
     this.#show(h("div", {}, h("h2", {}, title), h("p", {}, say("taken_back_why")), h("ul", {}, ...field.takenBack().map(which)),
       answer("tell_again", true), answer("let_go", false),
       h("button", { type: "button", class: "wide", onclick: () => this.menu.close() }, say("close"))), title, "taken_back");
@@ -290,10 +295,9 @@ export class Page {
     const { field, place } = this;
     if (!place || field.plant < 0 || !field.day) return;
     const { plot, plant } = field, away = field.metresAway();
-    const values = { row: signOf(plot, plant), plant: plot.number[plant] };
     const where = away == null ? say("no_position") : field.isThere() ? say("there") : say("away", { m: Math.round(away) });
     place.replaceChildren(
-      h("h1", {}, say("place", values)),
+      h("h1", {}, placeOf(plot, plant)),
       h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where),
         // what was seen today is no chance
         !field.done.has(plant) && !field.back.has(plant) && h("span", {}, chanceSaid(field.day.chance[plant])),
@@ -394,7 +398,7 @@ export class Page {
       this.menu.close();
       this.#act(() => field.goTo(one.plant));
       this.map.look(one.plant, true);
-    } }, `${say("place", { row: signOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}${one.note ? `: ${own(one.note)}` : ""}`);
+    } }, `${placeOf(field.plot, one.plant)}${one.note ? `: ${own(one.note)}` : ""}`);
     const title = say("asked", { n: field.asked().length });
     this.#show(h("div", {}, h("h2", {}, title), ...field.asked().map(lead),
       h("button", { type: "button", class: "wide main", onclick: () => this.menu.close() }, say("close"))), title, "asked");
@@ -443,7 +447,7 @@ export class Page {
     // what could not even be read is no sentence for a person
     const why = (one) => (one.state === "refused" ? say("refused") : own(one.problem));
     const where = (one) => (one.season === field.season && one.plant >= 0 && field.plot
-      ? `${say("place", { row: signOf(field.plot, one.plant), plant: field.plot.number[one.plant] })}: ` : "");
+      ? `${placeOf(field.plot, one.plant)}: ` : "");
     const part = field.day?.rows && shownEnds(field.plot, field.day.rows);
     const refused = this.left.refused.map((one) => h("li", {}, `${where(one)}${why(one)}`));
     const inner = h("div", {}, h("h2", {}, field.day ? `${own(field.day.scout)}, ${own(dayOf(field.day.day))}` : "fieldmon"),

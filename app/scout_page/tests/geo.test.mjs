@@ -28,6 +28,12 @@ test("neighbours stand in the row and across", () => {
   assert.deepEqual(neighbours(plot, 0).sort((a, b) => a - b), [1, 5]);
 });
 
+test("the faces of plants that have two are kept, and none where they have but one", () => {
+  const document = aPlot(), face = document.plants.number.map((_, k) => 1 + (k % 2));
+  assert.deepEqual([...laidOut({ ...document, plants: { ...document.plants, face } }, "p2").face], face);
+  assert.equal(plot.face, undefined);
+});
+
 test("rows called by other numbers have the same neighbours", () => {
   const document = aPlot(), named = laidOut({ ...document, rows: { ...document.rows, row: [30, 12, 7] } }, "p2");
   for (let plant = 0; plant < 15; plant++) assert.deepEqual(neighbours(named, plant), neighbours(plot, plant));

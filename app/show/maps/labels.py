@@ -10,6 +10,7 @@ import shapely
 from fieldmon.plot.grid import before_rows
 
 from ...words import texts
+from .plant_layers import drawn_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,7 +56,7 @@ def stops(route: Route) -> list[Label]:
     if not len(route):
         return []
     grid = route.aisles.grid
-    lonlat = np.round(route.stops_lonlat(), 7)
+    lonlat = np.round(drawn_at(grid, route.plant), 7)
     near = _zoom(grid, float(lonlat[0, 1]))
     stretch = grid.stretches[grid.row[route.plant]]
     first = np.flatnonzero(np.append(True, np.diff(stretch) != 0))

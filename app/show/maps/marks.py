@@ -12,6 +12,7 @@ from fieldmon.infestation.hotspots import outlines_m
 from fieldmon.plot.row_course import row_corners
 
 from ...words import texts
+from . import plant_layers
 from .colours import (
     GATE,
     HOT,
@@ -170,7 +171,7 @@ def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
 
 def truth(grid: PlantGrid, infested: NDArray[np.bool_], *, dark: bool = False) -> list[Layer]:
     """Return dots on plants that are infested, as only a simulation can know."""
-    here = np.round(grid.lonlat(np.flatnonzero(infested)), 7).tolist()
+    here = np.round(plant_layers.drawn_at(grid, np.flatnonzero(infested)), 7).tolist()
     return [
         Layer(
             "ScatterplotLayer", [{"p": p, "t": texts.TIP_INFESTED} for p in here], id="truth",

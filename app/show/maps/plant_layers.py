@@ -9,6 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from pydeck import Layer
 
+from fieldmon.io.writers.day_file import faces
 from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.projection import M_PER_DEGREE
 
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     #: sentences, and which of them holds for each plant ``(n,)``
     Known = tuple[tuple[str, ...], NDArray[np.integer]]
 
+# of the least spacing: how far each of two faces is drawn from the middle of its plant, how large
+_FACE_OFF, _FACE_SIZE = 0.25, 0.6
 # plots are not changed once laid; where their plants are goes when they do
 _PLACES: WeakKeyDictionary[PlantGrid, bytes] = WeakKeyDictionary()
 
@@ -78,23 +81,47 @@ def plants(
         sentences, which = notes.known
         arrays["notes"] = which.astype("<u2").tobytes()
         tips["notes"] = list(sentences)
-    least_m = min(grid.plant_spacing_m, grid.row_spacing_m)
+    if (grid.twin >= 0).any():
+        tips["faces"] = texts.TIP_FACE
     return ArraysLayer(
         "PlantsLayer", arrays, id=name, table=shade.table.tolist(), tips=tips,
-        radius=0.4 * least_m, apart=least_m,
+        radius=0.4 * _size_m(grid), apart=min(grid.plant_spacing_m, grid.row_spacing_m),
     )  # fmt: skip
+
+
+def drawn_at(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> NDArray[np.float64]:
+    """Return where plants are drawn ``(k, 2)``, lon/lat: each of two faces towards its own aisle.
+
+    So each is seen and can be pointed at: both have one place.
+    """
+    if not (grid.twin >= 0).any():
+        return grid.lonlat(plants)
+    which = np.arange(len(grid)) if plants is None else plants
+    middle = grid.xy_m[which]
+    away = grid.stop_m[which] - middle
+    away /= np.maximum(np.hypot(*away.T), 1e-6)[:, None]
+    off_m = _FACE_OFF * min(grid.plant_spacing_m, grid.row_spacing_m) * (grid.twin[which] >= 0)
+    return grid.frame.lonlat(middle + off_m[:, None] * away)
+
+
+def _size_m(grid: PlantGrid) -> float:
+    """Return the room that each plant has on the map, across."""
+    least_m = min(grid.plant_spacing_m, grid.row_spacing_m)
+    return least_m * (_FACE_SIZE if (grid.twin >= 0).any() else 1.0)
 
 
 def _places(grid: PlantGrid) -> bytes:
     """Return where plants are, as `map_view/src/store.js` reads it."""
     if grid not in _PLACES:
-        lonlat = grid.lonlat()
+        lonlat = drawn_at(grid)
         first = lonlat[0]
         numbered = plant_numbers(grid, np.arange(len(grid)))
         step = max(grid.plant_spacing_m, grid.row_spacing_m) / M_PER_DEGREE
-        head = np.array([len(grid), *first, step, 0.0, 0.0], "<f8")
+        faced = bool((grid.twin >= 0).any())
+        head = np.array([len(grid), *first, step, faced, 0.0], "<f8")
         offsets = (lonlat - first).T.astype("<f4")
-        names = np.stack([numbered.line, numbered.number]).astype("<i4")
+        face = [faces(grid, np.arange(len(grid)))] if faced else []
+        names = np.stack([numbered.line, numbered.number, *face]).astype("<i4")
         _PLACES[grid] = head.tobytes() + offsets.tobytes() + names.tobytes()
     return _PLACES[grid]
 
@@ -104,8 +131,8 @@ def finds(grid: PlantGrid, state: NDArray[np.int8]) -> list[Layer]:
 
     Where finds stand close, the rings run together, but none covers a find.
     """
-    here = np.round(grid.lonlat(np.flatnonzero(state == 1)), 7).tolist()
-    least_m = min(grid.plant_spacing_m, grid.row_spacing_m)
+    here = np.round(drawn_at(grid, np.flatnonzero(state == 1)), 7).tolist()
+    least_m = _size_m(grid)
     rings = [
         _ring(f"finds{k}", here, 0.55 * least_m, (colour, pixels))
         for k, (colour, pixels) in enumerate([((255, 255, 255), 4.5), ((20, 0, 0), 2.0)])
@@ -119,15 +146,15 @@ def finds(grid: PlantGrid, state: NDArray[np.int8]) -> list[Layer]:
 
 def recorded(grid: PlantGrid, which: NDArray[np.bool_]) -> list[Layer]:
     """Return a red ring round each find of which records of before the season alone tell."""
-    here = np.round(grid.lonlat(np.flatnonzero(which)), 7).tolist()
-    size_m = 0.55 * min(grid.plant_spacing_m, grid.row_spacing_m)
+    here = np.round(drawn_at(grid, np.flatnonzero(which)), 7).tolist()
+    size_m = 0.55 * _size_m(grid)
     return [_ring("finds-recorded", here, size_m, (FOUND, 2.0))] if here else []
 
 
 def chosen(grid: PlantGrid, plant: int) -> list[Layer]:
     """Return a broad yellow ring with a dark rim round the plant whose history is shown."""
-    here = np.round(grid.lonlat(np.array([plant])), 7).tolist()
-    size = 0.9 * min(grid.plant_spacing_m, grid.row_spacing_m)
+    here = np.round(drawn_at(grid, np.array([plant])), 7).tolist()
+    size = 0.9 * _size_m(grid)
     return [
         _ring(f"chosen{k}", here, size, pen, 9.0)
         for k, pen in enumerate([((40, 30, 0), 6.5), ((255, 190, 0), 4.0)])
@@ -136,8 +163,8 @@ def chosen(grid: PlantGrid, plant: int) -> list[Layer]:
 
 def picked(grid: PlantGrid, which: NDArray[np.integer]) -> Layer:
     """Return a thin bright ring round plants that are selected."""
-    here = np.round(grid.lonlat(which), 7).tolist()
-    size = 0.7 * min(grid.plant_spacing_m, grid.row_spacing_m)
+    here = np.round(drawn_at(grid, which), 7).tolist()
+    size = 0.7 * _size_m(grid)
     return _ring("picked", here, size, ((0, 190, 255), 2.5), 5.0)
 
 

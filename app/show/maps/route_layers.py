@@ -9,6 +9,7 @@ from pydeck import Layer
 
 from ...words import texts
 from .colours import CASING, CASING_IN_DARK, GATE, ROUTE, ROUTE_IN_DARK
+from .plant_layers import drawn_at
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -91,7 +92,7 @@ def playback(the_route: Route, begins: datetime) -> dict[str, object] | None:
     return {
         "line": np.round(line, 7).tolist(),
         "at_s": np.round(line_s, 1).tolist(),
-        "stops": np.round(the_route.stops_lonlat(), 7).tolist(),
+        "stops": np.round(drawn_at(the_route.aisles.grid, the_route.plant), 7).tolist(),
         "leave_s": np.round(the_route.leave_s, 1).tolist(),
         "starts_s": (begins - midnight).total_seconds(),
     }

@@ -36,6 +36,7 @@ def drive_team(
     names: RobotName,
     say: Callable[[str], None] = lambda _: None,
     recordings: Mapping[str, Recording] | None = None,
+    begun: dict[str, DrivenDay] | None = None,
 ) -> dict[str, DrivenDay]:
     """Drive what is left of a team's day; return each robot's day by its name.
 
@@ -58,6 +59,8 @@ def drive_team(
         Told what people should know, with whose robot it is.
     recordings
         What each one's day is noted in.
+    begun
+        Gets the day of each robot that is there, as it is driven: whatever ends it.
     """
 
     def one(member: TeamMember) -> DrivenDay:
@@ -72,6 +75,8 @@ def drive_team(
         try:
             with live_robot(broker, robot, str(day.on), tell, day.keeper) as live:
                 live.stops = lambda: day.stops
+                if begun is not None:
+                    begun[member.name] = driven
                 drive_day(own, own.aisles, (member.robot, live), watch, driven)
         except FieldmonError as error:
             driven.broken = str(error)

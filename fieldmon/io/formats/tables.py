@@ -19,9 +19,11 @@ from fieldmon.io.formats.wkt import with_shapes
 from fieldmon.io.formats.workbooks import sheet_rows
 from fieldmon.io.import_report import ImportMessage, doubtful, dropped, seen
 from fieldmon.io.parse.columns import recognised
+from fieldmon.io.parse.dates import dates
+from fieldmon.io.parse.degrees import degrees
 from fieldmon.io.parse.quotes import refuse_open_quote
 from fieldmon.io.parse.text import decode
-from fieldmon.io.parse.values import dates, degrees, number
+from fieldmon.io.parse.values import number
 from fieldmon.io.sandbox import limits
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import text
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.values import all_degrees
+from fieldmon.io.parse.degrees import all_degrees
 from fieldmon.io.readers.places import (
     NamedPlaces,
     PlacedByName,

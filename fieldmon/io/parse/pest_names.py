@@ -16,8 +16,15 @@ if TYPE_CHECKING:
 # over and under letters of Latin, Greek and Cyrillic: arana is araña
 _ACCENTS = re.compile(r"[\u0300-\u036f]")
 _BETWEEN = re.compile(r"[\s._-]+")
-# mites and mite, arañas rojas and araña roja; not Tetranychus and occidentalis
-_PLURAL = re.compile(r"(?<=[^\W\d_]{3})(?<![isu])s\b")
+# before NFKD, which makes an accent of one of them
+_APOSTROPHES = str.maketrans("\u2019\u2018\u02bc\u00b4`\u2032", "'" * 6)
+# whiteflies and whitefly
+_FLIES = re.compile(r"(?<=[^\W\d_]{2})ies\b")
+# mites and mite, arañas rojas and araña roja, pulgones and pulgón, Milben and Milbe; not
+# Tetranychus, occidentalis and rosae
+_PLURAL = re.compile(r"(?<=[^\W\d_]{3})(?:(?<![aeiou])e[ns]?|(?<![isu])s)\b")
+# whichever it is of a genus: Tetranychus sp., Tetranychus spp. and Tetranychus; sp. 1 is one
+_ANY = re.compile(r"(?<=\w) spp?$")
 # kinds of visits, which a German column "Art" may hold as well as species
 _VISIT = re.compile(
     r"kontroll|begehung|bonitur|stichprobe|besuch|routine|inspektion|behandlung|überwachung"
@@ -25,9 +32,10 @@ _VISIT = re.compile(
 
 
 def pest_key(name: str) -> str:
-    """Return what all ways of writing one pest have in common: ``spider mite``."""
-    plain = _ACCENTS.sub("", unicodedata.normalize("NFKD", name)).casefold()
-    return _PLURAL.sub("", _BETWEEN.sub(" ", plain).strip())
+    """Return what all ways of writing one pest have in common: ``spider mit``."""
+    decomposed = unicodedata.normalize("NFKD", name.translate(_APOSTROPHES))
+    words = _BETWEEN.sub(" ", _ACCENTS.sub("", decomposed).casefold()).strip()
+    return _PLURAL.sub("", _FLIES.sub("y", _ANY.sub("", words)))
 
 
 def is_visit(name: str) -> bool:

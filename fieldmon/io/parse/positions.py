@@ -27,20 +27,18 @@ from fieldmon.io.import_report import (
 )
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.columns import find
-from fieldmon.io.parse.geometry import geometry_kinds
-from fieldmon.io.parse.georeference import few_unplaceable, place, written
-from fieldmon.io.parse.named_positions import placed_by_name
-from fieldmon.io.parse.utm_zones import stated_zone
-from fieldmon.io.parse.values import (
+from fieldmon.io.parse.degrees import (
     all_degrees,
     halves,
     hemispheres,
     is_dotted,
-    is_missing,
-    numbers,
-    plain_numbers,
     positions_in_cells,
 )
+from fieldmon.io.parse.geometry import geometry_kinds
+from fieldmon.io.parse.georeference import few_unplaceable, place, written
+from fieldmon.io.parse.named_positions import placed_by_name
+from fieldmon.io.parse.utm_zones import stated_zone
+from fieldmon.io.parse.values import is_missing, numbers, plain_numbers
 from fieldmon.io.readers.places import NamedPlaces, PlacedByName
 
 if TYPE_CHECKING:

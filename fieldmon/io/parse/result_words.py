@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.infestation.observations import ABSENT, PRESENT
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
-from fieldmon.io.parse.columns import is_confidence, is_score
+from fieldmon.io.parse.columns import is_average, is_confidence, is_score
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from fieldmon.io.options import RecordOptions
 
@@ -112,6 +112,7 @@ está|fue|es|die|der|das|pflanze|baum|ist|le|plante|arbre|est
 """
 # words in a sentence
 _FEW = 5
+_PERCENT = ("%", "\u066a")
 # where what a note says first ends
 _FIRST = re.compile(r"[:,.!\n(]|\s[-\u2013\u2014]\s")
 #: clean where a column also holds a plus; alone it is an empty cell, unless one says otherwise
@@ -289,7 +290,7 @@ def are_fractions(read: Iterable[float]) -> bool:
 
 
 def about_fractions(name: str, read: Iterable[float], *, is_usual: bool) -> list[ImportMessage]:
-    """Return a doubt about counts or results that could be confidences.
+    """Return a doubt about counts that could be confidences.
 
     Counts a leaf are fractions too: none of a column that `is_usual` for them.
     """
@@ -299,6 +300,26 @@ def about_fractions(name: str, read: Iterable[float], *, is_usual: bool) -> list
         "Its numbers are between 0 and 1, as confidences are. All above 0 are taken as finds."
     )
     return [doubtful(said, name)]
+
+
+def about_unsure(column: str, read: Mapping[str, float]) -> list[ImportMessage]:
+    """Return a doubt about results, parts of one or percents, that could be confidences.
+
+    `read` is the number that each cell is.
+    """
+    unsure = [
+        cell
+        for cell, one in read.items()
+        if 0 < one < 1 or (cell.rstrip().endswith(_PERCENT) and one != 0)
+    ]
+    if not unsure or is_average(column):
+        return []
+    shown = first_few([repr(cell) for cell in sorted(unsure)], 3)
+    said = worded(
+        "Results such as {shown} are taken as finds. If they are confidences, write yes or no.",
+        shown=shown,
+    )
+    return [doubtful(said, column)]
 
 
 def about_confidences(names: Iterable[str], used: Iterable[str | None]) -> list[ImportMessage]:

@@ -12,11 +12,12 @@ from fieldmon.io.import_report import ImportMessage, Severity, UnreadDates, doub
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from datetime import date
 
     from numpy.typing import NDArray
 
     from fieldmon.compute.wording import Worded
-    from fieldmon.io.parse.values import DatedColumn
+    from fieldmon.io.parse.dates import DatedColumn
 
 
 def mixed_dates(read: DatedColumn, where: str | None = None) -> list[ImportMessage]:
@@ -31,19 +32,19 @@ def mixed_dates(read: DatedColumn, where: str | None = None) -> list[ImportMessa
     return [doubtful(said, where)]
 
 
-def to_come(day: NDArray[np.datetime64]) -> NDArray[np.bool_]:
-    """Return which days ``(n,)`` have not come yet, anywhere on earth."""
-    today = np.datetime64(datetime.now(UTC).date(), "D") + 1  # it may be tomorrow elsewhere
-    ahead: NDArray[np.bool_] = day > today
+def to_come(day: NDArray[np.datetime64], today: date | None = None) -> NDArray[np.bool_]:
+    """Return which days ``(n,)`` come after `today`; None: have not come yet, anywhere on earth."""
+    latest = np.datetime64(datetime.now(UTC).date(), "D") + 1  # it may be tomorrow elsewhere
+    ahead: NDArray[np.bool_] = day > (latest if today is None else np.datetime64(today, "D"))
     return ahead
 
 
-def amid_past(day: NDArray[np.datetime64]) -> dict[int, str]:
+def amid_past(day: NDArray[np.datetime64], today: date | None = None) -> dict[int, str]:
     """Return why each of days ``(n,)`` is doubtful that have not come, where others have.
 
-    A file of days to come alone may be a rehearsal.
+    A file of days to come alone may be a rehearsal. `today` as in `to_come`.
     """
-    ahead = to_come(day)
+    ahead = to_come(day, today)
     if not (~ahead & ~np.isnat(day)).any():
         return {}
     return {

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
-from fieldmon.io.options import RecordOptions
+from fieldmon.io.options import ZonedOptions
 from fieldmon.io.parse.clock import zone_of
-from fieldmon.io.parse.values import dates
-from fieldmon.plot.local_clock import local_clock
-
-if TYPE_CHECKING:
-    from fieldmon.plot.field import Field
+from fieldmon.io.parse.dates import dates
 
 
 @dataclass(frozen=True)
-class InspectionOptions(RecordOptions):
+class InspectionOptions(ZonedOptions):
     """What can be chosen when inspections are read.
 
     Parameters
@@ -47,7 +43,6 @@ class InspectionOptions(RecordOptions):
     work_day: np.datetime64 | None = None
     who: str | None = None
     accuracy_m: float | None = None
-    zone: str | None = None
     gone: str | None = None
     take_doubtful: bool = False
 
@@ -69,10 +64,6 @@ class InspectionOptions(RecordOptions):
                     "position is elsewhere: take_doubtful=yes takes it. Leave place out."
                 )
             )
-
-    def on(self, field: Field) -> Self:
-        """Return these options with the time zone in which a plot lies, where none was told."""
-        return self if self.zone else replace(self, zone=local_clock(field).zone or None)
 
     def choose(self, option: str, value: str) -> Self:
         """Return these options with one of them set from text."""

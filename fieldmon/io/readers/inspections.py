@@ -125,7 +125,8 @@ def exported(
     off_m = from_plants_m(rows, grid, np.arange(len(rows)), placed.plant)
     moved = (off_m > grid.plant_spacing_m / 2) & (placed.plant >= 0)
     doubts: dict[int, str] = dict.fromkeys(
-        np.flatnonzero(moved).tolist(), worded("it stands elsewhere than its plant")
+        np.flatnonzero(moved).tolist(),
+        worded("it stands elsewhere than its plant (empty its position if the plant is right)"),
     )
     doubts |= dict.fromkeys(np.flatnonzero(np.isnat(rows.day)).tolist(), worded("it has no date"))
     # of a day to come the season may have them itself

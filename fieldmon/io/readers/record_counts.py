@@ -15,6 +15,7 @@ from fieldmon.io.parse.result_words import (
     ResultWords,
     about_fractions,
     about_minus,
+    about_unsure,
     are_fractions,
     remedy_of_words,
 )
@@ -192,7 +193,7 @@ def _with_presence(table: RecordColumns, name: str, counts: RecordCounts) -> Rec
         said = worded("These words say neither yes nor no: {shown}.", shown=_some(unread))
         messages.append(doubtful(said, name, remedy_of_words(unread, table.options)))
     messages += about_minus(cells, words)
-    messages += about_fractions(name, (counted(cell).number for cell in known), is_usual=False)
+    messages += about_unsure(name, {cell: counted(cell).number for cell in known})
     present = np.where(stated == UNKNOWN, counts.present, stated).astype(np.int8)
     return RecordCounts(counts.number, present, messages)
 

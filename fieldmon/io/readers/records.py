@@ -28,10 +28,11 @@ from fieldmon.io.parse.clock import (
     zone_of,
 )
 from fieldmon.io.parse.columns import is_of_writing
+from fieldmon.io.parse.dates import dates, dates_of_parts
 from fieldmon.io.parse.lengths import accuracies
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.result_words import about_confidences
-from fieldmon.io.parse.values import dates, dates_of_parts, is_missing, numbers
+from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.io.readers.date_doubts import (
     HOW_TO_WRITE,
     broken_times,
@@ -52,8 +53,8 @@ if TYPE_CHECKING:
 
     from fieldmon.io.formats.layer import Layer
     from fieldmon.io.options import RecordOptions
+    from fieldmon.io.parse.dates import DatedColumn
     from fieldmon.io.parse.positions import LocatedFeatures
-    from fieldmon.io.parse.values import DatedColumn
     from fieldmon.io.readers.places import NamedPlaces
 from fieldmon.io.readers.record_columns import RecordColumns
 from fieldmon.io.readers.record_counts import counts_of

@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.io.formats.layer import text
 from fieldmon.io.parse.clock import as_clocks, clock_time
 from fieldmon.io.parse.columns import is_record_id, is_score, is_time
-from fieldmon.io.parse.values import dates
+from fieldmon.io.parse.dates import dates
 from fieldmon.io.readers.inspection_file.columns import is_own
 
 if TYPE_CHECKING:

@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import datetime
-from typing import TYPE_CHECKING, Self
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
-from fieldmon.io.options import RecordOptions
+from fieldmon.io.options import ZonedOptions
 from fieldmon.io.parse.clock import zone_of
 from fieldmon.io.parse.weather_columns import UNITS, WRITTEN, unit_named
 from fieldmon.io.readers.running_rain import EACH, RUNNING
-from fieldmon.plot.local_clock import local_clock
-
-if TYPE_CHECKING:
-    from fieldmon.plot.field import Field
 
 
 @dataclass(frozen=True)
-class WeatherOptions(RecordOptions):
+class WeatherOptions(ZonedOptions):
     """What can be chosen when weather is read.
 
     Parameters
@@ -40,7 +35,6 @@ class WeatherOptions(RecordOptions):
         so.
     """
 
-    zone: str | None = None
     temperature_unit: str | None = None
     wind_unit: str | None = None
     rain_unit: str | None = None
@@ -90,10 +84,6 @@ class WeatherOptions(RecordOptions):
                     told=told,
                 )
             )
-
-    def on(self, field: Field) -> Self:
-        """Return these options with the time zone in which a plot lies, where none was told."""
-        return self if self.zone else replace(self, zone=local_clock(field).zone or None)
 
     def unit(self, kind: str) -> str:
         """Return the unit told for a kind of measure, as `UNITS` has it; empty: none was."""

@@ -21,7 +21,8 @@ from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Remedy, dropped, guessed, seen
 from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone_of
 from fieldmon.io.parse.columns import find, plain
-from fieldmon.io.parse.values import dates, number, numbers
+from fieldmon.io.parse.dates import dates
+from fieldmon.io.parse.values import number, numbers
 from fieldmon.io.readers.date_doubts import mixed_dates
 from fieldmon.io.readers.weather_rows import utc_times
 from fieldmon.io.readers.weather_services import NO_SERVICE, WeatherService, read_as_lst, told_zone
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 
     from fieldmon.io.formats.layer import Layer
     from fieldmon.io.parse.clock import ClockTime
-    from fieldmon.io.parse.values import DatedColumn
+    from fieldmon.io.parse.dates import DatedColumn
     from fieldmon.io.readers.weather_options import WeatherOptions
     from fieldmon.pests.weather import Times
 

@@ -12,8 +12,9 @@ from fieldmon.infestation.observations import UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
 from fieldmon.io.parse.columns import find
+from fieldmon.io.parse.dates import dates
 from fieldmon.io.parse.result_words import meaning
-from fieldmon.io.parse.values import counted, dates, is_missing, number
+from fieldmon.io.parse.values import counted, is_missing, number
 from fieldmon.io.readers.inspection_file.columns import own_column
 from fieldmon.io.sandbox import limits
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
     from fieldmon.io.formats.layer import Layer
     from fieldmon.io.options import RecordOptions
-    from fieldmon.io.parse.values import DatedColumn
+    from fieldmon.io.parse.dates import DatedColumn
 
 _FEWEST = 2
 # columns called by numbers that are plants of a row

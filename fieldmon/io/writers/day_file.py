@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
+from xml.etree import ElementTree as ET
 
 import numpy as np
 
@@ -325,6 +326,11 @@ def of_face(number: int, face: int) -> str:
 def plain_text(text: str) -> str:
     """Return text without the control characters that XML and tables cannot hold."""
     return _NO_TEXT.sub(" ", text)
+
+
+def add_text(parent: ET.Element, tag: str, text: str) -> None:
+    """Add an element of XML that holds a text."""
+    ET.SubElement(parent, tag).text = plain_text(text)
 
 
 def pieces(n: int, most: int) -> list[slice]:

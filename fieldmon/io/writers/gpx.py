@@ -9,7 +9,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from fieldmon.compute.wording import chance_figure, written
-from fieldmon.io.writers.day_file import DECIMALS, pieces, plain_text
+from fieldmon.io.writers.day_file import DECIMALS, add_text, pieces
 from fieldmon.io.writers.geojson import summary
 from fieldmon.plot.projection import goes_round
 
@@ -55,7 +55,7 @@ def route_gpx(plan: HandoffPlan) -> bytes:
         for vertex in range(run.start, run.stop):
             point = ET.SubElement(route, "rtept", _place(*plan.line_lonlat[vertex]))
             if vertex in names:
-                _text(point, "name", names[vertex])
+                add_text(point, "name", names[vertex])
     for part, run in enumerate(runs, 1):
         segment = ET.SubElement(_part(root, "trk", plan, part, len(runs)), "trkseg")
         for lon, lat in plan.line_lonlat[run]:
@@ -66,13 +66,13 @@ def route_gpx(plan: HandoffPlan) -> bytes:
 
 def _metadata(metadata: ET.Element, plan: HandoffPlan) -> None:
     figures = summary(plan.route, plan.notes)
-    _text(metadata, "name", plan.title)
+    add_text(metadata, "name", plan.title)
     n = figures["stops"]
     stops = f"{n} {written(n, 'stop|stops')}"
     told = f"{stops}, {figures['drive_m']:.0f} m, {figures['seconds']:.0f} s"
-    _text(metadata, "desc", f"{told}. {plan.bound}" if plan.bound else told)
+    add_text(metadata, "desc", f"{told}. {plan.bound}" if plan.bound else told)
     if plan.begins is not None:
-        _text(metadata, "time", f"{plan.begins.astimezone(UTC):%Y-%m-%dT%H:%M:%SZ}")
+        add_text(metadata, "time", f"{plan.begins.astimezone(UTC):%Y-%m-%dT%H:%M:%SZ}")
     if len(plan.line_lonlat):
         _bounds(metadata, plan)
 
@@ -89,28 +89,24 @@ def _bounds(metadata: ET.Element, plan: HandoffPlan) -> None:
 
 def _waypoint(waypoint: ET.Element, stop: Stop) -> None:
     arrive = f"arrive {stop.arrive}; " if stop.arrive else f"after {stop.arrive_s:.0f} s; "
-    _text(waypoint, "name", stop.label)
+    add_text(waypoint, "name", stop.label)
     chance = chance_figure(stop.chance, 1)
     looks = f"stay {stop.look_s:g} s; chance {chance}; detects {stop.detects:.6g}"
     told = f"plant {stop.plant}; {arrive}{looks}"
     # converters and devices keep one of the two, and not the same one
-    _text(waypoint, "cmt", told)
-    _text(waypoint, "desc", told)
-    _text(waypoint, "sym", "Flag, Blue")
-    _text(waypoint, "type", "stop")
+    add_text(waypoint, "cmt", told)
+    add_text(waypoint, "desc", told)
+    add_text(waypoint, "sym", "Flag, Blue")
+    add_text(waypoint, "type", "stop")
 
 
 def _part(root: ET.Element, kind: str, plan: HandoffPlan, part: int, parts: int) -> ET.Element:
     element = ET.SubElement(root, kind)
-    _text(element, "name", plan.title if parts == 1 else f"{plan.title} {part}/{parts}")
-    _text(element, "number", str(part))
+    add_text(element, "name", plan.title if parts == 1 else f"{plan.title} {part}/{parts}")
+    add_text(element, "number", str(part))
     return element
 
 
 def _place(lon: float, lat: float) -> dict[str, str]:
     # the schema has longitudes up to, but not including, 180
     return {"lat": f"{lat:.{DECIMALS}f}", "lon": f"{-180.0 if lon >= 180 else lon:.{DECIMALS}f}"}
-
-
-def _text(parent: ET.Element, tag: str, text: str) -> None:
-    ET.SubElement(parent, tag).text = plain_text(text)

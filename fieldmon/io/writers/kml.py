@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 from fieldmon.compute.wording import chance_figure, written
-from fieldmon.io.writers.day_file import DECIMALS, plain_text
+from fieldmon.io.writers.day_file import DECIMALS, add_text
 from fieldmon.io.writers.geojson import summary
 
 if TYPE_CHECKING:
@@ -30,20 +30,20 @@ def route_kml(plan: HandoffPlan) -> bytes:
     root = ET.Element("kml", {"xmlns": _NAMESPACE})
     document = ET.SubElement(root, "Document")
     figures = summary(plan.route, plan.notes)
-    _text(document, "name", plan.title)
+    add_text(document, "name", plan.title)
     n = figures["stops"]
     told = f"{n} {written(n, 'stop|stops')}, {figures['drive_m']:.0f} m"
-    _text(document, "description", f"{told}. {plan.bound}" if plan.bound else told)
+    add_text(document, "description", f"{told}. {plan.bound}" if plan.bound else told)
     _styles(document)
     if len(plan.line_lonlat) > 1:
         line = ET.SubElement(document, "Placemark", {"id": "route"})
-        _text(line, "name", plan.title)
-        _text(line, "styleUrl", "#driven")
+        add_text(line, "name", plan.title)
+        add_text(line, "styleUrl", "#driven")
         shape = ET.SubElement(line, "LineString")
-        _text(shape, "tessellate", "1")
-        _text(shape, "coordinates", _coordinates(plan.line_lonlat))
+        add_text(shape, "tessellate", "1")
+        add_text(shape, "coordinates", _coordinates(plan.line_lonlat))
     folder = ET.SubElement(document, "Folder")
-    _text(folder, "name", "stops")
+    add_text(folder, "name", "stops")
     for stop in plan.stops:
         _stop(ET.SubElement(folder, "Placemark", {"id": f"stop-{stop.order}"}), stop, plan)
     made: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
@@ -52,22 +52,22 @@ def route_kml(plan: HandoffPlan) -> bytes:
 
 def _styles(document: ET.Element) -> None:
     driven = ET.SubElement(ET.SubElement(document, "Style", {"id": "driven"}), "LineStyle")
-    _text(driven, "color", _LINE_COLOUR)
-    _text(driven, "width", "3")
+    add_text(driven, "color", _LINE_COLOUR)
+    add_text(driven, "width", "3")
     # no address of a picture: without the internet it would be a red cross, or nothing
     icon = ET.SubElement(ET.SubElement(document, "Style", {"id": "stop"}), "IconStyle")
-    _text(icon, "color", _STOP_COLOUR)
-    _text(icon, "scale", "0.6")
+    add_text(icon, "color", _STOP_COLOUR)
+    add_text(icon, "scale", "0.6")
 
 
 def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
-    _text(placemark, "name", stop.label)
-    _text(
+    add_text(placemark, "name", stop.label)
+    add_text(
         placemark, "description", f"stay {stop.look_s:g} s; chance {chance_figure(stop.chance, 1)}"
     )
     if stop.arrive:
-        _text(ET.SubElement(placemark, "TimeStamp"), "when", stop.arrive)
-    _text(placemark, "styleUrl", "#stop")
+        add_text(ET.SubElement(placemark, "TimeStamp"), "when", stop.arrive)
+    add_text(placemark, "styleUrl", "#stop")
     extended = ET.SubElement(placemark, "ExtendedData")
     values = {
         "stop": stop.order,
@@ -87,14 +87,10 @@ def _stop(placemark: ET.Element, stop: Stop, plan: HandoffPlan) -> None:
         "notes": "",
     }
     for name, value in values.items():
-        _text(ET.SubElement(extended, "Data", {"name": name}), "value", str(value))
+        add_text(ET.SubElement(extended, "Data", {"name": name}), "value", str(value))
     point = ET.SubElement(placemark, "Point")
-    _text(point, "coordinates", f"{stop.lon:.{DECIMALS}f},{stop.lat:.{DECIMALS}f}")
+    add_text(point, "coordinates", f"{stop.lon:.{DECIMALS}f},{stop.lat:.{DECIMALS}f}")
 
 
 def _coordinates(lonlat: NDArray[np.float64]) -> str:
     return " ".join(f"{lon:.{DECIMALS}f},{lat:.{DECIMALS}f}" for lon, lat in lonlat.tolist())
-
-
-def _text(parent: ET.Element, tag: str, text: str) -> None:
-    ET.SubElement(parent, tag).text = plain_text(text)

@@ -7,12 +7,20 @@ from tests.app.driving import go
 
 def test_numbers_typed_just_before_pressing_compare_are_those_compared(app, monkeypatch):
     begun = []
-    monkeypatch.setattr(
-        WatchedComparison, "start", lambda self: begun.append((self.settings.seeds, *self._tabs))
-    )
-    monkeypatch.setattr(browser, "tab", lambda: ("a tab", bool))
+
+    def start(comparison):
+        begun.append(comparison)
+
+    monkeypatch.setattr(WatchedComparison, "start", start)
+    monkeypatch.setattr(browser, "tab", lambda: ("a tab", lambda: True))
     go(app, "compare")
     app.number_input(key="seeds").set_value(7)
     app.button(key="run").click().run()
     assert not app.exception
-    assert begun == [(7, "a tab")]  # it ends with the tab
+    (one,) = begun
+    assert (one.settings.seeds, *one._tabs) == (7, "a tab")  # it ends with the tab
+    assert one._is_watched()
+    app.number_input(key="seeds").set_value(8).run()
+    assert not one._is_watched()  # another took its place: nobody sees it
+    app.number_input(key="seeds").set_value(7).run()
+    assert one._is_watched()

@@ -11,6 +11,7 @@ import pytest
 import streamlit as st
 
 from app.actions import recording
+from app.show import plant_history
 from app.state import seasons_folder, unconfirmed
 from app.state.choices import WHOSE_DAY
 from app.state.fresh_boxes import FreshBoxes
@@ -21,7 +22,7 @@ from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
 from fieldmon.plot.grid import plant_at, plant_numbers
 from tests.app.actions.test_scouting import of_two
-from tests.app.chosen import in_season
+from tests.app.chosen import a_plot, in_season
 from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
 from tests.monitoring.seasons import a_season
 from tests.monitoring.test_outside_changes import moved_to, outside
@@ -64,18 +65,18 @@ def test_in_a_team_who_inspected_or_treated_is_who_is_said_to_have(season_app, s
     say_one(4)
     assert season().history.inspections.who.tolist() == [""]
     say_one(5, "Dan")
-    say_one(6)
-    assert season().history.inspections.who.tolist() == ["", "Dan", ""]
-    # what waits for a word is signed as it was brought
-    say_one(6, "Dan", FOUND)
-    press(season_app, "The new one holds")
+    say_one(6)  # who it was stays in the box until another is chosen
     assert season().history.inspections.who.tolist() == ["", "Dan", "Dan"]
+    # what waits for a word is signed as it was brought
+    say_one(6, "Ann", FOUND)
+    press(season_app, "The new one holds")
+    assert season().history.inspections.who.tolist() == ["", "Dan", "Ann"]
     season_app.button(key="undo 1").click().run()
     assert season().log()[-1].who == ""
     table = b"row,plant,result\n2,5,clean\n"
     boxed(season_app.file_uploader, "findings_file").upload("day.csv", table).run()
     season_app.button(key="record_file").click().run()
-    assert season().history.inspections.who.tolist() == ["Dan", "Dan", ""]
+    assert season().history.inspections.who.tolist() == ["Dan", "Ann", ""]
     boxed(season_app.number_input, "efficacy").set_value(80)
     boxed(season_app.text_input, "product").set_value("Oil")
     send(season_app, "treatment")
@@ -489,6 +490,24 @@ def test_a_plant_tapped_has_no_result_yet(tmp_path):
     assert (boxes.said("one_row"), boxes.said("one_plant")) == (1, 1)
     assert boxes.said("one_tapped") == (1, 1)
     assert boxes.said("one_result") is None
+
+
+@pytest.mark.usefixtures("session")
+def test_of_a_plant_with_two_faces_the_one_tapped_is_recorded_and_none_is_guessed(tmp_path):
+    choices = in_season(a_season(tmp_path / "a.gpkg", plot=a_plot(faces=2)))
+    boxes, (first, second) = FreshBoxes("one_plant", choices), (0, choices.plot.grid.twin[0])
+    for face, plant in ((1, first), (2, second)):
+        recording.take_plant(choices, "plants-state", plant)
+        assert boxes.said("one_face") == face
+        assert recording._plant_typed(choices) == plant
+        assert plant_history.tapped(choices) == (plant,)
+    boxes.put("one_face", None)
+    boxes.put("one_result", FOUND)
+    recording._record_one(choices)
+    assert not len(choices.season.history.inspections)
+    boxes.put("one_face", 2)
+    recording._record_one(choices)
+    assert choices.season.history.inspections.plant.tolist() == [second]
 
 
 def contradicted(app, season, n=4):

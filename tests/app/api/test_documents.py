@@ -31,7 +31,7 @@ from fieldmon.monitoring.scouts_out import scouts_out
 from fieldmon.planning.members import team_of
 from fieldmon.planning.skips import left_out_in_words
 from fieldmon.plot.local_clock import local_clock
-from tests.app.chosen import in_season
+from tests.app.chosen import a_plot, in_season
 from tests.monitoring.phone import NOW, a_finding
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -55,6 +55,14 @@ def test_plants_are_where_they_are_with_their_rows(served):
     assert plot["zone"] == "Asia/Jerusalem"
     _tells_where_the_aisles_are(served.season, plot)
     assert plot_document(served.season) == (name, made)
+    assert "face" not in plot["plants"]
+
+
+def test_of_plants_with_two_faces_it_is_told_which_each_is(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", plot=a_plot(faces=2))
+    plot, grid = json.loads(plot_document(season)[1]), season.plot.grid
+    jsonschema.validate(plot, description.PLOT)
+    assert plot["plants"]["face"] == [1 if k < grid.twin[k] else 2 for k in range(len(grid))]
 
 
 def _tells_where_the_aisles_are(season, plot):

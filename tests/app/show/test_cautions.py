@@ -1,6 +1,6 @@
 """What to beware of after treatments is said in the page's words."""
 
-from datetime import time, timedelta
+from datetime import UTC, datetime, time, timedelta
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,6 +15,7 @@ from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.belief_settings import BeliefSettings
 from tests.app.chosen import in_season
 from tests.monitoring.seasons import BEGINS, a_season
+from tests.monitoring.test_drafts import add
 
 
 class Shown:
@@ -52,6 +53,23 @@ def test_nothing_is_shown_without_a_season_or_treatments(shown, tmp_path):
     cautions.show_treatments(choices(season))
     assert ("markdown", f"**{texts.EFFECTS}**") in shown
     assert shown[-1] == ("caption", texts.EFFECTS_TREATED)
+
+
+def test_a_finding_of_qgis_of_a_day_to_come_is_told_in_the_language_of_the_page(
+    shown, tmp_path, monkeypatch, speaking
+):
+    noon = datetime(2026, 11, 5, 12, tzinfo=UTC)
+    monkeypatch.setattr("fieldmon.plot.local_clock.utc_now", lambda: noon)
+    season = a_season(tmp_path / "season.gpkg")
+    season.record(Inspections.of([1], [1], np.datetime64(BEGINS)), "x")
+    add(season.path, date="2026-11-06")
+    speaking("he")
+    cautions.show(choices(Season(season.path)))
+    ((kind, said),) = shown
+    assert kind == "warning"
+    assert "2026-11-06" in said
+    assert "has not come" not in said
+    assert "[English]" not in said
 
 
 def test_finds_that_are_found_again_are_said_with_where_the_setting_is(

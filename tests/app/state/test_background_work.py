@@ -18,7 +18,7 @@ class Steps(BackgroundWork):
     def work(self):
         while self.taken < 3:
             self.let.acquire()
-            if self._is_over():
+            if self._is_over_here():
                 return
             self.taken += 1
 

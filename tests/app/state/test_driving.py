@@ -2,6 +2,7 @@
 
 import pytest
 
+from app.state import background_work
 from app.state.driving import DayInTime, DriveRun
 from fieldmon.drive.simulated_robots import MadeUp
 from fieldmon.errors import FieldmonError
@@ -42,6 +43,16 @@ def test_a_day_that_is_stopped_is_not_kept_and_can_begin_again(planned):
     run.start()
     run.wait(180)
     assert any(one.found for one in run.day.trace.stops)
+
+
+def test_a_day_ends_for_good_once_no_tab_is_open_any_more(planned, monkeypatch):
+    monkeypatch.setattr(background_work, "UNSEEN_S", 0.0)
+    run = run_of(planned)
+    run.watch("a tab", lambda: False)
+    run.start()
+    run.wait(180)
+    assert run.day is None
+    assert (run.problem, run.share) == (None, 0.0)
 
 
 def test_a_problem_is_kept_to_be_said(planned):

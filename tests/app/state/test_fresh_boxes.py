@@ -38,9 +38,31 @@ def test_another_day_and_another_season_have_boxes_of_their_own(choices, other):
     assert FreshBoxes("one", choices).said("row") == 3
 
 
-def shown(boxes, *names):
+def shown(boxes, *names, **settings):
     """Show boxes as a page does; return what each holds."""
-    return [boxes.show(lambda *_, value=None, **__: value, box=name) for name in names]
+    return [boxes.show(lambda *_, value=None, **__: value, box=name, **settings) for name in names]
+
+
+@pytest.mark.usefixtures("session")
+def test_what_stays_in_a_box_is_of_its_day_and_nothing_that_waits_to_be_kept(choices):
+    boxes, later = FreshBoxes("one", choices), FreshBoxes("one", replace(choices, day="2026-11-17"))
+    boxes.put("who", "Dan")
+    boxes.put("row", 3)
+    shown(boxes, "row")
+    shown(boxes, "who", stays=True)
+    boxes.empty()
+    assert (shown(boxes, "row"), shown(boxes, "who", stays=True)) == ([None], ["Dan"])
+    assert shown(later, "who", stays=True) == [None]
+    assert not boxes.hold_anything()
+    assert not fresh_boxes.unfinished(), "whoever opens the address elsewhere did not say so"
+    boxes.put("row", 4)
+    kept = [value for _, value in fresh_boxes.unfinished()["boxes"].values()]
+    assert sorted(kept, key=str) == [4, "Dan"]
+    boxes.empty()
+    shown(boxes, "row")
+    shown(boxes, "who", stays=True)
+    boxes.put("who", "Eve")
+    assert boxes.hold_anything()
 
 
 @pytest.mark.usefixtures("session")

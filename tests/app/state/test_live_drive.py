@@ -1,9 +1,12 @@
 """A robot's day as it is driven, listened to over a broker."""
 
+import threading
+import time
+
 import pytest
 
 from app.show import drive_play
-from app.state import live_drive
+from app.state import background_work
 from app.state.live_drive import LiveDrive
 from app.state.map_store import STORE
 from fieldmon.drive.day import drive_day
@@ -51,11 +54,22 @@ def test_way_finds_and_chances_of_a_day_come_as_it_is_driven(broker, plot, robot
     assert drive_play.as_live(live)["heard"]["standing"] == "ended"
 
 
-def test_nobody_looks_and_it_ends_by_itself(broker, scene, monkeypatch):  # noqa: F811
-    monkeypatch.setattr(live_drive, "UNSEEN_S", 0.3)
-    live = LiveDrive(broker, ROBOT, scene)
+def test_it_goes_on_while_a_tab_is_open_though_nobody_asks_and_ends_once_none_is(
+    broker, scene, monkeypatch  # noqa: F811
+):  # fmt: skip
+    monkeypatch.setattr(background_work, "UNSEEN_S", 0.3)
+    live, asked, is_closed = LiveDrive(broker, ROBOT, scene), [], threading.Event()
+
+    def is_open():
+        asked.append(time.monotonic())
+        return not is_closed.is_set()
+
+    live.watch("a tab", is_open)
     live.start()
-    until(lambda: not live.running)
+    until(lambda: asked and asked[-1] - asked[0] > 0.6)  # on another page of the app
+    assert live.running
+    is_closed.set()
+    until(lambda: live.heard() and not live.running)  # a page that still asks keeps it no longer
     assert live.problem is None
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
-from fieldmon.io.parse.values import dates
+from fieldmon.io.parse.dates import dates
 from fieldmon.io.readers.date_doubts import in_future, mixed_dates
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections

@@ -127,10 +127,11 @@ def test_a_comma_is_what_the_rest_of_the_table_says_it_is_and_else_a_guess():
 
 
 def test_results_that_could_be_confidences_are_doubted():
-    for name in ("detection", "result"):
-        records = read(**{name: [0.0, 0.03, 0.08]})
-        assert "as confidences are" in said(records, Severity.DOUBTFUL)
-    assert "confidences" not in sentences(read(result=[0, 1, "yes"]))
+    assert "are confidences" in said(read(detection=[0.0, 0.03, 0.08]), Severity.DOUBTFUL)
+    for unsure in ([0.0, 0.03, 0.08], [0.03, 1, 2, "yes"], ["3%", "0%", "no"], ["3 \u066a"]):
+        records = read(result=unsure)
+        assert f"such as '{unsure[0] or 0.03}'" in said(records, Severity.DOUBTFUL)
+    assert "confidences" not in sentences(read(result=[0, 1, 2, "yes"]))
 
 
 def test_what_is_no_count_is_not_said_to_be_read_roughly():

@@ -10,7 +10,7 @@ from fieldmon.io.options import PlotOptions
 from fieldmon.io.read import read_plots
 from fieldmon.io.readers.plots import plots_of
 from fieldmon.io.readers.walked_outline import outline_of
-from tests.io.readers.test_plots import corners, layer_of
+from tests.io.readers.plot_layers import corners, layer_of
 from tests.io.tables_of_cells import sentences
 from tests.walked import FRAME, walked
 

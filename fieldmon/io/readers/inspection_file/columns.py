@@ -46,6 +46,8 @@ PLANNED = re.compile(
     r"^plant \d+; (?:arrive (?P<arrive>[^;]*)|after [^;]* s); stay [^;]* s; "
     r"chance [\d.]+ ?%(?:; detects (?P<detects>[\d.]+(?<!\.)))?[\s.,;]*"
 )
+# what `writers.csv` puts before what a spreadsheet would run as a formula
+_APOSTROPHE = re.compile(r"^'(?=\s*[=+@-])")
 # so many cells tell whether a column numbers its records
 _LOOKED_AT = 200
 _BLANK = frozenset({"", "nan", "nat", "none", "null", "<na>"})
@@ -270,8 +272,13 @@ def texts_in(layer: Layer, name: str | None) -> NDArray[np.str_]:
 
 def notes_in(layer: Layer) -> NDArray[np.str_]:
     """Return what was noted of each ``(n,)``, without the plan that a waypoint given out says."""
-    noted = texts_in(layer, own_column("notes", layer))
+    noted = _written_in(layer, own_column("notes", layer))
     return np.array([PLANNED.sub("", note) for note in noted.tolist()], dtype=np.str_)
+
+
+def _written_in(layer: Layer, name: str | None) -> NDArray[np.str_]:
+    """Return a column as `texts_in` does, as it was written before it came to a table."""
+    return np.array([_APOSTROPHE.sub("", cell) for cell in texts_in(layer, name).tolist()], np.str_)
 
 
 def detects_in(layer: Layer, columns: InspectionColumns, file: str) -> NDArray[np.float64]:
@@ -318,5 +325,5 @@ def who_in(
 ) -> NDArray[np.str_]:
     """Return who inspected ``(n,)``, as the file says or as told; empty where nobody is."""
     taken = {columns.marks, columns.result}
-    who = texts_in(layer, own_column("who", layer, taken))
+    who = _written_in(layer, own_column("who", layer, taken))
     return np.where(who == "", options.who or "", who)

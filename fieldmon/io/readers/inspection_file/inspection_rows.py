@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
@@ -10,8 +11,22 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
+# in front of digests in tables: of hexadecimal digits alone a spreadsheet may make a number
+_IN_TABLE = "i"
+_DIGEST = re.compile("[0-9a-f]{24}")
 #: the row, and the number in it, of a plant that is not named by them: 0 is one where plots say so
 UNSAID = -(2**31)
+
+
+def mark_in_table(digest: str) -> str:
+    """Return a digest of a season's file as a table has it that a spreadsheet may open."""
+    return f"{_IN_TABLE}{digest}"
+
+
+def mark_of(cell: str) -> str:
+    """Return the digest that such a table has in a cell; empty where it is none."""
+    digest = cell.removeprefix(_IN_TABLE)
+    return digest if digest != cell and _DIGEST.fullmatch(digest) else ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,7 @@ from fieldmon.io.parse.result_words import (
     about_fractions,
     about_mark,
     about_minus,
+    about_unsure,
     is_gone,
     plain_word,
     remedy_of_words,
@@ -103,7 +104,6 @@ def _by_result(
     mark, guess = decimal_mark_in(layer, column, cells, options)
     known = {cell: result_of(cell, mark, words) for cell in set(cells)}
     known |= {cell: _NOT_INSPECTED for cell in known if is_gone(cell, options.gone)}
-    numbers = (counted(cell, mark).number for cell in known)
     return [known[cell] for cell in cells], [
         (seen if _is_named(column, options) else guessed)(
             worded("Results are in column {result!r}.", result=column)
@@ -111,7 +111,7 @@ def _by_result(
         *guess,
         *_unread(cells, known, options),
         *about_minus(cells, words),
-        *about_fractions(column, numbers, is_usual=False),
+        *about_unsure(column, {cell: counted(cell, mark).number for cell in known}),
     ]
 
 

@@ -29,7 +29,7 @@ from fieldmon.io.readers.inspection_file.columns import (
     texts_in,
     who_in,
 )
-from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
+from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows, mark_of
 from fieldmon.io.readers.inspection_file.plants import named_plants, positions_in, unknown_faces
 from fieldmon.io.readers.inspection_file.results import results_in
 from fieldmon.io.readers.inspection_file.times import times_in
@@ -93,8 +93,9 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
     columns = columns_of(layer, options)
     results = results_in(layer, columns, options)
     said, notes, mark = results.said, _notes(layer, results), _marks(layer)
-    messages += _about_erased((mark != "") & ~(results.said | results.unread))
-    messages += _about_silence(results, notes, in_names=columns.marks is not None)
+    erased = (mark != "") & ~(results.said | results.unread)
+    messages += _about_erased(erased)
+    messages += _about_silence(results, notes, erased, in_names=columns.marks is not None)
     lonlat, accuracy_m, unread, more = positions_in(layer, columns, options)
     plant, line, number, face = named_plants(layer, columns)
     times = times_in(layer, columns, options)
@@ -124,7 +125,7 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
         plot_called=texts_in(layer, plot := plot_column(layer, columns, options)),
         plot_column=np.full(len(layer), plot or ""),
         mark=mark,
-        lacks=np.full(len(layer), _lacking(layer)),
+        lacks=np.full(len(layer), _lacking(layer, columns)),
     )
     kept = whole.take(said)
     pests = texts_in(layer, columns.species)[said].tolist()
@@ -143,11 +144,14 @@ def _notes(layer: Layer, results: SeenResults) -> NDArray[np.str_]:
 
 
 def _about_silence(
-    results: SeenResults, notes: NDArray[np.str_], *, in_names: bool
+    results: SeenResults, notes: NDArray[np.str_], erased: NDArray[np.bool_], *, in_names: bool
 ) -> list[ImportMessage]:
-    """Return what to say of records without a result; `in_names`: names were to tell it."""
+    """Return what to say of records without a result that was not erased.
+
+    `in_names`: names were to tell it.
+    """
     messages = []
-    noted = int((~results.said & (notes != "")).sum())
+    noted = int((~(results.said | erased) & (notes != "")).sum())
     if noted and not in_names:
         messages.append(
             doubtful(
@@ -157,7 +161,8 @@ def _about_silence(
                 )
             )
         )
-    silent = ~(results.said | results.unread)  # what is written and cannot be read is said apart
+    # what is written and cannot be read is said apart
+    silent = ~(results.said | results.unread | erased)
     if silent.any():
         what = worded("no result in the name") if in_names else worded("not filled in")
         messages.append(
@@ -235,13 +240,19 @@ def _each_point(layer: Layer, messages: list[ImportMessage]) -> tuple[Layer, lis
 
 def _marks(layer: Layer) -> NDArray[np.str_]:
     """Return by which digest a season's file knows each record ``(n,)``; empty: it is of none."""
-    name = None if _of_season("undone", layer) is None else _of_season("digest", layer)
-    return texts_in(layer, name)
+    cells = texts_in(layer, _of_season("digest", layer))
+    marks = np.array([mark_of(cell) for cell in cells.tolist()], np.str_)
+    if _of_season("undone", layer) is None:  # only a table of `fieldmon export` says which it is
+        return marks
+    return np.where(marks == "", cells, marks)
 
 
-def _lacking(layer: Layer) -> str:
+def _lacking(layer: Layer, columns: InspectionColumns) -> str:
     """Return which columns of a season's inspections a layer does not have, between commas."""
-    return ",".join(one.kept for one in COLUMNS if _of_season(one.kept, layer) is None)
+    lacks = {one.kept for one in COLUMNS if _of_season(one.kept, layer) is None}
+    if columns.line is not None and columns.number is not None:
+        lacks.discard("plant")
+    return ",".join(sorted(lacks))
 
 
 def _of_season(column: str, layer: Layer) -> str | None:

@@ -20,7 +20,8 @@ from fieldmon.io.parse.clock import (
     zone_of,
 )
 from fieldmon.io.parse.columns import find, is_of_work, is_of_writing, plain
-from fieldmon.io.parse.values import dates, is_missing, is_written_as_day, numbers
+from fieldmon.io.parse.dates import dates, is_written_as_day
+from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.io.readers.date_doubts import (
     broken_times,
     in_future,

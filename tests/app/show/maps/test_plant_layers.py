@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.show.maps import colours, plant_layers
+from app.show.maps import colours, labels, plant_layers
 from app.show.maps.plant_layers import PlantNotes
 from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.layout import rectangle
+from tests.app.chosen import a_plot, chosen
 from tests.app.shown_plants import plants_in, shown_plants
 from tests.paths import ROOT
 
@@ -30,6 +31,29 @@ def test_every_plant_is_sent_with_its_place_its_row_and_number_and_the_colour_of
     )
     assert shown.rank.tolist() == (STATE + 1).tolist()
     assert shown.of_colour(colours.FOUND).tolist() == np.flatnonzero(STATE == 1).tolist()
+
+
+def test_two_faces_are_drawn_beside_each_other_and_named():
+    grid = a_plot(faces=2).grid
+    layer = plant_layers.plants(grid, colours.plain(len(grid)))
+    lonlat = plants_in(layer, faces=2).lonlat
+    first = np.flatnonzero(grid.vine == np.arange(len(grid)))
+    apart_m = np.hypot(
+        *(grid.frame.xy_m(lonlat[first]) - grid.frame.xy_m(lonlat[grid.twin[first]])).T
+    )
+    least_m = min(grid.plant_spacing_m, grid.row_spacing_m)
+    assert apart_m == pytest.approx(np.full(len(first), least_m / 2), abs=0.02)
+    towards = np.einsum("ij,ij->i", grid.frame.xy_m(lonlat) - grid.xy_m, grid.stop_m - grid.xy_m)
+    assert (towards > 0).all()
+    assert layer.tips["faces"] == "{number}, face {face}"
+    of = np.frombuffer(layer.arrays["places"], "<i4", len(grid), 48 + 16 * len(grid))
+    assert {*of[first]} == {1}
+    assert {*of[grid.twin[first]]} == {2}
+    (ring, _) = plant_layers.chosen(grid, 0)
+    assert ring.data[0]["p"] == pytest.approx(lonlat[0].tolist(), abs=1e-6)
+    route = chosen(a_plot(faces=2)).plan().route
+    places = [one["p"] for one in labels.stops(route) if one["k"] == "stop"]
+    assert places == pytest.approx(lonlat[route.plant], abs=1e-6)
 
 
 def test_a_million_plants_keep_their_places_to_the_centimetre():

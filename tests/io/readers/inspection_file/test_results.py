@@ -36,7 +36,9 @@ def test_results_are_read_in_many_spellings(word, result):
 
 
 def test_a_decimal_comma_alone_is_a_number():
-    assert read(plant=[7, 8], found=["0,5", "0,0"]).result.tolist() == [PRESENT, ABSENT]
+    seen = read(plant=[7, 8], found=["0,5", "0,0"])
+    assert seen.result.tolist() == [PRESENT, ABSENT]
+    assert "such as '0,5' are taken as finds" in sentences(seen)
 
 
 @pytest.mark.parametrize("blank", ["", "  ", "NA", "?", "nan", "-", None])

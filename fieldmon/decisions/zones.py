@@ -332,13 +332,21 @@ def outlines(grid: PlantGrid, zones: Zones) -> list[shapely.MultiPolygon]:
     slits remain where measured plants stand a little wider apart.
     """
     grounds = [_ground_of(grid, zones.zone == k) for k in range(len(zones))]
-    return [grid.frame.geometry_lonlat(one) for one in without_slits(grounds)]
+    return [_lonlat(grid, one) for one in without_slits(grounds)]
 
 
 def outline_of(grid: PlantGrid, plants: NDArray[np.bool_]) -> shapely.MultiPolygon:
     """Return the area, lon/lat, that some plants ``(n,)`` fill, as `outlines` has it."""
     (ground,) = without_slits([_ground_of(grid, plants)])
-    return grid.frame.geometry_lonlat(ground)
+    return _lonlat(grid, ground)
+
+
+def _lonlat(grid: PlantGrid, ground: shapely.MultiPolygon) -> shapely.MultiPolygon:
+    """Return ground in degrees: edges that nearly meet in metres may cross there."""
+    area = grid.frame.geometry_lonlat(ground)
+    if area.is_valid:
+        return area
+    return polygons_of(shapely.make_valid(area, method="structure", keep_collapsed=False))
 
 
 def _ground_of(grid: PlantGrid, plants: NDArray[np.bool_]) -> shapely.MultiPolygon:

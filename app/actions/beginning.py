@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -22,6 +21,7 @@ from ..state import (
     plot_files,
     plot_source,
     seasons_folder,
+    shared_plots,
     widget_memory,
     work_day,
 )
@@ -101,13 +101,8 @@ def _named(choices: Choices) -> str:
 
 def _proposed(choices: Choices) -> str:
     """Return what a season is called unless somebody says otherwise: a name that none has yet."""
-    name = f"{choices.plot.field.name} {choices.on.year}"
-    if choices.season is not None:
-        return name
-    with suppress(SettingError):  # a name that no file can have is refused when it is used
-        seasons_folder.path_of(name)
-        return seasons_folder.path_of(seasons_folder.free_name(name)).stem
-    return name
+    name = seasons_folder.plain_name(choices.plot.field.name, f" {choices.on.year}")
+    return name if choices.season is not None else seasons_folder.free_name(name)
 
 
 def _name_box(choices: Choices) -> str:
@@ -143,8 +138,9 @@ def begin(choices: Choices) -> str:
     plot_source.open_season(name)
     if choices.on != choices.clock.today():
         work_day.choose(name, choices.on)  # what is shown stays what it was
-    left_out = map(language.in_words, chosen_day.messages_on_records(choices))
-    return "\n- ".join([texts.BEGUN.format(name=texts.isolated(name), path=path), *left_out])
+    more = (*chosen_day.messages_on_records(choices), *shared_plots.of_one_plot([name]))
+    begun = texts.BEGUN.format(name=texts.isolated(name), path=path)
+    return "\n- ".join([begun, *map(language.in_words, more)])
 
 
 def another(choices: Choices) -> None:

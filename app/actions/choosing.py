@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import timedelta
+from datetime import date, timedelta
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -46,7 +46,6 @@ from .changing_strategy import Work
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from datetime import date
 
     from streamlit.delta_generator import DeltaGenerator
 
@@ -145,6 +144,9 @@ def _of_files() -> dict[str, str]:
     return {plot_source.SAMPLE: texts.SAMPLE, plot_source.FILES: texts.UPLOAD}
 
 
+# the box would keep showing a day that it refuses, and the page another: it takes all
+_ANY_DAY = date(1900, 1, 1), date(2999, 12, 31)
+
 # -- a season
 
 
@@ -214,8 +216,9 @@ def _day(source: str, calendar: Calendar, clock: LocalClock) -> date:
     key = work_day.BOX.format(source=source)
     day = st.session_state[key] = work_day.of(source, calendar)
     zone = clock.zone or texts.ZONE_OF_MACHINE
+    first, last = _ANY_DAY if calendar.first else (None, None)
     st.date_input(
-        texts.DATE, day, calendar.first, calendar.last, key=key,
+        texts.DATE, day, first, last, key=key,
         format=chosen_units.units().date_format, help=texts.DATE_HELP.format(zone=zone),
         label_visibility="collapsed",
         on_change=_choose_day, args=(source, key, calendar),
@@ -226,6 +229,11 @@ def _day(source: str, calendar: Calendar, clock: LocalClock) -> date:
 
 def _choose_day(source: str, key: str, calendar: Calendar) -> None:
     day = st.session_state[key]
+    if day is not None and (near := calendar.within(day)) != day:
+        said = {"first": calendar.first, "last": calendar.last, "day": day}
+        written = {name: chosen_units.units().day(one) for name, one in said.items() if one}
+        notices.keep("warning", texts.DAY_OUTSIDE.format(**written))
+        day = near
     if day is None or day == calendar.today:
         work_day.back_to_today(source)
     else:

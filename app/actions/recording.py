@@ -59,7 +59,6 @@ def show(choices: Choices) -> None:
     """Show the ways of recording, and of noting a treatment."""
     fresh_boxes.turn(choices)
     st.markdown(f"**{texts.RECORD} · {choices.units.said_day(choices.day)}**")
-    st.caption(texts.RECORD_NOTE)
     moved = st.container()
     ask_about_contradictions(choices)
     one, route, file, treat = st.tabs(
@@ -75,6 +74,8 @@ def show(choices: Choices) -> None:
         treating.show(choices)
     if fresh_boxes.hold_of_another_day(choices):
         moved.info(texts.MOVED_HERE.format(day=choices.units.said_day(choices.day)))
+    # below: on a phone what is filled in has the first screen
+    st.caption(texts.RECORD_NOTE)
     kept_files.sync()  # marks are known once their table is shown
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import zipfile
+from contextlib import nullcontext
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -11,15 +13,17 @@ import streamlit as st
 from streamlit.delta_generator import DeltaGenerator
 
 from fieldmon.io.writers.geojson import route_geojson
-from fieldmon.monitoring.estate_routes import PLAN_TABLE, plan_table, stems
+from fieldmon.monitoring.estate_routes import PLAN_TABLE, PlotLeftOut, plan_table, stems
 
 from ..state import shared_plots, widget_memory
 from ..state.shared_plots import EstateCrew, SharedPlots
 from ..words import texts
-from ..words.language import about, listed, number
+from ..words.language import about, in_words, listed, number
 
 if TYPE_CHECKING:
-    from ..state.estate import PlotState
+    from collections.abc import Iterable, Sequence
+
+    from ..state.estate import NotAmong, PlotState
 
 _ON = "plan all"
 # more names than these are a wall of words
@@ -46,13 +50,20 @@ def show_button(plots: list[PlotState]) -> None:
                   on_click=_set, args=(True,))  # fmt: skip
 
 
-def show(plots: list[PlotState]) -> SharedPlots:
-    """Show who works and what comes of it; return the plan."""
+def show(plots: list[PlotState], not_among: Iterable[NotAmong] = ()) -> SharedPlots:
+    """Show who works and what comes of it; return the plan.
+
+    `not_among` cannot be opened: the page says why, and the table too.
+    """
     crew = _crew(shared_plots.usual_crew(plots))
     also = widget_memory.show(st.checkbox, texts.PLAN_ALL_ALSO, key="crew_also", default=False)
     wanted = plots if also else shared_plots.due(plots)
+    lately = [] if also else shared_plots.not_due(plots)
+    for said in shared_plots.of_one_plot([one.source for one in plots if one.number is None]):
+        st.warning(in_words(said))
     if not wanted:
         st.info(texts.PLAN_ALL_NONE)
+        _say_left_out(lately)
         return SharedPlots(())
     if not crew.members():
         st.info(texts.PLAN_ALL_NOBODY)
@@ -63,7 +74,8 @@ def show(plots: list[PlotState]) -> SharedPlots:
             wanted, crew, lambda k, n: bar.progress(k / n, texts.PLAN_ALL_WORKING)
         )
         st.empty()
-    _say(made)
+    made = replace(made, left_out=(*made.left_out, *lately))
+    _say(made, [PlotLeftOut(one.name, one.said) for one in not_among])
     return made
 
 
@@ -82,7 +94,7 @@ def _crew(usual: EstateCrew) -> EstateCrew:
     )
 
 
-def _say(made: SharedPlots) -> None:
+def _say(made: SharedPlots, not_among: Sequence[PlotLeftOut] = ()) -> None:
     routes = [one.route for one in made.turns]
     plants = sum(len(route) for route in routes)
     finds = sum(route.expected_found for route in routes)
@@ -94,11 +106,7 @@ def _say(made: SharedPlots) -> None:
         )
         st.markdown(lead)
     st.caption(texts.PLAN_ALL_RULE)
-    if made.waiting:
-        names = listed(texts.isolated(one.name) for one in made.waiting)
-        many = texts.PLAN_ALL_WAITING_MANY.format(n=len(made.waiting))
-        said = texts.PLAN_ALL_WAITING.format(names=names)
-        st.markdown(many if len(made.waiting) > _MOST_NAMED else said)
+    _say_left_out(made.left_out)
     if made.free:
         many = texts.PLAN_ALL_FREE_MANY.format(n=len(made.free), all=made.n_members)
         said = texts.PLAN_ALL_FREE.format(names=listed(made.free))
@@ -108,23 +116,35 @@ def _say(made: SharedPlots) -> None:
     for plot, members in made.teams:
         team = listed(texts.isolated(name) for name in members)
         st.markdown(texts.PLAN_ALL_TEAM.format(plot=texts.isolated(plot), names=team))
-    for problem in (*made.closed, *made.problems):
+    problems = (f"{texts.isolated(one.plot)}: {one.why}" for one in made.problems)
+    for problem in (*made.closed, *problems):
         st.warning(problem)
     if made.turns:
-        st.download_button(texts.PLAN_ALL_DOWNLOAD, partial(packed, made), "routes.zip",
+        st.download_button(texts.PLAN_ALL_DOWNLOAD, partial(packed, made, not_among), "routes.zip",
                            "application/zip", key="plan_all_files", on_click="ignore")  # fmt: skip
 
 
-def packed(made: SharedPlots) -> bytes:
-    """Return the routes as GeoJSON, a file each, and a table of them."""
+def _say_left_out(plots: Sequence[PlotLeftOut]) -> None:
+    """Name plots to which nobody goes, a line a reason; very many in a fold."""
+    why = dict.fromkeys(one.why for one in plots)
+    is_many = len(plots) > _MOST_NAMED
+    with (
+        st.expander(texts.PLAN_ALL_LEFT_OUT_MANY.format(n=len(plots))) if is_many else nullcontext()
+    ):
+        for one in why:
+            names = listed(texts.isolated(each.plot) for each in plots if each.why == one)
+            st.markdown(texts.PLAN_ALL_LEFT_OUT.format(why=one, names=names))
+
+
+def packed(made: SharedPlots, not_among: Iterable[PlotLeftOut] = ()) -> bytes:
+    """Return the routes as GeoJSON, a file each, and a table of them and of what is left out."""
     out = io.BytesIO()
     files = {f"{stem}.geojson": one for stem, one in stems(made.turns).items()}
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         for file, one in files.items():
             archive.writestr(file, route_geojson(one.route, one.notes))
-        archive.writestr(
-            PLAN_TABLE, plan_table(files, {one.name: () for one in made.waiting}, made.free)
-        )
+        left_out = (*made.left_out, *made.problems, *not_among)
+        archive.writestr(PLAN_TABLE, plan_table(files, left_out, made.free))
     return out.getvalue()
 
 

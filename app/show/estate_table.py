@@ -25,14 +25,16 @@ if TYPE_CHECKING:
     from ..state.shared_plots import PlannedTurn
 
     Column = Sequence[str | float | None]
-    #: columns by their names, and how they are written
-    Columns = tuple[dict[str, Column], dict[str, ColumnConfig]]
+    #: columns by their names, how wide they are, and how they are written
+    Columns = tuple[dict[str, Column], list[int], dict[str, ColumnConfig]]
 
-# as wide together as the panel of a narrow phone: a number that is cut is another number
-_PX = {"name": 100, "area": 60, "days_since": 56, "expected": 80}
-_PLANNED_PX = {"name": 84, "who": 66, "when": 92, "finds": 56}
-# letters of a name that have room: files number the plots of one name at its end
-_LETTERS = 13
+# all columns together, in the panel of a narrow phone: a number that is cut is another number
+_ROOM_PX = 300
+# of what is left, names have all
+_PX = {"area": 56, "days_since": 46, "expected": 80}
+_PLANNED_PX = {"who": 66, "when": 92, "finds": 56}
+# letters of a name that have room at least, and how wide one is, and what lies beside them
+_LETTERS, _LETTER_PX, _BESIDE_PX = 13, 6.3, 16
 _LETTERS_OF_WHO = 8
 
 
@@ -40,10 +42,12 @@ def of(
     plots: list[PlotState], turns: tuple[PlannedTurn, ...] = ()
 ) -> tuple[pd.DataFrame, dict[str, ColumnConfig]]:
     """Return the table, a row a plot in their order, and how its columns are written."""
-    name, px = texts.PLOTS_COLUMNS["name"], (_PLANNED_PX if turns else _PX)["name"]
-    columns, how = _planned(plots, turns) if turns else _states(plots)
+    name = texts.PLOTS_COLUMNS["name"]
+    columns, widths, how = _planned(plots, turns) if turns else _states(plots)
+    px = _ROOM_PX - sum(widths)
+    letters = max(_LETTERS, int((px - _BESIDE_PX) / _LETTER_PX) - 1)
     return (
-        pd.DataFrame({name: [shortened(plot.name) for plot in plots]} | columns),
+        pd.DataFrame({name: [shortened(plot.name, letters) for plot in plots]} | columns),
         {name: st.column_config.TextColumn(width=px)} | how,
     )
 
@@ -61,7 +65,7 @@ def _planned(plots: list[PlotState], turns: tuple[PlannedTurn, ...]) -> Columns:
     }
     how = {names[k]: column.TextColumn(width=_PLANNED_PX[k]) for k in ("who", "when")}
     finds = column.NumberColumn(format="localized", width=_PLANNED_PX["finds"])
-    return columns, how | {names["finds"]: finds}
+    return columns, [*_PLANNED_PX.values()], how | {names["finds"]: finds}
 
 
 def _who(name: str) -> str:
@@ -80,24 +84,31 @@ def _states(plots: list[PlotState]) -> Columns:
     number = partial(st.column_config.NumberColumn, format="localized")
     columns: dict[str, Column] = {area: _areas(plots)}
     how = {area: number(width=_PX["area"], help=texts.AREA_IS)}
-    if any(plot.expected is not None for plot in plots):
-        columns[names["days_since"]] = [plot.days_since for plot in plots]
-        columns[names["expected"]] = [_rounded(plot.expected) for plot in plots]
-        for k in ("days_since", "expected"):
+    widths = [_PX["area"]]
+    known: dict[str, Column] = {
+        "days_since": [plot.days_since for plot in plots],
+        "expected": [_rounded(plot.expected) for plot in plots],
+    }
+    for k, values in known.items():
+        if any(one is not None for one in values):
+            widths.append(_PX[k])
+            columns[names[k]] = values
             how[names[k]] = number(width=_PX[k], help=texts.PLOTS_HELP[k])
-    return columns, how
+    return columns, widths, how
 
 
-def shortened(name: str) -> str:
+def shortened(name: str, letters: int = _LETTERS) -> str:
     """Return a name with its middle left out if it is long: what tells it apart is at its ends.
+
+    Files number the plots of one name at its end.
 
     Examples
     --------
     >>> shortened("apricot_orchards_north (12)"), shortened("Gate 2026")
     ('aprico…h (12)', 'Gate 2026')
     """
-    half = _LETTERS // 2
-    return name if len(name) <= _LETTERS + 1 else f"{name[:half]}…{name[-half:]}"
+    half = letters // 2
+    return name if len(name) <= letters + 1 else f"{name[:half]}…{name[-half:]}"
 
 
 def _areas(plots: list[PlotState]) -> list[float]:

@@ -67,10 +67,14 @@ class PlotState:
 
 @dataclass(frozen=True)
 class NotAmong:
-    """A plot that cannot be shown among the others: why; the season's name if another holds it."""
+    """A plot that cannot be shown among the others: why; the season's name if another holds it.
+
+    And its name; empty: that of a file, which the sentence says.
+    """
 
     said: str
     held: str = ""
+    name: str = ""
 
 
 def plots() -> tuple[list[PlotState], list[NotAmong]]:
@@ -86,7 +90,7 @@ def plots() -> tuple[list[PlotState], list[NotAmong]]:
             said = of_error(error)
             said = said if name in said else f"{name}: {said}"
             problems.append(
-                NotAmong(said, name if isinstance(error, season_held.SeasonHeld) else "")
+                NotAmong(said, name if isinstance(error, season_held.SeasonHeld) else "", name)
             )
     files = plot_files.of_session()
     if files is not None and files.plot is not None:

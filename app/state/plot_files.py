@@ -158,7 +158,9 @@ def outline(files: Files, which: Which) -> Outline:
         paths = cached_files.paths(sample_estate.FOLDER / sample_estate.PATHS)
         field = replace(field, paths=paths)
     said = messages_of(files.plot, read)
-    own = (one for one in said if one.message.feature in (None, field.name))
+    own = (
+        FileMessage(one.asked, message) for one in said for message in one.message.about(field.name)
+    )
     said = (*own, *heard, *drawn_there)
     return Outline(f"{key}{longer}", field, read.value, measured, said)
 

@@ -28,6 +28,8 @@ REMOVED = "removed"
 FOLDER = "FIELDMON_SEASONS"
 _ENDING = ".gpkg"
 _LONGEST = 80
+# a quotation mark within a Hebrew word, and signs around words
+_GERSHAYIM, _AROUND = re.compile('(?<=[א-ת])"(?=[א-ת])'), re.compile('["<>]')
 # what no name of a file may hold
 _NO_LETTERS = re.compile(r'[\\/:*?"<>|\x00-\x1f]')
 
@@ -117,13 +119,31 @@ def is_of_season(data: bytes) -> bool:
 
 def take_in(data: bytes, name: str) -> str:
     """Keep the file of a season, such as a backup; return its name, another if that is taken."""
-    plain = _NO_LETTERS.sub("-", name).strip(". ")[: _LONGEST - len(" (99)")] or "season"
+    plain = plain_name(name)
     free = _free(new_path(plain).parent, plain)
     with working_folder() as here:
         copy = Path(here) / f"copy{_ENDING}"
         copy.write_bytes(data)
         Store(copy).back_up(free)
     return free.stem
+
+
+def plain_name(name: str, behind: str = "") -> str:
+    """Return a name that a season can have, and what stands `behind` it, from any other.
+
+    Gershayim stay what they are; other quotation marks and brackets go, and signs between words
+    are dashes.
+
+    Examples
+    --------
+    >>> plain_name('חב"ל ב/3 "ליד"', " 2026")
+    'חב״ל ב-3 ליד 2026'
+    """
+    plain = _GERSHAYIM.sub("\N{HEBREW PUNCTUATION GERSHAYIM}", name)
+    plain = _NO_LETTERS.sub("-", _AROUND.sub("", plain))
+    plain = " ".join(plain.split()).strip(". ")
+    plain = plain[: _LONGEST - len(f"{behind} (99)")].rstrip(". ")
+    return f"{plain or 'season'}{behind}"
 
 
 def free_name(name: str, where: Path | None = None) -> str:

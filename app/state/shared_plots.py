@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
-from fieldmon.monitoring import estate_day
+from fieldmon.monitoring import estate_day, season_copies
 from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.estate_day import EstatePlot
-from fieldmon.monitoring.estate_routes import EstateRoute, NamedPlot, walked
+from fieldmon.monitoring.estate_routes import EstateRoute, NamedPlot, PlotLeftOut, walked
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.plot.local_clock import local_clock
@@ -35,6 +35,7 @@ from .chosen_day import STARTS
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.estate_day import EstateTurn
     from fieldmon.planning.plan import DayPlan
 
@@ -75,7 +76,7 @@ class PlannedTurn(EstateRoute):
 
 @dataclass(frozen=True, eq=False)
 class SharedPlots:
-    """The plan: its turns, plots for which there is no time, and plots that cannot be planned.
+    """The plan: its turns, plots to which nobody goes, and plots that cannot be planned.
 
     And what is left off as people may not be there yet, who has no plot, of how many, whether the
     plots have robots of several kinds, so that the usual one is taken, and who works in plots with
@@ -83,8 +84,8 @@ class SharedPlots:
     """
 
     turns: tuple[PlannedTurn, ...]
-    waiting: tuple[PlotState, ...] = ()
-    problems: tuple[str, ...] = ()
+    left_out: tuple[PlotLeftOut, ...] = ()
+    problems: tuple[PlotLeftOut, ...] = ()
     closed: tuple[str, ...] = ()
     free: tuple[str, ...] = ()
     n_members: int = 0
@@ -134,6 +135,29 @@ def due(plots: Iterable[PlotState]) -> list[PlotState]:
     return [some[k] for k in estate_day.due([one.days_since for one in some])]
 
 
+def not_due(plots: Iterable[PlotState]) -> list[PlotLeftOut]:
+    """Return the plots that are seen too lately to be planned."""
+    some = [*plots]
+    wanted = {id(one) for one in due(some)}
+    return [
+        PlotLeftOut(one.name, in_words(estate_day.not_due(one.days_since or 0)))
+        for one in some
+        if id(one) not in wanted
+    ]
+
+
+def of_one_plot(names: Iterable[str]) -> tuple[Worded, ...]:
+    """Return a sentence on each plot of several seasons here, if one of these is among them."""
+    seasons, wanted, own = [], {*names}, set[str]()
+    for name in seasons_folder.names() if wanted else ():
+        with suppress(FieldmonError):  # what cannot be opened is said where it is to be
+            season = cached.season(seasons_folder.path_of(name))
+            seasons.append(season)
+            own |= {season.planting} if name in wanted else set()
+    among = [one for one in seasons if one.planting in own]
+    return season_copies.of_one_plot(among, texts.isolated)
+
+
 def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> SharedPlots:
     """Return the plan of these plots for a crew."""
     ready, problems = [], []
@@ -142,7 +166,7 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
         try:
             ready.append(_ready(plot))
         except FieldmonError as error:
-            problems.append(f"{texts.isolated(plot.name)}: {of_error(error)}")
+            problems.append(PlotLeftOut(plot.name, of_error(error)))
     known = [one.known for one in ready]
     seasons = [one.season for one in known if one.season is not None]
     # plots of files have the usual robot
@@ -161,7 +185,7 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
             PlannedTurn(**vars(route), state=ready[turn.plot].plot, number=turn.who)
             for turn, route in made.turns
         ),
-        tuple(ready[k].plot for k in made.waiting),
+        made.left_out,
         tuple(problems),
         tuple(
             f"{texts.isolated(one.plot.name)}: {sentence}"

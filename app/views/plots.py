@@ -30,7 +30,7 @@ def show() -> None:
     held = [problem.held for problem in problems if problem.held]
     if held:
         st.fragment(_watch, run_every=estate.LOOK_AGAIN_S)(held)
-    turns = sharing_plots.show(plots).turns if sharing_plots.is_on() else ()
+    turns = sharing_plots.show(plots, problems).turns if sharing_plots.is_on() else ()
     # those with work come first
     planned = {id(turn.state) for turn in turns}
     plots = sorted(plots, key=lambda one: id(one) not in planned) if planned else plots

@@ -46,7 +46,7 @@ SAMPLE_NOTE = (
     "{day}."
 )
 PLOT_FROM = "Plot or season"
-PLOT_FILE = "Plot: zipped shapefile, {formats}"
+PLOT_FILE = "Plot: zipped shapefile, {formats}, ISOXML ..."
 RECORD_FILE = "Pest records: CSV, Excel, GeoJSON ... (optional)"
 PLANT_FILE = "Measured plant positions (optional)"
 ROWS_FILE = "Rows as lines, or their end posts (optional)"
@@ -112,6 +112,10 @@ DATE = "Day"
 DATE_HELP = "Today by the clock of {zone}, unless you choose another day."
 ZONE_OF_MACHINE = "this computer, since no time zone is known where the plot lies"
 OTHER_DAY = "This page is about **{day}**, which is not today ({today})."
+DAY_OUTSIDE = (
+    "A day of the season must be from {first}, when it begins, to {last}, but {day} was chosen. "
+    "This is about the nearest."
+)
 OTHER_DAY_RECORDED = "What you record here is recorded for {day}, unless a file names its day."
 NOT_COME = (
     "Something is recorded of **{day}**, which has not come: it is {today}. No day before counts "
@@ -429,7 +433,7 @@ PLOTS_STATES = {
 }  # fmt: skip
 PLOTS_TIP = "{name}: {expected} infested expected, {seen}"
 PLOTS_TIP_NEW = "{name}: no season yet"
-PLOTS_SEEN = {0: "seen today", None: "never seen", "begun": "begun, less than half of a plan done",
+PLOTS_SEEN = {0: "seen today", None: "never seen", "begun": "begun, less than half a day done",
               "n": Plural("seen {n} day ago", "seen {n} days ago")}  # fmt: skip
 PLOTS_PICK = "Click a plot on the map, or a row here."
 PLAN_ALL = "Plan all that are due"
@@ -453,10 +457,8 @@ PLAN_ALL_RULE = (
     "that would get less than a quarter of an hour waits. From plot to plot takes so many minutes, "
     "wherever they lie."
 )
-PLAN_ALL_WAITING = "No time today: {names}."
-PLAN_ALL_WAITING_MANY = (
-    "No time today for {n} plots: those of the table beside which nobody stands."
-)
+PLAN_ALL_LEFT_OUT = "Left out ({why}): {names}."
+PLAN_ALL_LEFT_OUT_MANY = "Left out: {n} plots"
 PLAN_ALL_FREE = "Free today: {names}."
 PLAN_ALL_FREE_MANY = "Free today: {n} of {all}."
 PLAN_ALL_KINDS = "The plots have robots of several kinds: here all are of the usual one."

@@ -37,6 +37,7 @@ def opened(files: Iterable[Path]) -> list[Season]:
     where two seasons are of one plot.
     """
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.season_copies import of_one_plot
 
     seasons = [Season(file) for file in files]
     for one, other in combinations(seasons, 2):
@@ -45,8 +46,8 @@ def opened(files: Iterable[Path]) -> list[Season]:
                 f"Each season must be given once, but {one.path} and {other.path} are the same or "
                 f"copies of one: what both hold would stand there twice. {_instead(one, other)}"
             )
-        if one.is_of_one_plot(other.path):
-            _tell_of_one_plot(one, other)
+    for said in of_one_plot(seasons):
+        typer.echo(f"seen: {said}", err=True)
     return seasons
 
 
@@ -59,19 +60,6 @@ def _instead(one: Season, other: Season) -> str:
         )
     pasted = shlex.join([str(one.path), str(other.path)])
     return f"Leave one away, or bring them together first: fieldmon merge {pasted}"
-
-
-def _tell_of_one_plot(one: Season, other: Season) -> None:
-    named = [
-        season.path.stem if pest is None else f"{season.path.stem} ({pest.name})"
-        for season in (one, other)
-        for pest in [season.settings.pest]
-    ]
-    typer.echo(
-        f"seen: {named[0]} and {named[1]} are two seasons of one plot: each counts. "
-        "If somebody began one of them a second time, leave it away.",
-        err=True,
-    )
 
 
 def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:

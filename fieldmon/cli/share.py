@@ -24,12 +24,12 @@ from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
     from datetime import date, time
 
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn
-    from fieldmon.monitoring.estate_routes import EstateRoutes, NamedPlot
+    from fieldmon.monitoring.estate_routes import EstateRoutes, NamedPlot, PlotLeftOut
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.plan import DayPlan
 
@@ -85,7 +85,9 @@ def share(options: ShareOptions) -> None:
     """
     endings = _endings(options.formats or ["geojson"])
     seasons = opened(options.seasons)
-    due = [*_due(seasons, day(options.on), every=options.not_due)]
+    due, left_out = _due(seasons, day(options.on), every=options.not_due)
+    for one in left_out:
+        _tell_left_out(one)
     if not due:
         raise SettingError(
             "At least one season must have begun and be due, so inspected three days ago or never, "
@@ -96,6 +98,9 @@ def share(options: ShareOptions) -> None:
     members, starts = _members(options, [season for season, _ in due])
     plots = [_named(season, plot) for season, plot in due]
     made = _planned(plots, members, starts, 60.0 * options.move)
+    for one in made.left_out:
+        _tell_left_out(one)
+    made = replace(made, left_out=(*made.left_out, *left_out))
     if len(due) > 1:
         move = f"{options.move:g} minute{'' if options.move == 1 else 's'}"
         typer.echo(f"From plot to plot takes {move}, wherever they lie (--move).")
@@ -175,30 +180,32 @@ def _name(season: Season) -> str:
 
 def _due(
     seasons: Sequence[Season], told: date | None, *, every: bool
-) -> Iterator[tuple[Season, EstatePlot]]:
-    """Yield the seasons that share the day, with their plots; say which are left out."""
-    from fieldmon.monitoring.estate_day import EstatePlot, days_since, due
+) -> tuple[list[tuple[Season, EstatePlot]], list[PlotLeftOut]]:
+    """Return the seasons that share the day, with their plots; and those that are left out."""
+    from fieldmon.monitoring.estate_day import EstatePlot, days_since, due, not_due
+    from fieldmon.monitoring.estate_routes import PlotLeftOut
 
-    begun = []
+    begun, left_out = [], list[PlotLeftOut]()
     for season in seasons:
         tell_drafts(season.drafts)
         on = day_on(season.plot.field, told)
         if on < season.settings.begins:
-            typer.echo(
-                f"seen: {_name(season)} begins on {season.settings.begins} and is left out.",
-                err=True,
-            )
+            left_out.append(PlotLeftOut(_name(season), f"begins on {season.settings.begins}"))
         else:
             begun.append((season, on))
     since = [days_since(season, on) for season, on in begun]
     wanted = range(len(begun)) if every else due(since)
+    shared = []
     for k, (season, on) in enumerate(begun):
         if k in wanted:
-            yield season, EstatePlot.of(season, on)
+            shared.append((season, EstatePlot.of(season, on)))
         else:
-            days = since[k] or 0
-            ago = f"{counted(days, 'day')} ago" if days else "today"
-            typer.echo(f"{_name(season)} was inspected {ago} and is not due.")
+            left_out.append(PlotLeftOut(_name(season), not_due(since[k] or 0)))
+    return shared, left_out
+
+
+def _tell_left_out(one: PlotLeftOut) -> None:
+    typer.echo(f"Left out: {one.plot} ({one.why}).")
 
 
 def _assumed(season: Season, members: tuple[TeamMember, ...]) -> str:
@@ -214,7 +221,7 @@ def _named(season: Season, plot: EstatePlot) -> NamedPlot:
 def _planned(
     plots: Sequence[NamedPlot], members: Sequence[TeamMember], starts: time, move_s: float
 ) -> EstateRoutes:
-    """Return what comes of the day; say the routes, what is left off, what waits, who is free."""
+    """Return what comes of the day; say the routes, what is left off, and who is free."""
     from fieldmon.monitoring.estate_day import share_estate
     from fieldmon.monitoring.estate_routes import walked
 
@@ -232,8 +239,6 @@ def _planned(
     for plot, sentences in zip(plots, made.closed, strict=True):
         for sentence in sentences:
             typer.echo(f"seen: {plot.name}: {sentence}", err=True)
-    if made.waiting:
-        typer.echo(f"No time for {', '.join(plots[k].name for k in made.waiting)}.")
     if made.free:
         typer.echo(f"Without a plot: {', '.join(made.free)}.")
     return made
@@ -256,8 +261,7 @@ def _write(
         paths = [write_route(route, folder / f"{stem}{end}", of) for end in endings]
         written = [path for some in paths for path in some]
         files[" ".join(dict.fromkeys(path.name for path in written))] = one
-    nobody = {plots[k].name: made.closed[k] for k in made.nobody}
-    write_whole(folder / PLAN_TABLE, plan_table(files, nobody, made.free))
+    write_whole(folder / PLAN_TABLE, plan_table(files, made.left_out, made.free))
     plants = sum(len(one.route) for one in routes)
     typer.echo(
         f"{counted(len(routes), 'plot')}, {counted(plants, 'plant')}. Routes and {PLAN_TABLE} in "

@@ -32,10 +32,12 @@ def distance_figure(metres: float) -> Worded:
     --------
     >>> distance_figure(2.53), distance_figure(111.32), distance_figure(11132.0)
     ('2.5 m', '111 m', '11.13 km')
+    >>> distance_figure(2668.4), distance_figure(123456.0)
+    ('2.67 km', '123 km')
     """
     if metres < 1000:
         return in_unit(metres, ".2g" if metres < 10 else ".0f", "m")
-    return in_unit(metres / 1000, ".4g" if metres < 1e6 else ".0f", "km")
+    return in_unit(metres / 1000, ".2f" if metres < 1e5 else ".0f", "km")
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from fieldmon.compute.wording import counted, estimate, share_figure, worded
 from fieldmon.decisions.rings import best_rings, rings_bound
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.switching import strips_of, switch
+from fieldmon.plot.polygons import polygons_of, without_slits
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -327,13 +328,29 @@ def ground_m2(grid: PlantGrid, plants: NDArray[np.bool_]) -> float:
 def outlines(grid: PlantGrid, zones: Zones) -> list[shapely.MultiPolygon]:
     """Return the area of each zone, lon/lat, that the plants of its rows fill.
 
-    Each plant stands for the ground half a spacing around it; touching grounds are one.
+    Each plant stands for the ground half a spacing around it; touching grounds are one, and no
+    slits remain where measured plants stand a little wider apart.
     """
-    return [outline_of(grid, zones.zone == k) for k in range(len(zones))]
+    grounds = [_ground_of(grid, zones.zone == k) for k in range(len(zones))]
+    return [_lonlat(grid, one) for one in without_slits(grounds)]
 
 
 def outline_of(grid: PlantGrid, plants: NDArray[np.bool_]) -> shapely.MultiPolygon:
-    """Return the area, lon/lat, that some plants ``(n,)`` fill, each half a spacing around it."""
+    """Return the area, lon/lat, that some plants ``(n,)`` fill, as `outlines` has it."""
+    (ground,) = without_slits([_ground_of(grid, plants)])
+    return _lonlat(grid, ground)
+
+
+def _lonlat(grid: PlantGrid, ground: shapely.MultiPolygon) -> shapely.MultiPolygon:
+    """Return ground in degrees: edges that nearly meet in metres may cross there."""
+    area = grid.frame.geometry_lonlat(ground)
+    if area.is_valid:
+        return area
+    return polygons_of(shapely.make_valid(area, method="structure", keep_collapsed=False))
+
+
+def _ground_of(grid: PlantGrid, plants: NDArray[np.bool_]) -> shapely.MultiPolygon:
+    """Return the ground of some plants ``(n,)``, metres of the grid's frame, with its slits."""
     half_m = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2 * 1.001
     x, y = grid.xy_m[plants].T
     order = np.lexsort((x, y))
@@ -349,8 +366,4 @@ def outline_of(grid: PlantGrid, plants: NDArray[np.bool_]) -> shapely.MultiPolyg
     cells = shapely.box(
         x[first] - half_m[0], y[first] - half_m[1], x[last] + half_m[0], y[first] + half_m[1]
     )
-    whole = shapely.union_all(cells)
-    outline: shapely.MultiPolygon = grid.frame.geometry_lonlat(
-        shapely.MultiPolygon(list(shapely.get_parts(whole)))
-    )
-    return outline
+    return polygons_of(shapely.union_all(cells))

@@ -11,7 +11,7 @@ values that can be chosen for it, the likeliest first:
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TYPE_CHECKING, Generic, TypeVar
 
@@ -93,6 +93,8 @@ class ImportMessage:
         What to choose if the import got it wrong; None where there is nothing to choose.
     many
         What to say where the same holds for ``{n}`` features; empty where it holds for one only.
+    each
+        The same of each feature by itself, where it is about several.
     """
 
     severity: Severity
@@ -100,9 +102,16 @@ class ImportMessage:
     feature: str | None = None
     remedy: Remedy | None = None
     many: str = ""
+    each: tuple[ImportMessage, ...] = field(default=(), repr=False, compare=False)
 
     def __str__(self) -> str:
         return self.line()
+
+    def about(self, feature: str) -> tuple[ImportMessage, ...]:
+        """Return what it says of one feature and, unless it is about some, of the whole file."""
+        if self.each:
+            return tuple(one for one in self.each if one.feature == feature)
+        return (self,) if self.feature in {None, feature} else ()
 
     def line(self, flag: str = "") -> str:
         """Return the message in a line, its remedy behind the `flag` that takes it."""
@@ -156,7 +165,7 @@ def _as_one(same: list[ImportMessage]) -> ImportMessage:
         about=f"{first.feature}: " if first.feature else "",
         first=first.sentence,
     )
-    return replace(first, sentence=told, feature=None)
+    return replace(first, sentence=told, feature=None, each=tuple(same))
 
 
 @dataclass(frozen=True)

@@ -233,7 +233,8 @@ def lay(field: Field, choices: PlantingChoices | None = None) -> Laid:
         return Laid(plot_of(replace(field, in_rows=False)))
     given = choices.given()
     plot = plot_of(field, planting_of(field, **given))
-    return Laid(replace(_told(plot, given), assumed=assumed_of(field, choices)))
+    assumed = (*assumed_of(field, choices), *_of_one_row(plot, given))
+    return Laid(replace(_told(plot, given), assumed=assumed))
 
 
 def assumed_of(field: Field, choices: PlantingChoices) -> tuple[Assumed, ...]:
@@ -265,7 +266,18 @@ def lay_around(
         return Laid(Plot.among(name, measured.lonlat.copy(), sources.gate))
     plants = measured.lonlat.copy()
     plot = plot_around(name, plants, planting, sources.gate, measured.names)
-    return Laid(_told(plot, choices.given()))
+    given = choices.given()
+    return Laid(replace(_told(plot, given), assumed=_of_one_row(plot, given)))
+
+
+def _of_one_row(plot: Plot, given: dict[str, float]) -> tuple[Assumed, ...]:
+    """Return what is assumed of measured plants in one row: how far apart rows are, none tells."""
+    field, grid = plot.field, plot.grid
+    if field.plants is None or grid.n_lines > 1:
+        return ()
+    if "row_spacing_m" in given or field.row_spacing_m is not None:
+        return ()
+    return (Assumed("row_spacing_m", grid.row_spacing_m),)
 
 
 def _told(plot: Plot, given: dict[str, float]) -> Plot:

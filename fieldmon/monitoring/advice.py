@@ -281,8 +281,8 @@ class Advice:
         if above and self.verdict == LOOK_ON:
             return [
                 worded(
-                    "By these costs, spraying the zones today would save more than it costs. If "
-                    "the costs are yours, go by them, else inspect first."
+                    "If you cannot inspect any more today and the costs are yours, spray the "
+                    "zones: that would save more than it costs."
                 )
             ]
         return [

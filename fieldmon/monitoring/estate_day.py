@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import counted, worded
 from fieldmon.monitoring.closures import closed_plants, open_to_people
 from fieldmon.planning.plan import plan_in
 from fieldmon.planning.shared_day import MOVE_S, PlotNeed, share_day
@@ -19,8 +20,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.closures import Closure
+    from fieldmon.monitoring.settings import MonitoringSettings
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.shared_day import PlotTurn
@@ -29,7 +32,7 @@ if TYPE_CHECKING:
 
 #: a plot is due so many days after it was seen
 DUE_DAYS = 3
-# share of a day's plan with which a plot is seen (our choice)
+# share of a day's work with which a plot is seen (our choice)
 _SEEN = 0.5
 
 
@@ -122,21 +125,40 @@ class SharedEstate:
 def days_since(season: Season, on: date) -> int | None:
     """Return how many days before a day a season's plot was last seen; None: never.
 
-    A day on which less than half of the kept plan was done is none on which it was seen: it had
-    only begun.
+    It was on a day of which half of the kept plan was done, half of the hours are gone as its plan
+    reckons them, or half of the plants were inspected. Any other had only begun.
     """
-    dates = season.history.inspections.date
-    for seen in np.unique(dates[dates <= np.datetime64(on)])[::-1].tolist():
-        work = season.planned_and_done(seen)
-        if work is None or work.done >= work.planned * _SEEN:
-            return int((on - seen).days)
+    dates = season.inspections.date
+    for day in np.unique(dates[dates <= np.datetime64(on)])[::-1].tolist():
+        if _was_seen(season, day):
+            return int((on - day).days)
     return None
+
+
+def _was_seen(season: Season, on: date) -> bool:
+    kept = season.planned_and_done(on)
+    if kept is not None and kept.planned and kept.done >= kept.planned * _SEEN:
+        return True
+    plants = np.unique(season.inspections.on(on).plant)
+    if len(plants) >= len(season.plot.grid) * _SEEN:
+        return True
+    settings = season.planned_by(on)
+    hours_s = sum(one.day_s for one in _robots(settings))
+    left_s = sum(season.left_s(on, who=who) for who in _names(settings))
+    return hours_s - left_s >= hours_s * _SEEN
+
+
+def _names(settings: MonitoringSettings) -> list[str]:
+    return [one.name for one in settings.team] or [""]
+
+
+def _robots(settings: MonitoringSettings) -> list[Robot]:
+    return [one.robot for one in settings.team] or [settings.robot]
 
 
 def robots_of(season: Season) -> list[Robot]:
     """Return the robots with which a season works: each of its team, or its only one."""
-    settings = season.settings
-    return [one.robot for one in settings.team] or [settings.robot]
+    return _robots(season.settings)
 
 
 def one_robot(seasons: Iterable[Season]) -> Robot | None:
@@ -158,6 +180,19 @@ def due(days_since: Sequence[int | None]) -> list[int]:
     ([2, 3], [])
     """
     return [k for k, days in enumerate(days_since) if days is None or days >= DUE_DAYS]
+
+
+def not_due(days_since: int) -> Worded:
+    """Return why a plot that was seen so many days ago is left out of a day.
+
+    Examples
+    --------
+    >>> not_due(0), not_due(1)
+    ('inspected today, not due', 'inspected 1 day ago, not due')
+    """
+    if days_since == 0:
+        return worded("inspected today, not due")
+    return worded("inspected {days} ago, not due", days=counted(days_since, "day"))
 
 
 def share_estate(

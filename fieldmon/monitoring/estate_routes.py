@@ -5,10 +5,10 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.units import Units
+from fieldmon.compute.wording import worded
 from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.file_names import plain_name
@@ -25,10 +25,11 @@ if TYPE_CHECKING:
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
+    from fieldmon.samplers.base import Scene
 
 #: the table's file, beside the routes
 PLAN_TABLE = "plan.csv"
-_COLUMNS = ("file", "plot", "who", "from", "to", "plants", "finds_expected", "closed")
+_COLUMNS = ("file", "plot", "who", "from", "to", "plants", "finds_expected", "closed", "left_out")
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +78,15 @@ class NamedPlot:
     units: Units = field(default_factory=Units)
 
 
+@dataclass(frozen=True)
+class PlotLeftOut:
+    """A plot to which nobody goes that day: why, and sentences on what is closed there."""
+
+    plot: str
+    why: str
+    closed: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, eq=False)
 class EstateRoutes:
     """What comes of a shared day.
@@ -87,21 +97,16 @@ class EstateRoutes:
         Those with a stop or more, with their routes, in the order of who works.
     closed
         Of each plot, sentences on what is left off, as people may not be there.
-    nobody
-        Numbers of the plots to which nobody goes.
+    left_out
+        The plots to which nobody goes.
     free
         Names of those who have no plot.
     """
 
     turns: tuple[tuple[EstateTurn, EstateRoute], ...]
     closed: tuple[tuple[str, ...], ...]
-    nobody: tuple[int, ...]
+    left_out: tuple[PlotLeftOut, ...]
     free: tuple[str, ...]
-
-    @property
-    def waiting(self) -> tuple[int, ...]:
-        """Return the numbers of the plots to which nobody goes though nothing is closed there."""
-        return tuple(k for k in self.nobody if not self.closed[k])
 
 
 def walked(
@@ -136,9 +141,22 @@ def walked(
     there, busy = {turn.plot for turn, _ in turns}, {turn.who for turn, _ in turns}
     return EstateRoutes(
         tuple(turns), closed,
-        tuple(k for k in range(len(plots)) if k not in there),
+        tuple(
+            PlotLeftOut(one.name, said(_why(one.known.scene, closed[k])), closed[k])
+            for k, one in enumerate(plots)
+            if k not in there
+        ),
         tuple(one.name for k, one in enumerate(members) if k not in busy),
     )  # fmt: skip
+
+
+def _why(scene: Scene, closed: Sequence[str]) -> Worded:
+    """Return why nobody goes to a plot that shares a day."""
+    if closed:
+        return worded("closed to people")
+    if (scene.last_inspected == scene.day).all():
+        return worded("all of it was inspected today")
+    return worded("no time")
 
 
 def stems(routes: Iterable[EstateRoute]) -> dict[str, EstateRoute]:
@@ -148,7 +166,7 @@ def stems(routes: Iterable[EstateRoute]) -> dict[str, EstateRoute]:
 
 def plan_table(
     files: Mapping[str, EstateRoute],
-    waiting: Mapping[str, Sequence[str]] = MappingProxyType({}),
+    left_out: Iterable[PlotLeftOut] = (),
     free: Iterable[str] = (),
 ) -> bytes:
     """Return the table of an estate's day as CSV that a spreadsheet reads.
@@ -157,8 +175,8 @@ def plan_table(
     ----------
     files
         The routes by the names of their files; those of several formats apart by spaces.
-    waiting
-        Plots to which nobody goes, and sentences on what is closed there.
+    left_out
+        Plots to which nobody goes.
     free
         Names of those who have no plot.
     """
@@ -169,11 +187,11 @@ def plan_table(
         hours = (when.isoformat(timespec="seconds") for when in (one.begins, one.ends))
         finds = round(one.route.expected_found, 2)
         names, said = map(safe_cell, (one.plot, one.who)), safe_cell(" ".join(one.closed))
-        table.writerow((file, *names, *hours, len(one.route), finds, said))
+        table.writerow((file, *names, *hours, len(one.route), finds, said, ""))
     table.writerows(
-        ("", safe_cell(plot), *[""] * 5, safe_cell(" ".join(said)))
-        for plot, said in waiting.items()
+        ("", safe_cell(one.plot), *[""] * 5, *map(safe_cell, (" ".join(one.closed), one.why)))
+        for one in left_out
     )
-    table.writerows(("", "", safe_cell(who), *[""] * 5) for who in free)
+    table.writerows(("", "", safe_cell(who), *[""] * 6) for who in free)
     # the mark at the beginning tells a spreadsheet that names may be in any script
     return text.getvalue().encode("utf-8-sig")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.kinds import checked
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import cautions, label_table, scouts, season_log, treatments
 from fieldmon.monitoring.contradictions import contradictions
@@ -17,9 +19,10 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Sequence
+    from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.merging.merge import Merged, MergedCopy
     from fieldmon.monitoring.treatments import KeptTreatment
 
@@ -55,6 +58,12 @@ class SeasonCopies(OpenSeason):
         """Return whether the season in a file has the same rows and plants as this one."""
         with self.store.reading() as db, Store(file).reading() as theirs:
             return same_season.are_of_one_plot(db, theirs)
+
+    @cached_property
+    def planting(self) -> str:
+        """What stands for the rows and plants: other seasons of the plot have the same."""
+        with self.store.reading() as db:
+            return same_season.planting(db)
 
     def is_of_another_pest(self, file: Path) -> bool:
         """Return whether this and the season in a file name pests that differ."""
@@ -159,3 +168,27 @@ def _recorded_twice(counting: Sequence[KeptTreatment], taken: MergedCopy) -> lis
         cautions.same_plants_twice(by_number[one], by_number[other]) for one, other in taken.alike
     )
     return [one for one in said if one]
+
+
+def of_one_plot(
+    seasons: Iterable[SeasonCopies], named: Callable[[str], str] = str
+) -> tuple[Worded, ...]:
+    """Return a sentence on each plot of which there are several seasons; `named` writes a name."""
+    plots: dict[str, list[SeasonCopies]] = {}
+    for season in seasons:
+        plots.setdefault(season.planting, []).append(season)
+    return tuple(
+        worded(
+            "{names} and {last} are {n} seasons of one plot: each counts. If somebody began one of "
+            "them a second time, leave it away.",
+            names=joined(", ", names), last=last, n=len(same),
+        )
+        for same in plots.values()
+        if len(same) > 1
+        for *names, last in [[_with_pest(season, named) for season in same]]
+    )  # fmt: skip
+
+
+def _with_pest(season: SeasonCopies, named: Callable[[str], str]) -> str:
+    name, pest = named(season.path.stem), season.settings.pest
+    return name if pest is None else f"{name} ({pest.name})"

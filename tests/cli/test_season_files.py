@@ -56,7 +56,7 @@ def test_two_seasons_of_one_plot_begun_on_one_day_are_no_copies(run, season, tmp
                   ("report", "-o", "all.html", "--certification")):  # fmt: skip
         code, _, err, _ = run(words[0], season, flies, *words[1:])
         assert code == 0, err
-        assert "season and flies are two seasons of one plot: each" in err
+        assert "season and flies are 2 seasons of one plot: each" in err
     before = season.read_bytes()
     code, _, err, _ = run("merge", season, flies)
     assert code == 2
@@ -168,7 +168,7 @@ def test_a_copy_that_looks_for_another_pest_is_a_season_of_its_own_once_nothing_
     words = ("export", season, early, "-o", "all.csv", "--of", "inspections")
     code, _, err, _ = run(*words)
     assert code == 0, err
-    assert "are two seasons of one plot: each counts" in err
+    assert "are 2 seasons of one plot: each counts" in err
     code, _, err, _ = run("export", season, late, "-o", "b.csv", "--of", "inspections")
     assert code == 2
     assert "would stand there twice. They look for different pests by now: leave one away" in err

@@ -3,9 +3,12 @@
 import csv
 import json
 import shutil
+from datetime import date
 
+import numpy as np
 import pytest
 
+from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, MITES, ZIP, filled_in
 
@@ -56,28 +59,37 @@ def test_two_share_the_plots_by_a_table(run, seasons, tmp_path):
     assert "chance to find what is there 69 % (Ann)" in err
 
 
+def worked(file):
+    """Record that half of a season's plants were inspected on its first day."""
+    season = Season(file)
+    plants = np.arange((len(season.plot.grid) + 1) // 2)
+    season.record(Inspections.of(plants, np.full(len(plants), CLEAN), date.fromisoformat(BEGINS)))
+
+
 def test_what_was_just_seen_is_not_due(run, seasons, tmp_path):
     words = ("share", *seasons, "--hours", 1, "--move", 0)
-    (tmp_path / "finds.csv").write_text("row,plant,result\n1,1,clean\n")
-    assert run("record", seasons[0], "finds.csv", "--date", BEGINS)[0] == 0
+    worked(seasons[0])
     code, out, err, made = run(*words, "--date", NEXT)
     assert code == 0, err
-    assert "nursery was inspected 1 day ago and is not due." in out
+    assert "Left out: nursery (inspected 1 day ago, not due)." in out
     assert {path.name for path in made} == {f"day-{NEXT}", "01-bend.geojson", "plan.csv"}
+    left_out = {
+        row["plot"]: row["left_out"] for row in table(tmp_path / f"day-{NEXT}" / "plan.csv")
+    }
+    assert left_out == {"bend": "", "nursery": "inspected 1 day ago, not due"}
     code, _, err, _ = run(*words, "--date", NEXT, "--all", "-o", "both")
     assert code == 0, err
     assert len(table(tmp_path / "both" / "plan.csv")) == 2
 
 
 def test_where_no_plot_is_due_none_is_planned_and_the_way_out_is_said(run, seasons, tmp_path):
-    (tmp_path / "finds.csv").write_text("row,plant,result\n1,1,clean\n")
     for season in seasons:
-        assert run("record", season, "finds.csv", "--date", BEGINS)[0] == 0
+        worked(season)
     words = ("share", *seasons, "--hours", 1, "--date", NEXT)
     code, out, err, made = run(*words)
     assert code == 2
     for name in ("nursery", "bend"):
-        assert f"{name} was inspected 1 day ago and is not due." in out
+        assert f"Left out: {name} (inspected 1 day ago, not due)." in out
     assert "Plan those seen since with --all, or another day with --date." in err
     assert not made
     assert run(*words, "--all", "-o", "both")[0] == 0
@@ -159,7 +171,7 @@ def test_a_plot_without_time_and_who_has_none_are_said(run, seasons, tmp_path):
     code, out, err, _ = run("share", *seasons, "--date", BEGINS, "--hours", 0.3, "-o", "day")
     assert code == 0, err
     (waits,) = (row["plot"] for row in table(tmp_path / "day" / "plan.csv") if not row["file"])
-    assert f"No time for {waits}." in out
+    assert f"Left out: {waits} (no time)." in out
     code, out, err, _ = run("share", seasons[0], "--date", BEGINS, "--robots", 2, "-o", "day2")
     assert code == 0, err
     assert "Without a plot: robot-2." in out

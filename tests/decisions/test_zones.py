@@ -11,6 +11,8 @@ from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import Zones, best_zones, outline_of, outlines, ring_bound, whole_plot
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
+from fieldmon.plot.plot import plot_around
+from fieldmon.plot.projection import Frame
 from tests.bent import bent_grids
 from tests.crooked import crooked_grids
 
@@ -176,15 +178,32 @@ def test_where_nothing_is_worth_it_nothing_is_treated():
 
 
 @given(crooked_grids() | bent_grids(), st.data())
-def test_an_outline_is_all_the_squares_of_its_plants(grid, data):
+def test_an_outline_is_all_the_squares_of_its_plants_and_slits_between_them(grid, data):
     share = data.draw(st.sampled_from([0.0, 0.3, 0.8, 1.0]))
     plants = np.random.default_rng(len(grid)).random(len(grid)) < share
     half_m = np.array([grid.plant_spacing_m, grid.row_spacing_m]) / 2 * 1.001
     corners = np.hstack([grid.xy_m - half_m, grid.xy_m + half_m])[plants]
     squares = shapely.union_all(shapely.box(*corners.T))
     outline = outline_of(grid, plants)
-    metres = grid.frame.geometry_m(outline)
-    assert metres.symmetric_difference(squares).area < 1e-6 * max(squares.area, 1.0)
+    assert outline.is_valid
+    metres = shapely.make_valid(grid.frame.geometry_m(outline))
+    assert squares.difference(metres).area < 1e-6 * max(squares.area, 1.0)
+    slits = shapely.get_parts(metres.difference(squares.buffer(1e-6)))
+    assert all(shapely.buffer(one, -0.12).is_empty for one in slits)
+
+
+def test_plants_measured_a_little_apart_make_one_zone_without_slits():
+    """As on real vines, where no distance is the mean one: it was drawn as a maze."""
+    xy_m = np.stack(np.meshgrid(np.arange(12) * 1.4, np.arange(10) * 2.5), -1).reshape(-1, 2)
+    xy_m += np.random.default_rng(3).normal(0.0, 0.04, xy_m.shape)
+    plot = plot_around("Vines", Frame(5.0, 45.0).lonlat(xy_m))
+    n = len(plot.grid)
+    assert n == 120
+    zones = whole_plot(plot.grid, np.full(n, 0.9))
+    for area in (outline_of(plot.grid, np.ones(n, bool)), *outlines(plot.grid, zones)):
+        (part,) = plot.grid.frame.geometry_m(area).geoms
+        assert not part.interiors
+        assert part.length < 1.2 * part.convex_hull.length
 
 
 def test_outlines_hold_their_plants_and_no_other():

@@ -59,6 +59,16 @@ def test_what_nobody_said_is_assumed_and_said(parcels):
     assert prepare(one(ZIP, "Nursery")).assumed == ()
 
 
+def test_one_row_of_measured_plants_tells_of_no_row_spacing(tmp_path):
+    lines = [f"5.0,{45 + 1.8e-5 * k:.7f}" for k in range(12)]
+    (tmp_path / "vines.csv").write_text("\n".join(["lon,lat", *lines]))
+    sources = PlotSources(plants=tmp_path / "vines.csv")
+    made = prepare(PlotRequest(sources))
+    assert [str(a) for a in made.assumed] == ["guessed: row spacing 4 m"]
+    told = prepare(PlotRequest(sources, PlantingChoices(row_spacing_m=2.5)))
+    assert (told.assumed, told.plot.grid.row_spacing_m) == ((), 2.5)
+
+
 def test_what_is_said_by_hand_goes_before_what_the_file_states():
     choices = PlantingChoices(row_spacing_m=6.0, faces=2)
     stated = prepare(one(ZIP, "Nursery")).plot.grid

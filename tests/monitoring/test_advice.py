@@ -255,7 +255,7 @@ def test_each_verdict_has_its_sentence(season, m2, above, verdict, said):
         (LEAVE, [LEAVE, LEAVE], True, "The zones are below the threshold too."),
         (LEAVE, [LEAVE, LOOK_ON], True, "whatever the threshold says."),
         (LEAVE, [LEAVE, TREAT], True, ""), (TREAT, [LEAVE], True, ""), (LEAVE, [], True, ""),
-        (LOOK_ON, [TREAT], True, "go by them, else inspect first."),
+        (LOOK_ON, [TREAT], True, "If you cannot inspect any more today and the costs are yours"),
         (TREAT, [TREAT], False, "whatever the threshold says."), (LEAVE, [], False, ""),
     ],
 )  # fmt: skip

@@ -132,8 +132,9 @@ def test_who_starts_later_comes_later_and_meets_what_is_closed_then(seasons):
 def test_days_since_a_plant_was_seen_leave_out_what_comes_later(seasons):
     season = seasons[0]
     assert days_since(season, ON) is None
+    plants = np.arange(len(season.plot.grid) // 2 + 1)
     for day in (ON, ON + timedelta(days=4)):
-        season.record(Inspections.of(np.array([3]), np.array([CLEAN]), day), str(day))
+        season.record(Inspections.of(plants, np.full(len(plants), CLEAN), day), str(day))
     assert [days_since(season, ON + timedelta(days=k)) for k in (-1, 0, 3, 6)] == [None, 0, 3, 2]
 
 
@@ -144,4 +145,15 @@ def test_a_day_that_has_only_begun_is_none_on_which_a_plot_was_seen(seasons):
     for name, plants in (("begun", planned[: half - 1]), ("half", planned[half - 1 : half + 1])):
         assert days_since(season, ON) is None
         season.record(Inspections.of(plants, np.full(len(plants), CLEAN), ON), name)
+    assert days_since(season, ON) == 0
+
+
+def test_without_a_plan_a_plot_was_seen_once_half_of_the_hours_are_gone(seasons):
+    season = seasons[0]
+    plants = season.plan(ON, keep=False).route.plant  # those of all the hours
+    for name, some in (("one", plants[:1]), ("begun", plants[1 : len(plants) // 3])):
+        season.record(Inspections.of(some, np.full(len(some), CLEAN), ON), name)
+        assert days_since(season, ON) is None
+    season.record(Inspections.of(plants, np.full(len(plants), CLEAN), ON), "the rest")
+    assert len(plants) < len(season.plot.grid) / 2
     assert days_since(season, ON) == 0

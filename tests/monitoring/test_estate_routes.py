@@ -6,9 +6,18 @@ from dataclasses import replace
 from datetime import datetime, time
 from types import SimpleNamespace
 
+import numpy as np
+
 from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn, share_estate
-from fieldmon.monitoring.estate_routes import EstateRoute, NamedPlot, plan_table, stems, walked
+from fieldmon.monitoring.estate_routes import (
+    EstateRoute,
+    NamedPlot,
+    PlotLeftOut,
+    plan_table,
+    stems,
+    walked,
+)
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
@@ -43,17 +52,22 @@ def test_the_table_tells_each_route_once_and_all_its_files():
 
 
 def test_the_table_tells_where_nobody_goes_and_who_goes_nowhere():
-    data = plan_table({"01-a.gpx": a_route("a")}, {"b": (), "c": ["Closed until 06:30."]}, ["Bo"])
+    data = plan_table(
+        {"01-a.gpx": a_route("a")},
+        [PlotLeftOut("b", "no time"), PlotLeftOut("c", "closed", ("Closed until 06:30.",))],
+        ["Bo"],
+    )
     rows = [*csv.DictReader(io.StringIO(data.decode("utf-8-sig")))]
     assert [(one["plot"], one["who"], one["file"]) for one in rows] == [
         ("a", "Ann", "01-a.gpx"), ("b", "", ""), ("c", "", ""), ("", "Bo", ""),
     ]  # fmt: skip
-    assert rows[2]["closed"] == "Closed until 06:30."
+    assert [one["closed"] for one in rows] == ["", "", "Closed until 06:30.", ""]
+    assert [one["left_out"] for one in rows] == ["", "no time", "closed", ""]
 
 
 def test_no_name_in_the_table_is_run_by_a_spreadsheet():
     named = replace(a_route("=1+1"), who="+cmd", closed=["@a is closed."])
-    data = plan_table({"01-a.gpx": named}, {"-b": ("=c is closed.",)}, ["\t=d"])
+    data = plan_table({"01-a.gpx": named}, [PlotLeftOut("-b", "@w", ("=c is closed.",))], ["\t=d"])
     rows = [*csv.DictReader(io.StringIO(data.decode("utf-8-sig")))]
     assert [(one["plot"], one["who"], one["closed"]) for one in rows] == [
         ("'=1+1", "'+cmd", "'@a is closed."), ("'-b", "", "'=c is closed."), ("", "'\t=d", ""),
@@ -87,7 +101,8 @@ def test_what_comes_of_a_shared_day_is_who_is_where_what_is_closed_and_who_is_fr
     assert set(made.free) == {"Ann", "Ben", "Cy"} - busy
     assert made.closed[0][0].startswith("CLOSED UNTIL 06:00 ON 2026-04-08 AFTER SOAP")
     assert made.closed[1:] == ((), ())
-    assert (made.nobody, made.waiting) == ((0,), ()), "it is closed, and has not too little time"
+    left_out = PlotLeftOut("a", "CLOSED TO PEOPLE", made.closed[0])
+    assert made.left_out == (left_out,), "it is closed, and has not too little time"
 
 
 def test_a_plot_whose_hours_are_too_short_for_a_stop_waits(tmp_path):
@@ -99,4 +114,8 @@ def test_a_plot_whose_hours_are_too_short_for_a_stop_waits(tmp_path):
         return SimpleNamespace(route=())
 
     made = walked(shared, [plot], members, plan)
-    assert (made.turns, made.nobody, made.waiting, made.free) == ((), (0,), (0,), ("Ann",))
+    assert (made.turns, made.left_out, made.free) == ((), (PlotLeftOut("a", "no time"),), ("Ann",))
+    seen = replace(plot.known.scene, last_inspected=np.full(len(plot.known.scene.chance), 0))
+    plot = replace(plot, known=replace(plot.known, scene=seen))
+    made = walked(share_estate([plot.known], members, time(6)), [plot], members, plan)
+    assert made.left_out == (PlotLeftOut("a", "all of it was inspected today"),)

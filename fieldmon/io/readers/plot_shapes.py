@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,8 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.io.import_report import ImportMessage, doubtful, seen
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from fieldmon.plot.field import Field
 
 
@@ -21,47 +24,47 @@ def said_of_shapes(fields: list[Field]) -> list[ImportMessage]:
 
 
 def _parts(fields: list[Field]) -> list[ImportMessage]:
+    """Say which plots have several parts, or holes."""
     shapes = [f.boundary for f in fields]
     polygons, plot = shapely.get_parts(shapes, return_index=True)
     n_parts = np.bincount(plot, minlength=len(fields))
     n_holes = np.bincount(plot, shapely.get_num_interior_rings(polygons), len(fields))
-    several = [fields[i].name for i in np.flatnonzero(n_parts > 1)]
-    holed = [fields[i].name for i in np.flatnonzero(n_holes)]
+    is_around = [n > 1 and k > 0 and _has_island(one)
+                 for n, k, one in zip(n_parts, n_holes, shapes, strict=True)]  # fmt: skip
     messages = []
-    if several:
-        messages.append(
-            seen(
-                worded(
-                    "{n} {n:plot has|plots have} several parts, which were kept: {names}.",
-                    n=len(several),
-                    names=first_few(several),
-                )
-            )
+    if (n_parts > 1).any():
+        several = _names(fields, n_parts > 1)
+        said = worded(
+            "{n} {n:plot has|plots have} several parts, which were kept: {names}.",
+            n=len(several), names=first_few(several),
+        )  # fmt: skip
+        own = worded("It has several parts, which were kept.")
+        messages.append(replace(seen(said), each=tuple(seen(own, one) for one in several)))
+    if n_holes.any():
+        holed = _names(fields, n_holes > 0)
+        said = worded(
+            "{n} {n:plot has|plots have} holes, kept as places without plants: {names}.",
+            n=len(holed), names=first_few(holed),
+        )  # fmt: skip
+        own = worded("It has holes, kept as places without plants.")
+        messages.append(replace(seen(said), each=tuple(seen(own, one) for one in holed)))
+    if any(is_around):
+        around = _names(fields, np.array(is_around))
+        said = worded(
+            "{n} {n:plot has|plots have} a part in a hole of another, and routes lead "
+            "straight across that hole: {names}. Where nobody can, make the part a plot.",
+            n=len(around), names=first_few(around),
+        )  # fmt: skip
+        own = worded(
+            "It has a part in a hole of another, and routes lead straight across that hole. Where "
+            "nobody can, make the part a plot."
         )
-    if holed:
-        messages.append(
-            seen(
-                worded(
-                    "{n} {n:plot has|plots have} holes, kept as places without plants: {names}.",
-                    n=len(holed),
-                    names=first_few(holed),
-                )
-            )
-        )
-    around = [fields[i].name for i in np.flatnonzero((n_parts > 1) & (n_holes > 0))
-              if _has_island(fields[i].boundary)]  # fmt: skip
-    if around:
-        messages.append(
-            doubtful(
-                worded(
-                    "{n} {n:plot has|plots have} a part in a hole of another, and routes lead "
-                    "straight across that hole: {names}. Where nobody can, make the part a plot.",
-                    n=len(around),
-                    names=first_few(around),
-                )
-            )
-        )
+        messages.append(replace(doubtful(said), each=tuple(doubtful(own, one) for one in around)))
     return messages
+
+
+def _names(fields: list[Field], which: NDArray[np.bool_]) -> list[str]:
+    return [fields[i].name for i in np.flatnonzero(which)]
 
 
 def _has_island(boundary: MultiPolygon) -> bool:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import shapely
-from shapely import MultiPolygon, Polygon
+from shapely import MultiPolygon
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import joined, worded
@@ -29,7 +29,7 @@ from fieldmon.io.writers.zone_cells import (
     rates_geotiff,
     zone_cells,
 )
-from fieldmon.plot.polygons import polygons_of
+from fieldmon.plot.polygons import is_slim, polygons_of, without_slits
 from fieldmon.plot.projection import Frame, turned_to
 
 if TYPE_CHECKING:
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 
 _WGS84 = "EPSG:4326"
 _IN_CELLS = re.compile(r"\.grid\d|\.tif$")
-# what is narrower than twice that, between zones and beside them, comes of how plants were measured
-_SLIM_M = 0.1
 _GRID_DEG = 1e-8  # a millimetre, as GeoJSON is written: nothing collapses there
 
 
@@ -151,32 +149,12 @@ def _clean_areas(of: TreatmentMap) -> tuple[list[MultiPolygon], MultiPolygon]:
     middle = of.boundary.envelope.centroid
     frame = Frame(middle.x - 360.0 if middle.x > 180.0 else middle.x, middle.y)
     zones = [frame.geometry_m(zone) for zone in of.zones]
-    apart = shapely.union_all(zones)
-    whole = shapely.union(apart, _grown(_grown(apart, _SLIM_M), -_SLIM_M))
-    made: list[MultiPolygon] = []
-    for k, zone in enumerate(zones):
-        near = shapely.intersection(_grown(zone, 2 * _SLIM_M), whole)
-        own = shapely.difference(near, shapely.union_all([*made, *zones[k + 1 :]]))
-        parts = _polygons(own).geoms
-        made.append(MultiPolygon([_filled(one) for one in parts if one.intersects(zone)]))
+    made = without_slits(zones)
     rest = _polygons(shapely.difference(frame.geometry_m(of.boundary), shapely.union_all(made)))
-    rest = MultiPolygon([one for one in rest.geoms if not _is_slim(one)])
+    rest = MultiPolygon([one for one in rest.geoms if not is_slim(one)])
     degrees = (turned_to(frame.geometry_lonlat(one), middle.x) for one in (*made, rest))
     *sprayed, rest = (_polygons(one, _GRID_DEG) for one in degrees)
     return sprayed, rest
-
-
-def _grown(area: shapely.Geometry, by_m: float) -> shapely.Geometry:
-    return shapely.buffer(area, by_m, join_style="mitre")
-
-
-def _is_slim(area: shapely.Geometry) -> bool:
-    return bool(shapely.is_empty(shapely.buffer(area, -_SLIM_M)))
-
-
-def _filled(part: Polygon) -> Polygon:
-    """Return a polygon without the holes that are slim."""
-    return Polygon(part.exterior, [hole for hole in part.interiors if not _is_slim(Polygon(hole))])
 
 
 def _polygons(area: shapely.Geometry, grid: float = 0.0) -> MultiPolygon:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import schema, settings_log, treatments
@@ -21,6 +22,9 @@ _NAMED_PLOTS = 3
 
 #: what makes a season this one, and must be the same in both
 SAME = (schema.ARRAYS, schema.PLOTS, schema.PLACES, schema.ROWS, schema.PLANTS, schema.OBSERVATIONS)
+
+# and a plot this one
+_PLANTING = (schema.ROWS, schema.PLANTS)
 
 
 def refuse_strangers(db: sqlite3.Connection, other: sqlite3.Connection) -> None:
@@ -130,10 +134,19 @@ def hold_in_common(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:
 
 def are_of_one_plot(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:
     """Return whether two seasons have the same rows and plants."""
-    return all(_is_same(db, other, table) for table in (schema.ROWS, schema.PLANTS))
+    return all(_is_same(db, other, table) for table in _PLANTING)
+
+
+def planting(db: sqlite3.Connection) -> str:
+    """Return what stands for the rows and plants of a season: others of the plot have the same."""
+    return digest(*(_all_of(db, table) for table in _PLANTING))
 
 
 def _is_same(db: sqlite3.Connection, other: sqlite3.Connection, table: GeoPackageTable) -> bool:
+    return _all_of(db, table) == _all_of(other, table)
+
+
+def _all_of(db: sqlite3.Connection, table: GeoPackageTable) -> list[object]:
     names = ", ".join(table.names)
     wanted = f"SELECT {names} FROM {table.name} ORDER BY fid"  # noqa: S608 - names of ours
-    return bool(db.execute(wanted).fetchall() == other.execute(wanted).fetchall())
+    return db.execute(wanted).fetchall()

@@ -49,6 +49,9 @@ def test_a_season_begins_and_is_found_again_by_a_new_session(season):
     assert "first day of the season" in texts_of(again)
     assert plants(again).rank.tolist() == plants(app).rank.tolist()
     assert plants(again).lonlat == pytest.approx(plants(app).lonlat, abs=1e-9)
+    again.date_input(key="day Gate 2026").set_value(date(2026, 11, 9)).run()
+    assert again.date_input(key="day Gate 2026").value == date(2026, 11, 16)
+    assert "2026-11-09 was chosen. This is about the nearest" in texts_of(again)
 
 
 def test_a_season_is_never_begun_over_another_and_its_name_stays_in_the_folder(season_app, season):
@@ -226,7 +229,7 @@ def test_the_gate_is_set_on_the_map_before_a_season_begins(app, tmp_path):
 
 @pytest.mark.parametrize("said", ["file", "hand"])
 def test_rows_that_a_file_or_a_person_said_begin_with_one_click(app, seasons_folder, said):
-    here = square()
+    here = square(name='a/"b"')
     if said == "file":
         here = here.assign(row_spacing=3.0, plant_spacing=2.0, bearing=10.0)
     upload(app, plot=("plot.geojson", here.to_json().encode()))
@@ -236,7 +239,14 @@ def test_rows_that_a_file_or_a_person_said_begin_with_one_click(app, seasons_fol
     go(app, "today")
     press(app, "Begin a season")
     assert not app.exception
-    assert len([*seasons_folder.glob("*.gpkg")]) == 1
+    (path,) = seasons_folder.glob("*.gpkg")
+    assert path.stem.startswith("a-b 2"), "proposed without signs that no file's name has"
+    assert Season(path).plot.field.name == 'a/"b"'
+    assert "of one plot" not in app.success[0].value
+    if said == "file":  # brought a second time
+        upload(app, plot=("again.geojson", here.to_json().encode()))
+        press(go(app, "today"), "Begin a season")
+        assert "are 2 seasons of one plot: each counts" in app.success[0].value
 
 
 def test_records_left_out_are_said_before_a_season_begins_and_when_it_begins(app):

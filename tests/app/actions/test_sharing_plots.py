@@ -15,6 +15,7 @@ from app.actions import sharing_plots
 from app.state import estate, shared_plots
 from app.state.shared_plots import EstateCrew
 from app.words import texts
+from fieldmon.monitoring.estate_routes import PlotLeftOut
 from tests.app.driving import go, layer, map_of, press, texts_of
 
 
@@ -38,7 +39,7 @@ def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
     assert not app.exception
     assert texts.PLAN_ALL_NOBODY in texts_of(app)
     assert "0 plants" not in texts_of(app)
-    assert "No time today" not in texts_of(app)
+    assert "Left out" not in texts_of(app)
     press(app, texts.PLAN_ALL_OFF)
     assert layer(app, "route") is None
 
@@ -46,11 +47,18 @@ def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
 def test_the_files_hold_each_route_and_a_table(session):  # noqa: ARG001 - read within it
     nursery = [one for one in estate.plots()[0] if one.name == "Nursery"]
     made = shared_plots.planned(nursery, EstateCrew(robot_hours=1), lambda *_: None)
+    made = replace(made, left_out=(PlotLeftOut("Hill", "not due"),))
     (turn,) = made.turns
-    with zipfile.ZipFile(io.BytesIO(sharing_plots.packed(made))) as archive:
+    with zipfile.ZipFile(
+        io.BytesIO(sharing_plots.packed(made, [PlotLeftOut("gone", "torn")]))
+    ) as archive:
         assert sorted(archive.namelist()) == ["01-Nursery.geojson", "plan.csv"]
         route = json.loads(archive.read("01-Nursery.geojson"))
-        (row,) = csv.DictReader(io.StringIO(archive.read("plan.csv").decode("utf-8-sig")))
+        row, *out = csv.DictReader(io.StringIO(archive.read("plan.csv").decode("utf-8-sig")))
+    assert [(one["plot"], one["left_out"]) for one in out] == [
+        ("Hill", "not due"),
+        ("gone", "torn"),
+    ]
     line = np.array(route["features"][0]["geometry"]["coordinates"])
     assert np.allclose(line, turn.route.line_lonlat(), atol=1e-8)
     assert (row["plot"], row["who"], int(row["plants"])) == (
@@ -63,18 +71,22 @@ def said(monkeypatch):
     said = []
     monkeypatch.setattr(sharing_plots, "st", SimpleNamespace(
         container=lambda **_: nullcontext(), caption=lambda _: None,
+        expander=lambda words: nullcontext(said.append(words)),
         markdown=said.append, warning=said.append,
     ))  # fmt: skip
     return said
 
 
-def test_a_few_plots_that_wait_are_named_and_very_many_are_counted(said):
-    for n, words in ((2, "No time today: \u2068Plot 0\u2069"), (96, "No time today for 96 plots")):
-        waiting = tuple(SimpleNamespace(name=f"Plot {k}") for k in range(n))
-        sharing_plots._say(shared_plots.SharedPlots((), waiting))
-        (told,) = (one for one in said if one.startswith("No time today"))
-        assert told.startswith(words)
-        assert len(told) < 120
+def test_plots_left_out_are_named_by_reason_and_very_many_in_a_fold(said):
+    for n, words in ((2, "Left out (no time): \u2068Plot 0\u2069"), (96, "Left out: 96 plots")):
+        left_out = [PlotLeftOut(f"Plot {k}", "no time") for k in range(n)]
+        sharing_plots._say(
+            shared_plots.SharedPlots((), (*left_out, PlotLeftOut("Hill", "not due")))
+        )
+        told = [one for one in said if one.startswith("Left out")]
+        assert told[0].startswith(words.replace("96", "97"))
+        assert told[-1] == "Left out (not due): \u2068Hill\u2069."
+        assert len(told) == (2 if n == 2 else 3)
         said.clear()
 
 
@@ -87,6 +99,7 @@ def test_where_no_plot_is_due_none_is_planned_until_those_seen_are_asked_for(app
     press(app, texts.PLAN_ALL)
     assert not app.exception
     assert texts.PLAN_ALL_NONE in texts_of(app)
+    assert "Left out (inspected 1 day ago, not due): " in texts_of(app)
     assert layer(app, "route") is None
     app.checkbox(key="crew_also").check().run()
     assert not app.exception
@@ -100,7 +113,7 @@ def test_who_has_no_plot_is_said_to_be_free(said):
         shared_plots.SharedPlots(
             (),
             (),
-            ("broken",),
+            (PlotLeftOut("Hill", "broken"),),
             free=free,
             n_members=2,
             several_kinds=True,
@@ -115,4 +128,4 @@ def test_who_has_no_plot_is_said_to_be_free(said):
     many = tuple(f"robot {k}" for k in range(40))
     sharing_plots._say(shared_plots.SharedPlots((), free=many, n_members=40))
     assert said[-1] == "Free today: 40 of 40.", "no wall of names"
-    assert "broken" in said
+    assert "\u2068Hill\u2069: broken" in said

@@ -67,6 +67,17 @@ def test_every_column_has_room_beside_the_others_on_a_narrow_phone(turns):
     assert sum(how[name]["width"] for name in table) <= 300
 
 
+def test_names_have_the_room_of_a_column_that_would_be_empty():
+    new = PlotState("Schnorbach-Brückstück 2026", "a", OUTLINE, expected=2.5)
+    name, days = texts.PLOTS_COLUMNS["name"], texts.PLOTS_COLUMNS["days_since"]
+    table, _ = estate_table.of([new])
+    assert days not in table
+    assert table[name].iloc[0] == "Schnorbach-…kstück 2026"
+    table, _ = estate_table.of([new, PLOTS[0]])
+    assert table[days].iloc[1] == 4
+    assert table[name].iloc[0] == "Schnorb…ck 2026"
+
+
 def test_a_long_name_keeps_both_ends():
     names = [estate_table.shortened(f"lleida_apricot_orchards_epsg25831 ({k})") for k in range(96)]
     assert len(set(names)) == 96

@@ -103,6 +103,22 @@ def test_the_file_of_a_season_is_taken_in_under_a_name_that_it_can_have(tmp_path
 
 
 @pytest.mark.usefixtures("seasons_folder")
+@pytest.mark.parametrize(
+    ("plot", "season"),
+    [
+        ('חלקה ב/3 "ליד הבאר"', "חלקה ב-3 ליד הבאר 2026"),
+        ('O\'Brien / "East" <b>7</b>', "O'Brien - East b7-b 2026"),
+        ('חב"ל 7', "חב״ל 7 2026"),
+        ("..", "season 2026"),
+        ("x" * 99, f"{'x' * 70} 2026"),
+    ],
+)
+def test_from_any_plots_name_a_name_is_made_that_a_season_can_have(plot, season):
+    assert folder.plain_name(plot, " 2026") == season
+    assert folder.path_of(folder.free_name(season)).stem == season
+
+
+@pytest.mark.usefixtures("seasons_folder")
 def test_a_name_that_is_free_has_a_number_behind_it_where_others_have_it(tmp_path):
     assert folder.free_name("North 1.5") == "North 1.5"
     for name in ("North 1.5", "North 1.5 (2)", "South"):

@@ -30,6 +30,10 @@ def test_due_is_what_was_not_seen_for_three_days_or_ever():
     plots = [plot("a", 0), plot("b", 2), plot("c", 3), plot("d", None)]
     assert [one.name for one in shared_plots.due(plots)] == ["c", "d"]
     assert shared_plots.due(plots[:2]) == []
+    left_out = [(one.plot, one.why) for one in shared_plots.not_due(plots)]
+    assert left_out == [
+        ("a", "inspected today, not due"), ("b", "inspected 2 days ago, not due"),
+    ]  # fmt: skip
 
 
 def test_a_crew_has_names_and_hours():
@@ -51,7 +55,7 @@ def test_the_sample_s_plots_are_shared_by_two():
     made = shared_plots.planned(some, EstateCrew(robots=1, robot_hours=3, scouts=1, scout_hours=2),
                                 lambda k, n: told.append((k, n)))  # fmt: skip
     assert made.problems == ()
-    assert {one.plot for one in made.turns} | {one.name for one in made.waiting} == {
+    assert {one.plot for one in made.turns} | {one.plot for one in made.left_out} == {
         one.name for one in some
     }
     assert {one.who for one in made.turns} == {"robot 1", "scout 1"}
@@ -88,7 +92,7 @@ def test_a_season_is_planned_by_what_it_knows_and_one_that_is_gone_is_said(
     assert turn.route.plant.tolist() == by_itself.tolist()
     assert len(by_itself) > 10
     assert len(made.problems) == 1
-    assert "gone" in made.problems[0]
+    assert made.problems[0].plot == "gone"
 
 
 @pytest.mark.usefixtures("session")
@@ -135,5 +139,18 @@ def test_rows_are_closed_by_the_hours_at_which_somebody_is_there(
     (said,) = made.closed
     assert "Closed until 06:30" in said
     made = planned(np.unique(line))
-    assert (made.turns, made.waiting) == ((), ())
+    assert (made.turns, [one.why for one in made.left_out]) == ((), ["closed to people"])
     assert "Closed until 06:30" in made.closed[0]
+
+
+@pytest.mark.usefixtures("session")
+def test_two_seasons_of_one_plot_are_said_where_one_of_them_is_asked_for(
+    begun_file, seasons_folder
+):
+    for name in "ab":
+        shutil.copy(begun_file, seasons_folder / f"{name}.gpkg")
+    (said,) = shared_plots.of_one_plot(["a"])
+    assert said.startswith(
+        "\u2068a\u2069 and \u2068b\u2069 are 2 seasons of one plot: each counts."
+    )
+    assert shared_plots.of_one_plot(["c"]) == shared_plots.of_one_plot([]) == ()

@@ -18,6 +18,8 @@ def test_parts_and_holes_are_kept_and_said():
     assert shapely.area(imported.value[1].boundary) == pytest.approx(shapely.area(holed))
     assert "several parts, which were kept: two." in sentences(imported)
     assert "holes, kept as places without plants: ring." in sentences(imported)
+    (own,) = (said for one in imported.messages if one.each for said in one.about("ring"))
+    assert str(own) == "seen: ring: It has holes, kept as places without plants."
 
 
 def test_an_island_in_a_hole_is_doubted_as_routes_lead_across_the_hole():

@@ -87,7 +87,7 @@ def test_plants_far_from_all_others_are_named_and_left_out_in_another_part_of_th
     gone, away, stray = (m for m in imported.messages if m.severity is not Severity.SEEN)
     assert (gone.severity, "v33 (0.00000 / 0.00000)" in gone.sentence) == (Severity.DROPPED, True)
     assert away.severity is Severity.DROPPED
-    assert "1 plant stands 7.863 km" in away.sentence
+    assert "1 plant stands 7.86 km" in away.sentence
     assert "from the others and was left out: v32" in away.sentence
     kept = plants_of(
         layer_of([Point(p) for p in strays], vine=names),

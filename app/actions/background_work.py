@@ -20,7 +20,7 @@ _STEP_S, _STEPS = 0.05, 18
 
 def buttons(
     work: WatchedComparison | DriveRun | LiveDrive, label: str, *, key: str, over: bool,
-    stop: str = texts.STOP,
+    stop: str = "",
 ) -> bool:  # fmt: skip
     """Offer to begin and to stop it; return whether it is at work. `over`: nothing is left to do.
 
@@ -33,7 +33,7 @@ def buttons(
     at_work = work.running
     with st.container(horizontal=True):
         st.button(label, type="primary", key=key, disabled=at_work or over)
-        st.button(stop, key=f"{key}_stop", on_click=work.stop, disabled=not at_work)
+        st.button(stop or texts.STOP, key=f"{key}_stop", on_click=work.stop, disabled=not at_work)
     return at_work
 
 

@@ -7,6 +7,7 @@ which plant and when; what does not stays a draft, and is told of.
 from __future__ import annotations
 
 from contextlib import suppress
+from datetime import date
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -24,7 +25,6 @@ from fieldmon.monitoring.schema import INSPECTIONS
 
 if TYPE_CHECKING:
     import sqlite3
-    from datetime import date
 
     from numpy.typing import NDArray
 
@@ -175,7 +175,10 @@ def _inspection(said: dict[str, Any], grid: PlantGrid) -> Inspections:
         raise ValueError(f"its result is none of {', '.join(_SAID)}")
     if result == GONE:
         said = {**said, "notes": gone_note(str(said["notes"] or ""))}
-    day = np.datetime64(str(on)[:10], "D")
+    try:
+        day = np.datetime64(date.fromisoformat(str(on)[:10]), "D")
+    except ValueError as error:
+        raise ValueError(worded("its date {on!r} is not written as 2026-04-06", on=on)) from error
     second = np.nan if at in {None, ""} else inspection_lots.second_of(str(at))
     when = np.datetime64("NaT", "s")
     if not np.isnan(second):

@@ -9,6 +9,7 @@ own way is no change.
 
 from __future__ import annotations
 
+from collections import Counter
 from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -25,17 +26,20 @@ from fieldmon.monitoring.transactions import connect, copy_season
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
+    from fieldmon.infestation.inspections import Inspections
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
     from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.monitoring import Season
+    from fieldmon.plot.grid import PlantGrid
 
 # anybody may change the others; `record` takes what they say
 _WATCHED = tuple(column for column in COLUMNS if column.watched)
+(_PLANT,) = (column for column in COLUMNS if column.name == "plant")
 (_NOTES,) = (column for column in COLUMNS if column.name == "notes")
 (_SECOND,) = (column for column in COLUMNS if column.name == "second")
 _WHOLE_MINUTE = ":00"
@@ -77,6 +81,8 @@ class Edits(NamedTuple):
         Why records cannot be told, by their number in the file.
     n_notes
         How many have other notes, which are no corrections.
+    n_alike
+        How many say now what another inspection that counts says.
     """
 
     changed: list[ChangedInspection]
@@ -84,6 +90,7 @@ class Edits(NamedTuple):
     twice: set[str]
     unsure: dict[int, str]
     n_notes: int
+    n_alike: int
 
 
 def read_exported(
@@ -93,19 +100,28 @@ def read_exported(
 
     So where 4/6/2026 could be either, and no order was told.
     """
+    return _read_by_days(season, source, options)[0]
+
+
+def _read_by_days(
+    season: Season, source: Source, options: InspectionOptions
+) -> tuple[Imported[InspectionRows], bool]:
+    """Return what `read_exported` does, and whether the season's days leave the order open."""
     from fieldmon.io.read import read_inspection_rows  # noqa: PLC0415 - half a second to import
 
     read = read_inspection_rows(source, options)
     rows = read.value
     if options.date_order is not None or not _n_exported(rows):
-        return read
+        return read, False
     with season.store.reading() as db:
         days = dict(db.execute("SELECT digest, date FROM inspections WHERE digest NOTNULL"))
-    if off := _n_of_other_days(rows, days):
-        other = read_inspection_rows(source, replace(options, date_order="mdy"))
-        if _n_of_other_days(other.value, days) < off:
-            return other
-    return read
+    off = _n_of_other_days(rows, days)
+    if not off:
+        return read, False
+    other = read_inspection_rows(source, replace(options, date_order="mdy"))
+    other_off = _n_of_other_days(other.value, days)
+    is_open = off == other_off and not np.array_equal(rows.day, other.value.day, equal_nan=True)
+    return (other if other_off < off else read), is_open
 
 
 def _n_of_other_days(rows: InspectionRows, days: dict[str, str]) -> int:
@@ -122,44 +138,86 @@ def edits_in(season: Season, rows: InspectionRows, options: InspectionOptions) -
     """
     from fieldmon.io.readers.inspections import exported  # noqa: PLC0415 - half a second to import
 
-    edits = Edits([], [], set(), {}, 0)
+    edits = Edits([], [], set(), {}, 0, 0)
     if rows.mark is None or not _n_exported(rows):
         return edits
     lacked = _lacked(rows)
-    watched = [one for one in _WATCHED if one.kept not in lacked]
     with season.store.reading() as db:
-        held = _held(db, [one.kept for one in watched])
+        held = _held(db)
     strange = (rows.mark != "") & ~np.isin(rows.mark, np.array([*held], np.str_))
     edits.unknown.extend(rows.mark[strange].tolist())
     told, marks, why = exported(rows.take(~strange), season.plot.grid, options)
     edits.unsure.update(why)
     counting = {_key(one.says) for one in held.values() if one.undone == COUNTS}
+    says_now = {one.row: _visit(one.says) for one in held.values() if one.undone == COUNTS}
     now_said = inspection_table.kept_columns(told)
+    now_said[_PLANT.kept] = _of_held_faces(season.plot.grid, rows, told, marks, held, edits.unsure)
     in_minutes = all(at is None or at.endswith(_WHOLE_MINUTE) for at in now_said[_SECOND.kept])
     said_of: dict[str, tuple[Any, ...]] = {}
     n_notes = 0
     for mark, notes, *now in zip(
-        marks, now_said[_NOTES.kept], *(now_said[one.kept] for one in watched), strict=True
+        marks, now_said[_NOTES.kept], *(now_said[one.kept] for one in _WATCHED), strict=True
     ):
-        if said_of.setdefault(mark, _key(now)) != _key(now):
-            edits.twice.add(mark)
         one = held[mark]
         n_notes += bool(notes) and all(not _is_same(was, notes) for was in one.notes)
         says = {
             column.kept: new
             for column, was, with_others, new in zip(
-                watched, one.says, one.with_others, now, strict=True
+                _WATCHED, one.says, one.with_others, now, strict=True
             )
-            if not _is_same(was, new, in_minutes=in_minutes and column is _SECOND)
+            if column.kept not in lacked
+            and not _is_same(was, new, in_minutes=in_minutes and column is _SECOND)
             and not _is_same(with_others, new)
         }
-        if not says or _key(now) in counting:
+        whole = _key(
+            says.get(column.kept, was) for column, was in zip(_WATCHED, one.says, strict=True)
+        )
+        if said_of.setdefault(mark, whole) != whole:
+            edits.twice.add(mark)
+        if not says:
             continue
         if one.undone == COUNTS:
             edits.changed.append(ChangedInspection(one.row, says))
-        else:
+            says_now[one.row] = _visit(whole)
+        elif whole not in counting:  # else it was taken already
             edits.unknown.append(mark)
-    return edits._replace(n_notes=n_notes)
+    said_by = Counter(says_now.values())
+    n_alike = sum(said_by[says_now[one.row]] > 1 for one in edits.changed)
+    return edits._replace(n_notes=n_notes, n_alike=n_alike)
+
+
+def _visit(says: Sequence[Any]) -> tuple[Any, ...]:
+    """Return of what watched columns say that by which the season tells inspections apart."""
+    return _key(said for one, said in zip(_WATCHED, says, strict=True) if one in IDENTIFYING)
+
+
+def _of_held_faces(
+    grid: PlantGrid,
+    rows: InspectionRows,
+    told: Inspections,
+    marks: list[str],
+    held: dict[str, _Held],
+    unsure: dict[int, str],
+) -> list[int]:
+    """Return the plants told: where no face is, that which the season has of the same plant.
+
+    Of another plant with two faces nobody knows which: that is added to what is `unsure`.
+    """
+    plants: list[int] = told.plant.tolist()
+    if rows.mark is None or not (grid.twin >= 0).any():
+        return plants
+    bare = (rows.face == 0) & (rows.plant < 0)
+    record = dict(zip(rows.mark[bare].tolist(), rows.source_row[bare].tolist(), strict=True))
+    at = _WATCHED.index(_PLANT)
+    for k, mark in enumerate(marks):
+        was = held[mark].says[at]
+        if mark not in record or plants[k] == was:
+            continue
+        if grid.twin[plants[k]] == was:
+            plants[k] = was
+        elif grid.twin[plants[k]] >= 0:
+            unsure[record[mark]] = worded("which face of its plant is meant is not named")
+    return plants
 
 
 class _Held(NamedTuple):
@@ -176,7 +234,7 @@ class _Held(NamedTuple):
     notes: tuple[str, str]
 
 
-def _held(db: sqlite3.Connection, watched: list[str]) -> dict[str, _Held]:
+def _held(db: sqlite3.Connection) -> dict[str, _Held]:
     """Return what the season holds, by digests: of those that stand back, that which counts."""
     names = tuple(one.kept for one in COLUMNS)
     others, held = repeated_recordings.of_others(db), {}
@@ -188,7 +246,7 @@ def _held(db: sqlite3.Connection, watched: list[str]) -> dict[str, _Held]:
         if mark in others and undone == COUNTS:
             beside = {one.kept: own[one.kept] for one in BESIDE}
             whole = own | repeated_recordings.together(beside, others[mark])
-        says, said = ([one[name] for name in watched] for one in (own, whole))
+        says, said = ([one[column.kept] for column in _WATCHED] for one in (own, whole))
         notes = own[_NOTES.kept] or "", whole[_NOTES.kept] or ""
         held[mark] = _Held(row, undone, tuple(says), tuple(said), notes)
     return held
@@ -253,9 +311,17 @@ def edited_copy(
 
 def _exported_rows(season: Season, source: Source, options: InspectionOptions) -> InspectionRows:
     """Return the rows of a file that holds inspections exported from a season; refuse others."""
-    read, name = read_exported(season, source, options), source_name(source)
+    (read, is_open), name = _read_by_days(season, source, options), source_name(source)
     rows = read.value
     n_exported = _n_exported(rows)
+    if is_open:
+        raise ObservationError(
+            worded(
+                "Dates in {name} may be written day or month first, and what was not changed there "
+                "does not tell. Write them year first, as 2026-04-06; nothing was taken.",
+                name=name,
+            )
+        )
     doubts = [one.sentence for one in read.messages if one.severity.is_loss]
     if doubts and (n_exported or not len(rows)):
         raise ObservationError(
@@ -303,6 +369,15 @@ def _refuse_uncertain(edits: Edits, name: str) -> None:
                 "of record {record} of {name}: {doubt}. Mend it there, or change it in the "
                 "season's own file; nothing was taken.",
                 record=record, name=name, doubt=doubt,
+            )
+        )  # fmt: skip
+    if edits.n_alike:
+        raise ObservationError(
+            worded(
+                "No inspection may stand there twice, but {n} of {name} {n:says|say} now what "
+                "another inspection of the season says. Mend {n:it|them}, or delete one of both in "
+                "the season's own file; nothing was taken.",
+                n=edits.n_alike, name=name,
             )
         )  # fmt: skip
     if edits.twice:

@@ -73,7 +73,7 @@ def test_a_plant_added_as_gone_is_kept_as_skipped_and_gone(path, notes, kept):
         ({"result": None}, "none of"),
         ({"result": "maybe"}, "none of"),
         ({"date": "2020-01-01"}, "began on"),
-        ({"date": "soon"}, "soon"),
+        ({"date": "soon"}, "'soon' is not written as 2026-04-06"),
         ({"date": "2026-11-06"}, "its day, 2026-11-06, has not come, but others of the file have"),
         ({"plant": 99999, "plant_says": 1}, "none of 0 to"),
     ],

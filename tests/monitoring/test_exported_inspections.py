@@ -3,6 +3,7 @@
 import csv
 import io
 import shutil
+from datetime import date
 
 import numpy as np
 import pandas as pd
@@ -16,7 +17,7 @@ from fieldmon.monitoring import Season
 from fieldmon.monitoring.certifier_tables import csv_bytes, inspections_table
 from fieldmon.monitoring.exported_inspections import edited_copy
 from fieldmon.monitoring.inspection_import import read_brought
-from tests.monitoring.seasons import BEGINS
+from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 OPTIONS = InspectionOptions()
 
@@ -171,7 +172,7 @@ def from_spreadsheet(season, lines, folder, *, delimiter=",", code="utf-8-sig", 
     for line in said:
         year, month, on = line["date"].split("-")
         line["date"] = day.format(y=year, m=int(month), d=int(on)) or line["date"]
-        hour, _, rest = line["time"].partition(":")
+        hour, _, rest = line.get("time", "").partition(":")
         if clock and rest:
             line["time"] = clock.format(h=int(hour), m=rest[:2], s=rest[3:])
         for name in ("lon", "lat", "count", "detects") if delimiter == ";" else ():
@@ -231,3 +232,54 @@ def test_a_table_that_cannot_be_taken_is_refused_and_says_what_to_do(varied, tmp
     ):
         with pytest.raises(FieldmonError, match=wanted):
             from_spreadsheet(varied, said, tmp_path)
+
+
+def test_an_edit_that_makes_an_inspection_like_another_is_none_that_was_taken_already(
+    path, tmp_path
+):
+    season = Season(path)
+    season.record(
+        Inspections.of([300, 300, 301, 302], [1, 0, 0, 0], date(2026, 6, 6),
+                       second=[25_200.0, 46_800.0, np.nan, np.nan]),
+        "today", confirmed=True,
+    )  # fmt: skip
+    lines = [line for line in a_table(season) if line["date"] == "2026-06-06"]
+    (found,) = (line for line in lines if line["result"] == "found")
+    found["result"], found["count"] = "clean", ""
+    for gone in (("time",), ("time", "row", "row_name", "number")):
+        said = [{k: v for k, v in line.items() if k not in gone} for line in lines]
+        assert from_spreadsheet(season, said, tmp_path) == (1, 0, 0), gone
+        assert from_spreadsheet(season, said, tmp_path) == (0, 0, 0), gone  # twice is once
+        season.undo()
+    numbers = season.plant_numbers.number
+    (late,) = (line for line in lines if line["number"] == str(numbers[302]))
+    late.update(number=str(numbers[301]), lon="", lat="")
+    with pytest.raises(FieldmonError, match="twice"):
+        from_spreadsheet(season, lines, tmp_path)
+
+
+def test_a_table_without_faces_moves_nothing_to_another_face(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", a_plot(faces=2))
+    twin = season.plot.grid.twin
+    (second,) = np.flatnonzero(twin >= 0)[-1:]
+    first = twin[second]
+    season.record(Inspections.of([second, first], [1, 0], BEGINS, second=[25_200.0, 25_300.0]))
+    lines = [line for line in a_table(season) if line["date"] == str(BEGINS)]
+    assert {line["face"] for line in lines} == {"1", "2"}
+    for line in lines:
+        line.update(face="", lon="", lat="")
+    assert from_spreadsheet(season, lines, tmp_path) == (0, 0, 0)
+    lines[0]["number"] = str(int(lines[0]["number"]) - 1)
+    with pytest.raises(ObservationError, match="which face of its plant"):
+        from_spreadsheet(season, lines, tmp_path)
+
+
+def test_dates_whose_order_nothing_tells_are_refused(path, tmp_path):
+    season = Season(path)
+    season.record(Inspections.of([300, 301], [0, 1], date(2026, 6, 6)), "today")
+    lines = [line for line in a_table(season) if line["date"] == "2026-06-06"]
+    assert from_spreadsheet(season, lines, tmp_path, day="{m}/{d}/{y}") == (0, 0, 0)
+    lines[0]["date"] = "2026-05-06"
+    with pytest.raises(ObservationError, match="day or month first"):
+        from_spreadsheet(season, lines, tmp_path, day="{m}/{d}/{y}")
+    assert from_spreadsheet(season, lines, tmp_path) == (1, 0, 0)

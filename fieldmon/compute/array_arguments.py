@@ -54,8 +54,10 @@ def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDAr
     return array
 
 
-def texts_of(given: object) -> NDArray[np.object_] | None:
+def texts_of(given: object, kinds: tuple[type, ...] = (str,)) -> NDArray[np.object_] | None:
     """Return texts ``(k,)``, empty where one is missing (None, NaN, NA); None: they are none.
+
+    `kinds` are what texts may be.
 
     Examples
     --------
@@ -72,10 +74,10 @@ def texts_of(given: object) -> NDArray[np.object_] | None:
     if array.dtype.kind == "O" and {*map(type, entries)} <= {str}:  # as mostly
         return array
     said = ["" if _is_missing(one) else one for one in entries]
-    if not all(isinstance(one, str) for one in said):
+    if not all(isinstance(one, kinds) for one in said):
         return None
     texts = np.empty(len(said), object)
-    texts[:] = [*map(str, said)]
+    texts[:] = [str(one) if isinstance(one, str) else one for one in said]
     return texts.reshape(array.shape)
 
 

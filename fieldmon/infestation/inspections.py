@@ -40,7 +40,8 @@ def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to it
         return given.view()
     try:
         held: Any = days_of(given) if name == "date" else given
-        if texts and (held := texts_of(given)) is None:
+        # other programs may have put bytes into a season's file: they stay as they are
+        if texts and (held := texts_of(given, (str, bytes))) is None:
             raise _wrong(name, given)
         values = np.atleast_1d(held)
         if values.ndim != 1:

@@ -37,9 +37,12 @@ def test_a_season_says_when_it_was_seen_and_what_is_expected(season_app, season)
     (area,) = areas(season_app)
     assert "never seen" in area["t"]
     seen = np.datetime64(max(today - timedelta(days=4), season().settings.begins))
-    season().record(Inspections.of(np.array([5]), np.array([0]), seen), "test")
-    go(season_app, "plots")
-    (area,) = areas(season_app)
+    n = len(season().plot.grid)
+    for plants, said in (np.array([5]), "less than half a day done"), (np.arange(n // 2), "seen"):
+        season().record(Inspections.of(plants, np.zeros(len(plants), int), seen), said)
+        go(season_app, "plots")
+        (area,) = areas(season_app)
+        assert said in area["t"]
     days = (today - seen.item()).days
     assert (f"seen {days} days ago" if days else "seen today") in area["t"]
     left, _ = estate.plots()

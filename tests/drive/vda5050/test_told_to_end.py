@@ -14,6 +14,15 @@ from fieldmon.plot.local_clock import local_clock
 from tests.drive.vda5050.conftest import ROBOT
 
 
+@pytest.fixture
+def heard():
+    """Let Ctrl-C be heard, as where tests run in a terminal: in the background it is passed by."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize("told", [["SIGINT"], ["SIGTERM"], ["SIGTERM", "SIGINT"]])
 def test_a_robot_ends_the_plant_in_hand_and_drives_home(
     broker, plot, robot, tmp_path, monkeypatch, told

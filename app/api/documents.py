@@ -17,7 +17,7 @@ from fieldmon.compute.arrays import run_ends
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import RESULT_NAMES
-from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.infestation.records import ABSENT, PRESENT
 from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring import kept_open
 from fieldmon.monitoring.day_ahead import (

@@ -34,7 +34,7 @@ def must_be(
     Parameters
     ----------
     what
-        What is asked for, and what it must be: ``"Records must be Observations"``.
+        What is asked for, and what it must be: ``"Records must be fm.Records"``.
     given
         What was handed over.
     kind
@@ -142,8 +142,8 @@ def with_article(name: str) -> str:
 
     Examples
     --------
-    >>> with_article("Robot"), with_article("Observations")
-    ('a Robot', 'Observations')
+    >>> with_article("Robot"), with_article("Records")
+    ('a Robot', 'Records')
     """
     if name.endswith("s"):
         return name

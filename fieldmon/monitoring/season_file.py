@@ -13,8 +13,8 @@ from fieldmon.compute.array_arguments import array_of_plants
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.records import Records
 from fieldmon.io.readers.nearby import warn_of_left_out
 from fieldmon.monitoring import (
     derived_layers,
@@ -121,7 +121,7 @@ class Season(SeasonPlans, SeasonFrames):
         cls,
         path: str | Path,
         plot: Plot,
-        observations: Observations | None = None,
+        records: Records | None = None,
         settings: MonitoringSettings | None = None,
         messages: Iterable[KeptMessage] | None = None,
         risk: Any = None,  # noqa: ANN401 - held to its kind below
@@ -135,7 +135,7 @@ class Season(SeasonPlans, SeasonFrames):
             The file, a GeoPackage; it must not exist.
         plot
             Plants and the ways between them.
-        observations
+        records
             Records from before; None: none.
         settings
             What is chosen; None: the defaults, from today on in the plot's time zone.
@@ -159,20 +159,20 @@ class Season(SeasonPlans, SeasonFrames):
             did not end before.
         """
         settings = _chosen_for(plot, settings, chosen)
-        if observations is None:
-            observations = Observations.none()
+        if records is None:
+            records = Records.none()
         begins = np.datetime64(settings.begins, "D")
         if messages is None:
-            warn_of_left_out(observations, begins, plot.field)
+            warn_of_left_out(records, begins, plot.field)
         if risk is not None:
             risk = array_of_plants(np.float64, "A risk map", risk)
-        prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
+        prior = prior_chance(plot.grid, plot.field, records, begins, settings.prior, risk)
         told = settings.robot.detects
-        history = nothing_yet(plot, settings, prior, observations, told)
+        history = nothing_yet(plot, settings, prior, records, told)
         first = SeasonContents(FileRevision(0, 0), settings, history, Mornings(history))
         with Store.new(path) as db:
             tables.write_plot(db, plot)
-            tables.write_observations(db, observations)
+            tables.write_records(db, records)
             tables.write_messages(db, () if messages is None else messages)
             if risk is not None:
                 tables.write_array(db, "risk", risk)
@@ -363,6 +363,11 @@ def _chosen_for(
     plot: Plot, settings: MonitoringSettings | None, chosen: dict[str, Any]
 ) -> MonitoringSettings:
     """Return the settings of a new season, given as one or one by one; raise if none can be."""
+    if "observations" in chosen:
+        raise SettingError(
+            "A season's records must be given as 'records', but they are given as 'observations', "
+            "which is their name no more. Write records=."
+        )
     if settings is None:
         clock = local_clock(plot.field)
         settings = settings_from({"begins": clock.today()} | chosen, clock.at)

@@ -11,7 +11,7 @@ import numpy as np
 
 from fieldmon.compute.wording import first_few
 from fieldmon.errors import FileProblem, ObservationError
-from fieldmon.infestation.observations import PRESENT, UNKNOWN
+from fieldmon.infestation.records import PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.tables import read_text_table
 from fieldmon.io.options import ReadOptions, RecordOptions

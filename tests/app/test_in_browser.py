@@ -26,7 +26,7 @@ from app.state import menu
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.level_range import first_level_range
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_lines, read_plots, read_records
 from fieldmon.io.writers import FORMATS
@@ -124,7 +124,7 @@ def sample():
 
 def season(path, plot, **settings):
     settings = MonitoringSettings(date(2026, 11, 16), **settings)
-    return Season.create(path, plot, Observations.none(), settings)
+    return Season.create(path, plot, Records.none(), settings)
 
 
 def test_plants_and_route_are_drawn_where_they_are(screen):

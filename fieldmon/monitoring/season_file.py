@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be_language
+from fieldmon.compute.arguments import must_be_language, must_have_its_name
 from fieldmon.compute.array_arguments import array_of_plants
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
@@ -363,11 +363,7 @@ def _chosen_for(
     plot: Plot, settings: MonitoringSettings | None, chosen: dict[str, Any]
 ) -> MonitoringSettings:
     """Return the settings of a new season, given as one or one by one; raise if none can be."""
-    if "observations" in chosen:
-        raise SettingError(
-            "A season's records must be given as 'records', but they are given as 'observations', "
-            "which is their name no more. Write records=."
-        )
+    must_have_its_name("A season's records", chosen, "observations", "records")
     if settings is None:
         clock = local_clock(plot.field)
         settings = settings_from({"begins": clock.today()} | chosen, clock.at)

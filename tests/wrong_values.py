@@ -441,7 +441,7 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         "keep_labels": who | {"labels": (), "source": ""},
         "kept_route": on | who,
         "merge": {"other": season},
-        "other_maps": {"whole": True, "tell": None},
+        "changed_maps": {"whole": True, "tell": None},
         "plan": planned | {"who": None},
         "plan_each": planned,
         "record": recorded | {"inspections": seen, "source": ""},

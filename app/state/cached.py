@@ -268,9 +268,11 @@ def learnt(key: str, revision: str, day: str, _season: Season) -> tuple[Learnt, 
 
 
 @st.cache_resource(max_entries=_MAPS, show_spinner=False)
-def told_otherwise(key: str, revision: str, day: str, _season: Season) -> tuple[ToldOtherwise, ...]:
+def other_detections(
+    key: str, revision: str, day: str, _season: Season
+) -> tuple[ToldOtherwise, ...]:
     """Return with which inspections up to a day of a season another detection rate was said."""
-    return _season.told_otherwise(date.fromisoformat(day))
+    return _season.other_detections(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)

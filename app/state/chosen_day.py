@@ -253,9 +253,9 @@ def learnt(choices: Choices) -> tuple[Learnt, ...]:
     return cached.learnt(choices.key, choices.revision, choices.day, choices.open_season)
 
 
-def told_otherwise(choices: Choices) -> tuple[ToldOtherwise, ...]:
+def other_detections(choices: Choices) -> tuple[ToldOtherwise, ...]:
     """Return with which inspections another detection rate was said than the season's own."""
-    return cached.told_otherwise(choices.key, choices.revision, choices.day, choices.open_season)
+    return cached.other_detections(choices.key, choices.revision, choices.day, choices.open_season)
 
 
 def forecast(choices: Choices) -> Forecast:

@@ -182,6 +182,6 @@ def init(options: InitOptions) -> None:
         f"Season begun in {path}: {_counting(known.records, settings)}, about "
         f"{estimate(ahead.expected)} plants believed infested ({ahead.low:,} to {ahead.high:,})."
     )
-    if (taught := season.taught()) is not None:
+    if (taught := season.earlier_season_note()) is not None:
         typer.echo(taught)
     typer.echo(f"Next: fieldmon plan {shlex.quote(str(path))} -o route.geojson")

@@ -332,7 +332,7 @@ class OpenSeason:
         is_anything = len(history.inspections) or len(history.treatments)
         return last if is_anything and (last := self.last_recorded()) > today else None
 
-    def day_meant(self) -> date:
+    def default_date(self) -> date:
         """Return the day that is meant where none is named: the last date, but today at most.
 
         Where today is before the season it is the last date.

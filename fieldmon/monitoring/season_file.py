@@ -302,7 +302,7 @@ class Season(SeasonPlans, SeasonFrames):
             if _advised(db, on)[-1:] != [said]:  # nor has anybody else written it meanwhile
                 season_log.append(db, "advised", written_in(db, who), date=str(on), said=said)
 
-    def held_to_log(self) -> tuple[str, ...]:
+    def check_against_log(self) -> tuple[str, ...]:
         """Return a sentence for each thing that the file says otherwise than its log."""
         with self.store.reading() as db:
             return outside_changes.not_as_logged(db)
@@ -324,10 +324,10 @@ class Season(SeasonPlans, SeasonFrames):
         """
         doubt = () if self.store.doubt is None else (self.store.doubt,)
         doubt = (*doubt, *self.settings.unlike_its_pest())
-        held = self.held_to_log() if whole else ()
-        return (*doubt, *held, *self.other_maps(whole=whole))
+        held = self.check_against_log() if whole else ()
+        return (*doubt, *held, *self.changed_maps(whole=whole))
 
-    def other_maps(
+    def changed_maps(
         self, *, whole: bool = True, tell: Callable[[int, int], object] | None = None
     ) -> tuple[str, ...]:
         """Return a sentence for each day whose chance map is not the one that was used then.

@@ -176,7 +176,7 @@ class DayFacts:
                     on, "".join(names[:1]), plan.scene.seconds_left
                 ),
                 skipped=() if worked else left_out_in_words(plan.scene, route),
-                recorded=recorded, otherwise=season.said_otherwise(on, words.isolated),
+                recorded=recorded, otherwise=season.contradiction_lines(on, words.isolated),
             )  # fmt: skip
 
 

@@ -331,7 +331,7 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
 
 def _goes_by(facts: _Facts) -> Iterator[Block]:
     yield _batches(facts)
-    if otherwise := facts.season.told_otherwise(facts.on):
+    if otherwise := facts.season.other_detections(facts.on):
         rest = _left_out(otherwise, _MOST_OTHERWISE, words.REST)
         yield Listing("", (*(one.sentence() for one in otherwise[:_MOST_OTHERWISE]), *rest))
     yield _treatments(facts)

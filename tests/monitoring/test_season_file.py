@@ -146,7 +146,7 @@ def test_a_map_made_otherwise_is_noticed(season):
 def test_who_holds_mornings_to_their_digests_says_how_many_are_done(path):
     season, told = Season(path), []
     season.plan(BEGINS + timedelta(days=2))
-    season.other_maps(tell=lambda *done: told.append(done))
+    season.changed_maps(tell=lambda *done: told.append(done))
     with season.store.reading() as db:
         (n,) = db.execute("SELECT count(*) FROM days").fetchone()
     assert told == [(day, n) for day in range(1, n + 1)]
@@ -166,7 +166,7 @@ def test_who_holds_mornings_to_their_digests_says_how_many_are_done(path):
         lambda season, on: season.kept_route(on),
         lambda season, _: season.last_date(),
         lambda season, on: season.learnt(on),
-        lambda season, _: season.other_maps(),
+        lambda season, _: season.changed_maps(),
         lambda season, on: season.progress(on),
         lambda season, on: season.scene(on),
         lambda season, on: season.status(on),

@@ -139,7 +139,7 @@ def _odds_shift(chance: Floats, wanted: float) -> float:
 def start_infested(
     chance: Floats, expected_share: float | None, rng: np.random.Generator
 ) -> NDArray[np.bool_]:
-    """Draw who is infested on the first morning, ``(n,)``, each plant by its own chance.
+    """Draw which plants are infested on the first morning, ``(n,)``, each plant by its own chance.
 
     With `expected_share` the chances are :func:`scaled` to that mean first. The same generator
     state and more chance infest the same plants and others besides.

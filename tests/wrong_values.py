@@ -435,9 +435,9 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         "contradictions": {"inspections": seen},
         "correct": who,
         "corrections_in": {"copy": season.path},
+        "count_never_recorded": {"inspections": seen},
         "effects": on | {"units": None},
         "is_copy": {"file": season.path},
-        "is_of_one_plot": {"file": season.path},
         "keep_labels": who | {"labels": (), "source": ""},
         "kept_route": on | who,
         "merge": {"other": season},
@@ -453,7 +453,6 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         "to_geopandas": {"of": "plants", "on": TODAY},
         "undo": who | {"batch": None, "inspection": None},
         "undo_change": who,
-        "unrecorded": {"inspections": seen},
         "verdict": on | {"level": 0.05, "sure": 0.9, "plants": None},
         "verify": {"whole": True},
     }  # fmt: skip

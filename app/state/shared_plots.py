@@ -135,14 +135,13 @@ def due(plots: Iterable[PlotState]) -> list[PlotState]:
     return [some[k] for k in estate_day.due([one.days_since for one in some])]
 
 
-def not_due(plots: Iterable[PlotState]) -> list[PlotLeftOut]:
-    """Return the plots that are seen too lately to be planned."""
-    some = [*plots]
-    wanted = {id(one) for one in due(some)}
+def not_due(plots: Iterable[PlotState], wanted: Iterable[PlotState]) -> list[PlotLeftOut]:
+    """Return the plots that are not among those `wanted`: they are seen too lately."""
+    planned = {id(one) for one in wanted}
     return [
         PlotLeftOut(one.name, in_words(estate_day.not_due(one.days_since or 0)))
-        for one in some
-        if id(one) not in wanted
+        for one in plots
+        if id(one) not in planned
     ]
 
 

@@ -111,7 +111,7 @@ def _read_by_days(
 
     read = read_inspection_rows(source, options)
     rows = read.value
-    if options.date_order is not None or not _n_exported(rows):
+    if options.date_order is not None or not rows.exported.any():
         return read, False
     with season.store.reading() as db:
         days = dict(db.execute("SELECT digest, date FROM inspections WHERE digest NOTNULL"))
@@ -139,12 +139,12 @@ def edits_in(season: Season, rows: InspectionRows, options: InspectionOptions) -
     from fieldmon.io.readers.inspections import exported  # noqa: PLC0415 - half a second to import
 
     edits = Edits([], [], set(), {}, 0, 0)
-    if rows.mark is None or not _n_exported(rows):
+    if rows.mark is None or not rows.exported.any():
         return edits
     lacked = _lacked(rows)
     with season.store.reading() as db:
         held = _held(db)
-    strange = (rows.mark != "") & ~np.isin(rows.mark, np.array([*held], np.str_))
+    strange = rows.exported & ~np.isin(rows.mark, np.array([*held], np.str_))
     edits.unknown.extend(rows.mark[strange].tolist())
     told, marks, why = exported(rows.take(~strange), season.plot.grid, options)
     edits.unsure.update(why)
@@ -204,7 +204,7 @@ def _of_held_faces(
     Of another plant with two faces nobody knows which: that is added to what is `unsure`.
     """
     plants: list[int] = told.plant.tolist()
-    if rows.mark is None or not (grid.twin >= 0).any():
+    if rows.mark is None or not grid.has_faces:
         return plants
     bare = (rows.face == 0) & (rows.plant < 0)
     record = dict(zip(rows.mark[bare].tolist(), rows.source_row[bare].tolist(), strict=True))
@@ -306,14 +306,14 @@ def edited_copy(
             sets = ", ".join(f"{column} = ?" for column in says)
             db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", (*says.values(), row))  # noqa: S608 - ours
         db.execute("COMMIT")
-    return EditedCopy(copy, len(rows) - _n_exported(rows), edits.n_notes)
+    return EditedCopy(copy, int((~rows.exported).sum()), edits.n_notes)
 
 
 def _exported_rows(season: Season, source: Source, options: InspectionOptions) -> InspectionRows:
     """Return the rows of a file that holds inspections exported from a season; refuse others."""
     (read, is_open), name = _read_by_days(season, source, options), source_name(source)
     rows = read.value
-    n_exported = _n_exported(rows)
+    is_exported = rows.exported.any()
     if is_open:
         raise ObservationError(
             worded(
@@ -323,7 +323,7 @@ def _exported_rows(season: Season, source: Source, options: InspectionOptions) -
             )
         )
     doubts = [one.sentence for one in read.messages if one.severity.is_loss]
-    if doubts and (n_exported or not len(rows)):
+    if doubts and (is_exported or not len(rows)):
         raise ObservationError(
             worded(
                 "What was corrected in an export must be read for certain, but of {name}: {doubts} "
@@ -331,7 +331,7 @@ def _exported_rows(season: Season, source: Source, options: InspectionOptions) -
                 name=name, doubts=joined(" ", doubts),
             )
         )  # fmt: skip
-    if not n_exported or "result" in _lacked(rows):
+    if not is_exported or "result" in _lacked(rows):
         raise ObservationError(
             worded(
                 "A file of corrections must hold inspections exported from the season, with their "
@@ -342,11 +342,6 @@ def _exported_rows(season: Season, source: Source, options: InspectionOptions) -
             )
         )
     return rows
-
-
-def _n_exported(rows: InspectionRows) -> int:
-    """Return how many rows of a file a season has exported."""
-    return 0 if rows.mark is None else int((rows.mark != "").sum())
 
 
 def _refuse_uncertain(edits: Edits, name: str) -> None:

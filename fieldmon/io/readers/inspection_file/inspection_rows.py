@@ -6,8 +6,9 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
+
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 
@@ -109,6 +110,11 @@ class InspectionRows:
     plot_column: NDArray[np.str_] | None = None
     mark: NDArray[np.str_] | None = None
     lacks: NDArray[np.str_] | None = None
+
+    @property
+    def exported(self) -> NDArray[np.bool_]:
+        """Which of them a season has exported, ``(m,)``: those that have a digest."""
+        return np.zeros(len(self), np.bool_) if self.mark is None else self.mark != ""
 
     def __len__(self) -> int:
         """Return the number of records."""

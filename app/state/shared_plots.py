@@ -147,13 +147,13 @@ def not_due(plots: Iterable[PlotState], wanted: Iterable[PlotState]) -> list[Plo
 
 def of_one_plot(names: Iterable[str]) -> tuple[Worded, ...]:
     """Return a sentence on each plot of several seasons here, if one of these is among them."""
-    seasons, wanted, own = [], {*names}, set[str]()
+    seasons, wanted, own = [], {*names}, []
     for name in seasons_folder.names() if wanted else ():
         with suppress(FieldmonError):  # what cannot be opened is said where it is to be
             season = cached.season(seasons_folder.path_of(name))
             seasons.append(season)
-            own |= {season.planting} if name in wanted else set()
-    among = [one for one in seasons if one.planting in own]
+            own += [season] if name in wanted else []
+    among = [one for one in seasons if any(map(one.is_on_plot_of, own))]
     return season_copies.of_one_plot(among, texts.isolated)
 
 

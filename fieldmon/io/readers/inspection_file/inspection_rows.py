@@ -24,6 +24,11 @@ def mark_in_table(digest: str) -> str:
     return f"{_IN_TABLE}{digest}"
 
 
+def is_mark(cell: str) -> bool:
+    """Return whether a cell is a digest of a season's file, or one as such a table has it."""
+    return bool(_DIGEST.fullmatch(cell.removeprefix(_IN_TABLE)))
+
+
 def mark_of(cell: str) -> str:
     """Return the digest that such a table has in a cell; empty where it is none."""
     digest = cell.removeprefix(_IN_TABLE)
@@ -80,6 +85,8 @@ class InspectionRows:
     mark
         The digest by which a season's file knows it, where it was exported from one; else empty.
         None: all empty.
+    mark_called
+        What stands where a season's file has its digest, as the file has it. None: all empty.
     lacks
         Which columns of a season's inspections the file does not have, between commas.
     """
@@ -109,6 +116,7 @@ class InspectionRows:
     plot_called: NDArray[np.str_] | None = None
     plot_column: NDArray[np.str_] | None = None
     mark: NDArray[np.str_] | None = None
+    mark_called: NDArray[np.str_] | None = None
     lacks: NDArray[np.str_] | None = None
 
     @property

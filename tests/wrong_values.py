@@ -438,6 +438,7 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         "effects": on | {"units": None},
         "is_copy": {"file": season.path},
         "is_of_one_plot": {"file": season.path},
+        "is_on_plot_of": {"other": season},
         "keep_labels": who | {"labels": (), "source": ""},
         "kept_route": on | who,
         "merge": {"other": season},

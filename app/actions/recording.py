@@ -110,7 +110,7 @@ def _show_one(choices: Choices) -> None:
     else:
         show(left.number_input, texts.HISTORY_ROW, 0, None, box="one_row")
     show(right.number_input, texts.HISTORY_PLANT, 0, None, box="one_plant")
-    if (choices.plot.grid.twin >= 0).any():
+    if choices.plot.grid.has_faces:
         show(st.segmented_control, texts.HISTORY_FACE, [1, 2], box="one_face")
     show(
         st.segmented_control, texts.RESULT, [FOUND, CLEAN, SKIPPED, GONE],

@@ -58,7 +58,7 @@ def show(plots: list[PlotState], not_among: Iterable[NotAmong] = ()) -> SharedPl
     crew = _crew(shared_plots.usual_crew(plots))
     also = widget_memory.show(st.checkbox, texts.PLAN_ALL_ALSO, key="crew_also", default=False)
     wanted = plots if also else shared_plots.due(plots)
-    lately = [] if also else shared_plots.not_due(plots)
+    lately = shared_plots.not_due(plots, wanted)
     for said in shared_plots.of_one_plot([one.source for one in plots if one.number is None]):
         st.warning(in_words(said))
     if not wanted:

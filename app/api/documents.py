@@ -56,7 +56,6 @@ def plot_document(season: Season) -> tuple[str, bytes]:
     """Return a short name of what the plot is, and its document; it never changes."""
     grid, field = season.plot.grid, season.plot.field
     lonlat, rows = np.round(grid.lonlat(), _DIGITS), grid.unbroken
-    two_faces = bool((grid.twin >= 0).any())
     document = {
         "name": field.name,
         "boundary": _geometry(field.boundary),
@@ -76,7 +75,7 @@ def plot_document(season: Season) -> tuple[str, bytes]:
             "lon": lonlat[:, 0].tolist(),
             "lat": lonlat[:, 1].tolist(),
             "number": season.plant_numbers.number.tolist(),
-            **({"face": faces(grid, np.arange(len(grid))).tolist()} if two_faces else {}),
+            **({"face": faces(grid, np.arange(len(grid))).tolist()} if grid.has_faces else {}),
         },
     }
     made = _json(document)

@@ -67,7 +67,7 @@ def place_columns(grid: PlantGrid, plants: NDArray[np.integer]) -> dict[str, obj
     numbered = plant_numbers(grid, plants)
     line = numbered.line
     row = [grid.line_signs[k] for k in line.tolist()] if grid.row_names else line
-    face = {texts.COLUMN_FACE: faces(grid, plants)} if (grid.twin >= 0).any() else {}
+    face = {texts.COLUMN_FACE: faces(grid, plants)} if grid.has_faces else {}
     return {**({texts.COLUMN_ROW: row} if grid.in_rows else {}),
             texts.COLUMN_PLANT: numbered.number, **face}  # fmt: skip
 

@@ -135,26 +135,25 @@ def due(plots: Iterable[PlotState]) -> list[PlotState]:
     return [some[k] for k in estate_day.due([one.days_since for one in some])]
 
 
-def not_due(plots: Iterable[PlotState]) -> list[PlotLeftOut]:
-    """Return the plots that are seen too lately to be planned."""
-    some = [*plots]
-    wanted = {id(one) for one in due(some)}
+def not_due(plots: Iterable[PlotState], wanted: Iterable[PlotState]) -> list[PlotLeftOut]:
+    """Return the plots that are not among those `wanted`: they are seen too lately."""
+    planned = {id(one) for one in wanted}
     return [
         PlotLeftOut(one.name, in_words(estate_day.not_due(one.days_since or 0)))
-        for one in some
-        if id(one) not in wanted
+        for one in plots
+        if id(one) not in planned
     ]
 
 
 def of_one_plot(names: Iterable[str]) -> tuple[Worded, ...]:
     """Return a sentence on each plot of several seasons here, if one of these is among them."""
-    seasons, wanted, own = [], {*names}, set[str]()
+    seasons, wanted, own = [], {*names}, []
     for name in seasons_folder.names() if wanted else ():
         with suppress(FieldmonError):  # what cannot be opened is said where it is to be
             season = cached.season(seasons_folder.path_of(name))
             seasons.append(season)
-            own |= {season.planting} if name in wanted else set()
-    among = [one for one in seasons if one.planting in own]
+            own += [season] if name in wanted else []
+    among = [one for one in seasons if any(map(one.is_on_plot_of, own))]
     return season_copies.of_one_plot(among, texts.isolated)
 
 

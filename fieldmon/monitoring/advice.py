@@ -261,9 +261,8 @@ class Advice:
             "Each face counts as a plant: in the threshold, among the infested, and in what one "
             "loses a day. Where it is treated, its two faces are one plant."
         )
-        has_faces = bool((self.grid.twin >= 0).any())
         asked = self.asked.assumed(units, finds_treated=self.finds_treated)
-        return joined(" ", [*[faces] * has_faces, asked])
+        return joined(" ", [*[faces] * self.grid.has_faces, asked])
 
     def though(self, *, above: bool = True) -> list[str]:
         """Return why there are zones, where what is said of the plot does not ask for them."""

@@ -65,7 +65,7 @@ class Draft(NamedTuple):
         """Return for people why it does not count."""
         return worded(
             "Finding {row} (fid, in the layer Findings), which another program added, does not "
-            "count: {why} Mend it there, or delete it.",
+            "count: {why} Correct it there, or delete it.",
             row=self.row,
             why=self.why if self.why.endswith(".") else worded("{why}.", why=self.why),
         )

@@ -438,7 +438,7 @@ class SeasonInspections(SeasonCorrections):
         grid = self.plot.grid
         with self.store.reading() as db:
             said = batches.contents(db, numbers)
-            if (grid.twin < 0).all():
+            if not grid.has_faces:
                 return said
             vines = treatments.n_vines(db, numbers, self._inside, grid)
         return {number: replace(one, n=vines.get(number, one.n)) for number, one in said.items()}

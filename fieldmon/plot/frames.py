@@ -63,7 +63,7 @@ def plant_frame(
         row["row_name"] = [grid.row_names.get(line, "") for line in numbered.line.tolist()]
     columns = {"plant": chosen, **block, **row, "number": numbered.number}
     twin = grid.twin[chosen]
-    if (grid.twin >= 0).any():
+    if grid.has_faces:
         columns["face"] = np.where(twin < 0, 1, np.where(chosen < twin, 1, 2))
     lon, lat = grid.lonlat(chosen).T
     lon = _in_one_piece(lon, grid, boundary)

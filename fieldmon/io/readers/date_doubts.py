@@ -48,10 +48,7 @@ def amid_past(day: NDArray[np.datetime64], today: date | None = None) -> dict[in
     if not (~ahead & ~np.isnat(day)).any():
         return {}
     return {
-        i: worded(
-            "its day, {day}, has not come, but others of the file have; correct it there",
-            day=day[i],
-        )
+        i: worded("its day, {day}, has not come, but others of the file have", day=day[i])
         for i in np.flatnonzero(ahead).tolist()
     }
 

@@ -238,7 +238,7 @@ class HandoffPlan:
     @property
     def has_faces(self) -> bool:
         """Return whether both faces of a plant are inspected, each for itself."""
-        return bool((self.grid.twin >= 0).any())
+        return self.grid.has_faces
 
     @property
     def has_blocks(self) -> bool:

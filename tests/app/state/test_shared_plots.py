@@ -28,9 +28,10 @@ def plot(name, days):
 
 def test_due_is_what_was_not_seen_for_three_days_or_ever():
     plots = [plot("a", 0), plot("b", 2), plot("c", 3), plot("d", None)]
-    assert [one.name for one in shared_plots.due(plots)] == ["c", "d"]
+    due = shared_plots.due(plots)
+    assert [one.name for one in due] == ["c", "d"]
     assert shared_plots.due(plots[:2]) == []
-    left_out = [(one.plot, one.why) for one in shared_plots.not_due(plots)]
+    left_out = [(one.plot, one.why) for one in shared_plots.not_due(plots, due)]
     assert left_out == [
         ("a", "inspected today, not due"), ("b", "inspected 2 days ago, not due"),
     ]  # fmt: skip

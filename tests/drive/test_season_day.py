@@ -20,7 +20,7 @@ from fieldmon.monitoring.shift_work import made_by
 from fieldmon.plot.robot import Robot, scout
 
 ON = date(2026, 4, 6)
-SETTINGS = MonitoringSettings(ON, robot=Robot(hours=0.3))
+SETTINGS = MonitoringSettings(ON, robot=Robot(hours=0.2))
 
 
 def found_at(stop):
@@ -177,7 +177,7 @@ def test_a_day_goes_on_past_midnight_as_it_would_by_day(plot, tmp_path):
     """Also where it is begun again: what was found after midnight is known, dated the next day."""
     asked, again = [], [3, 8, 9, 10**6]
     for starts, ends in ((time(6), [10**6]), (time(23, 50), [10**6]), (time(23, 50), again)):
-        settings = replace(SETTINGS, starts=starts)
+        settings = replace(SETTINGS, robot=Robot(hours=0.3), starts=starts)
         season = Season.create(tmp_path / f"{len(asked)}.gpkg", plot, None, settings)
         for n in ends:
             with suppress(KeyboardInterrupt):

@@ -201,8 +201,8 @@ def test_the_table_that_is_exported_comes_back_as_spreadsheets_save_it(varied, t
     german = {"delimiter": ";", "day": "{d:02d}.{m:02d}.{y}"}
     american = {"day": "{m}/{d}/{y}", "clock": "{h}:{m}:{s}"}
     minutes = {"day": "{d:02d}/{m:02d}/{y}", "clock": "{h}:{m}"}
-    ways = ({}, german, german | {"code": "cp1252"}, american, minutes, {"delimiter": "\t"})
-    for way in ways:  # what says the same is no correction, nor a note
+    # what says the same is no correction, nor a note
+    for way in ({}, minutes, {"delimiter": "\t"}):
         assert from_spreadsheet(varied, lines, tmp_path, **way) == (0, 0, 0), way
     edited = [{**line} for line in lines]
     of = {line["who"] + line["date"]: line for line in edited}
@@ -210,7 +210,8 @@ def test_the_table_that_is_exported_comes_back_as_spreadsheets_save_it(varied, t
     of["Jörg2026-05-02"].update(who="Dan", notes="other")
     of["דנה2026-05-03"].update(number="2", lon="", lat="")
     edited.append({**lines[0], "row": "1", "number": "2", "lon": "", "lat": "", "digest": ""})
-    for way in ways[1:4]:
+    # nor is it beside what is changed
+    for way in (german, german | {"code": "cp1252"}, american):
         assert from_spreadsheet(varied, edited, tmp_path, **way) == (3, 1, 1), way
         now = varied.history.inspections
         (moved,) = numbers.number[now.plant[now.date == np.datetime64("2026-05-03")]]

@@ -75,8 +75,9 @@ def night_of(season, day, who=""):
     return begins, moments[-1].item()
 
 
-@pytest.mark.parametrize("returns", [True, False])
-@pytest.mark.parametrize("late_s", [None, 0.0, 2400.0])
+@pytest.mark.parametrize(
+    ("returns", "late_s"), [(True, None), (False, None), (True, 0.0), (False, 2400.0)]
+)
 def test_each_night_of_a_season_has_its_own_begin_and_all_its_hours(tmp_path, returns, late_s):
     """Those before went past midnight, too. With `late_s` two of a team, one so much later."""
     robot, starts = replace(ROBOT, hours=1.0, returns=returns), time(23, 30)

@@ -101,14 +101,14 @@ class TeamPlan:
         return self.late_s + [member.starts_s for member in self.members]
 
     @property
-    def expected_found(self) -> float:
+    def expected_finds(self) -> float:
         """Return the infested plants that would be found, as believed."""
-        return sum(day.route.expected_found for day in self.days)
+        return sum(day.route.expected_finds for day in self.days)
 
     @property
     def sentence(self) -> str:
         """Return for people what is expected, and what no other routes can exceed."""
-        return bound_sentence(self.expected_found, self.bound, routes="routes")
+        return bound_sentence(self.expected_finds, self.bound, routes="routes")
 
     def meetings(self) -> list[Meeting]:
         """Return where two are in one aisle at once: nowhere, if the plan is right."""
@@ -168,7 +168,7 @@ def plan_team(
     >>> chance = fm.plan_day(plot, on="2026-11-18").chance
     >>> members = fm.TeamMember("Ann", fm.scout().with_hours(1)), fm.TeamMember("robot")
     >>> team = fm.plan_team(plot, chance, members, on="2026-11-18 05:30")
-    >>> len(team.routes), team.meetings(), team.expected_found <= team.bound
+    >>> len(team.routes), team.meetings(), team.expected_finds <= team.bound
     (2, [], True)
     >>> [f"{route.notes.who} {route.notes.start:%H:%M}" for route in team.routes]
     ['Ann 05:30', 'robot 05:30']
@@ -253,7 +253,7 @@ def _handed_out(day: DayPlan, chance: Float, notes: RouteNotes) -> DayPlan:
 
 
 def _expected(days: Sequence[DayPlan]) -> float:
-    return float(sum(day.route.expected_found for day in days))
+    return float(sum(day.route.expected_finds for day in days))
 
 
 def bound_of_days(days: Sequence[DayPlan]) -> str:

@@ -7,6 +7,7 @@ from datetime import date
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import figure, worded
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from fieldmon.compute.wording import Worded
@@ -52,11 +53,25 @@ class Units:
         ``"ha"``, ``"dunam"`` or ``"acre"``.
     date_like
         An example of a date, a key of `DATES`.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.Units(length="ft").metres(3.0)
+    '10 ft'
     """
 
     length: str = "m"
     area: str = "ha"
     date_like: str = "2026-11-16"
+
+    def __post_init__(self) -> None:
+        known = {"length": LENGTHS, "area": AREAS_M2, "date_like": DATES}
+        for name, those in known.items():
+            if not isinstance(said := getattr(self, name), str) or said not in those:
+                raise SettingError(
+                    f"The {name} of units must be one of {', '.join(those)}, but it is {said!r}."
+                )
 
     def metres(self, value_m: float, decimals: int = 0) -> str:
         """Return a length; long ones in kilometres or miles."""

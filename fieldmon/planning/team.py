@@ -124,9 +124,10 @@ def plan_team(
     plot: Plot,
     chance: ArrayLike,
     members: Sequence[TeamMember],
-    progress: Callable[[int, int], None] | None = None,
-    passing_m: float = 0.0,
+    *,
     on: str | date | datetime | np.datetime64 | None = None,
+    passing_m: float = 0.0,
+    progress: Callable[[int, int], None] | None = None,
 ) -> TeamPlan:
     """Plan a day of a team: no plant twice, and no two in one aisle at once.
 
@@ -141,14 +142,14 @@ def plan_team(
         ``(n,)`` believed chance of infestation, in 0..1, for instance `DayPlan.chance`.
     members
         Who works, robots and scouts: `team_of` returns several of one kind.
-    progress
-        Told how many routes were looked for and prices of plants tried for the bound, and of how
-        many.
+    on
+        The day, or when work starts on it, as `plan_day` takes it: routes say when each begins.
     passing_m
         Metres of headland that two need to pass each other: where it is narrower nobody meets
         another head-on, but begins later. 0: they pass each other anywhere.
-    on
-        The day, or when work starts on it, as `plan_day` takes it: routes say when each begins.
+    progress
+        Told how many routes were looked for and prices of plants tried for the bound, and of how
+        many.
 
     Returns
     -------

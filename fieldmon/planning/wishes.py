@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
@@ -32,13 +33,16 @@ class Wishes:
 
     Examples
     --------
-    >>> from fieldmon.planning.wishes import Wishes
-    >>> Wishes((3, 4), (7,)).also((7,))
+    >>> import fieldmon as fm
+    >>> fm.Wishes((3, 4), (7,)).also((7,))
     Wishes(wanted=(3, 4, 7), unwanted=())
     """
 
     wanted: tuple[int, ...] = ()
     unwanted: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "Wishes'")
 
     def __bool__(self) -> bool:
         """Return whether anything is wished for."""

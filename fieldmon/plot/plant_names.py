@@ -35,6 +35,12 @@ class PlantNames(NamedTuple):
     """The names ``(n,)`` of row, block and plant of each measured plant, empty where it has none.
 
     None: no plant has one.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np
+    >>> fm.PlantNames(row=np.array(["R1", "R1", "R2"]))
+    <PlantNames: 3 plants>
     """
 
     row: NDArray[np.str_] | None = None

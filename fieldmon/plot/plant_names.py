@@ -60,7 +60,7 @@ class PlantNames(NamedTuple):
         return replace(field, plant_rows=self.row, plant_blocks=self.block, plant_names=self.plant)
 
     def take(self, which: NDArray[np.bool_]) -> Self:
-        """Return the names of those plants."""
+        """Return the names of `which` plants, ``(n,)`` whether."""
         return type(self)(*(None if one is None else one[which] for one in self))
 
 

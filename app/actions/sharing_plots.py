@@ -97,7 +97,7 @@ def _crew(usual: EstateCrew) -> EstateCrew:
 def _say(made: SharedPlots, not_among: Sequence[PlotLeftOut] = ()) -> None:
     routes = [one.route for one in made.turns]
     plants = sum(len(route) for route in routes)
-    finds = sum(route.expected_found for route in routes)
+    finds = sum(route.expected_finds for route in routes)
     with st.container(key="lead"):
         lead = texts.PLAN_ALL_LEAD.format(
             plants=number(plants, ","),

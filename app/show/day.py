@@ -114,7 +114,7 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
                   width="content")  # fmt: skip
         st.metric(mark(texts.DRIVE, taken, (*rows, "gate")), choices.units.metres(route.drive_m),
                   width="content")  # fmt: skip
-        st.metric(mark(texts.FINDS, taken, for_finds), about(route.expected_found),
+        st.metric(mark(texts.FINDS, taken, for_finds), about(route.expected_finds),
                   width="content")  # fmt: skip
     if len(route) and (said := _bound(chosen_day.with_bound(choices, plan).route)):
         st.caption(said, help=texts.BOUND_HELP)
@@ -124,7 +124,7 @@ def _bound(route: Route) -> str:
     """Return what no other route can exceed, against the figures above it; rounded up."""
     if route.found_bound is None:
         return ""
-    above = share_above(route.expected_found, route.found_bound)
+    above = share_above(route.expected_finds, route.found_bound)
     if above <= PROVED:
         return texts.BOUND_BEST
     if math.isinf(above):

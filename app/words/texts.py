@@ -765,9 +765,9 @@ DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"
 DECIDE_INFESTED, DECIDE_ITSELF, DECIDE_WRONG = "infested", "by itself", "may be wrong"
 DECIDE_WRONG_HELP = (
     "By itself: whether this zone alone needs treating. May be wrong: the chance that this answer "
-    "is wrong; where it is not clear, that treating would be needless."
+    "is wrong; where it says inspect more, that treating would be needless."
 )
-DECIDE_VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
+DECIDE_VERDICTS = {"treat": "treat", "do not treat": "do not treat", "inspect more": "inspect more"}
 DECIDE_NUMBERS = "numbers of the zones"
 DECIDE_ON_MAP = "zones to treat"
 DECIDE_TIP = Text("Zone {zone}: {share:.0%} infested; {verdict}")

@@ -154,7 +154,7 @@ class TracedMap:
         )  # fmt: skip
 
     def of_pest(self, pest: Pest) -> Self:
-        """Return the same, of a plot on which this pest lives."""
+        """Return the map of a plot on which this pest lives; how long one hides is not learnt."""
         cohorts = Cohorts.none(pest, len(self.chance))
         # an ancestry knows no infestation that ends of itself
         lives = pest.mortality_per_day == 0.0

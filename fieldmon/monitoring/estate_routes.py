@@ -185,7 +185,7 @@ def plan_table(
     table.writerow(_COLUMNS)
     for file, one in files.items():
         hours = (when.isoformat(timespec="seconds") for when in (one.begins, one.ends))
-        finds = round(one.route.expected_found, 2)
+        finds = round(one.route.expected_finds, 2)
         names, said = map(safe_cell, (one.plot, one.who)), safe_cell(" ".join(one.closed))
         table.writerow((file, *names, *hours, len(one.route), finds, said, ""))
     table.writerows(

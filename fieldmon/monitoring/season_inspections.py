@@ -45,9 +45,9 @@ from fieldmon.plot.local_clock import local_clock
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable, Sequence
-    from datetime import date
     from pathlib import Path
 
+    from fieldmon.compute.day_arguments import Day
     from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.batches import Batch, BatchContents
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -77,11 +77,11 @@ class SeasonInspections(SeasonCorrections):
         told = zip(inspections.plant.tolist(), dates, inspections.result.tolist(), strict=True)
         return sum(one not in known for one in told)
 
-    def contradicting(self, on: date) -> Inspections:
+    def contradicting(self, on: Day) -> Inspections:
         """Return a day's inspections of plants that were both clean and found on it."""
         return contradicting(self.history.inspections.on(on))
 
-    def said_otherwise(self, on: date, named: Callable[[str], str] = str) -> tuple[Worded, ...]:
+    def said_otherwise(self, on: Day, named: Callable[[str], str] = str) -> tuple[Worded, ...]:
         """Return a line for each such plant `on` a day: who says what; `named` writes a name."""
         return said_otherwise(self.history.inspections.on(on), self.plot.grid, named)
 
@@ -287,9 +287,24 @@ class SeasonInspections(SeasonCorrections):
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
         """Take a `batch` back (None: the last one), or one `inspection`; nothing is deleted.
 
-        Both are numbers; `who` takes it back, for the log. `redo` lets a batch count again, but no
-        inspection alone: that is recorded anew. Return a sentence that says what was undone. Raise
-        `SettingError` if there is nothing, or both are given.
+        `redo` lets a batch count again, but no inspection alone: that is recorded anew.
+
+        Parameters
+        ----------
+        batch, inspection
+            Number of the one or of the other.
+        who
+            Who takes it back, for the log.
+
+        Returns
+        -------
+        str
+            A sentence that says what was undone.
+
+        Raises
+        ------
+        SettingError
+            If there is nothing to take back, or both are given.
         """
         return self.take_back(batch, inspection, who).said
 
@@ -336,9 +351,24 @@ class SeasonInspections(SeasonCorrections):
     def redo(self, batch: int, who: str = "") -> str:
         """Let a `batch` that was undone count again; `who` does so, for the log.
 
-        What was taken back of it before, one by one or on a phone, stays so. Return a sentence that
-        says what counts again. Raise `SettingError` if the batch was not undone, or what it
-        corrected is not as it was before.
+        What was taken back of it before, one by one or on a phone, stays so.
+
+        Parameters
+        ----------
+        batch
+            Its number.
+        who
+            Who lets it count, for the log.
+
+        Returns
+        -------
+        str
+            A sentence that says what counts again.
+
+        Raises
+        ------
+        SettingError
+            If the batch was not undone, or what it corrected is not as it was before.
         """
         with self._lock, self.store.writing() as db:
             but = season_log.left_out_of(db, batch)
@@ -371,7 +401,7 @@ class SeasonInspections(SeasonCorrections):
         with self.store.reading() as db:
             return numbered_inspections.of_plant(db, plant)
 
-    def inspections_on(self, on: date) -> tuple[int, ...]:
+    def inspections_on(self, on: Day) -> tuple[int, ...]:
         """Return the numbers (fid) of the inspections `on` a day that count, in order."""
         with self.store.reading() as db:
             return numbered_inspections.of_day(db, on)

@@ -35,6 +35,12 @@ class PlantNames(NamedTuple):
     """The names ``(n,)`` of row, block and plant of each measured plant, empty where it has none.
 
     None: no plant has one.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np
+    >>> fm.PlantNames(row=np.array(["R1", "R1", "R2"]))
+    <PlantNames: 3 plants>
     """
 
     row: NDArray[np.str_] | None = None
@@ -54,7 +60,7 @@ class PlantNames(NamedTuple):
         return replace(field, plant_rows=self.row, plant_blocks=self.block, plant_names=self.plant)
 
     def take(self, which: NDArray[np.bool_]) -> Self:
-        """Return the names of those plants."""
+        """Return the names of `which` plants, ``(n,)`` whether."""
         return type(self)(*(None if one is None else one[which] for one in self))
 
 

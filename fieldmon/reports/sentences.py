@@ -26,7 +26,7 @@ def headline(route: Route, day: str) -> str:
         return worded(words.HEADLINE_NONE, day=day)
     line = plant_numbers(route.aisles.grid, route.plant).line
     low, high = row_ends(route.aisles.grid, line)
-    rows, finds = worded(words.ROW, low=low), route.expected_found
+    rows, finds = worded(words.ROW, low=low), route.expected_finds
     if not route.aisles.grid.in_rows:
         rows = worded(words.NO_ROWS)
     elif low != high:

@@ -30,7 +30,7 @@ def a_route(plot):
 
 
 class SevenStops:
-    end_s, expected_found, aisles = 3599.7, 1.234, a_plot().aisles
+    end_s, expected_finds, aisles = 3599.7, 1.234, a_plot().aisles
 
     def __len__(self):
         return 7

@@ -345,7 +345,7 @@ def test_it_tells_what_a_season_with_the_same_results_tells(tmp_path, plot, trea
         sampler="naive", prior=PriorSettings(0.0, edge_chance=0.0, path_chance=0.0),
     )  # fmt: skip
     assert astuple(monitor.estimate()) == pytest.approx(astuple(season.status(on).estimate))
-    assert monitor.verdict(0.9).verdict == season.verdict(on, 0.9).verdict == "look on"
+    assert monitor.verdict(0.9).verdict == season.verdict(on, 0.9).verdict == "inspect more"
     with monitor.day() as day:
         while (stop := day.ask()) is not None:
             day.tell(found=stop.plant % 9 == 0)

@@ -162,8 +162,10 @@ def test_a_date_of_no_season_is_a_sentence(season):
 
 
 def test_the_time_now_is_a_time_or_a_sentence(season):
-    with pytest.raises(SettingError, match="must be a time, but it is '11:00'"):
-        season.plan(BEGINS, "11:00")
+    with pytest.raises(SettingError, match="must be a time, but it is 'noon'"):
+        season.plan(BEGINS, "noon")
+    said, meant = (season.plan(BEGINS, now, keep=False) for now in ("07:00", time(7)))
+    assert said.scene.seconds_left == meant.scene.seconds_left
 
 
 def test_an_earlier_day_is_planned_by_what_counted_then(season, monkeypatch):

@@ -74,7 +74,7 @@ def check(plan):
                 )
             )
             assert day.route.end_s == pytest.approx(used + len(day.route) * robot.visit_s)
-    assert plan.expected_found <= plan.bound
+    assert plan.expected_finds <= plan.bound
 
 
 @pytest.mark.parametrize(("n", "faces"), [(1, 2), (3, 2), (5, 1)])
@@ -149,7 +149,7 @@ def test_a_member_s_day_is_expected_to_find_what_its_stops_hold_for_its_own_eyes
     plot, robot = plot_of(), Robot(hours=0.5, detection=detection)
     stops = np.array([3, 4, 40, 41])
     day = _day(MemberTask(plot.aisles, robot, detection * chances(plot)), stops)
-    assert day.route.expected_found == pytest.approx(detection * chances(plot)[stops].sum())
+    assert day.route.expected_finds == pytest.approx(detection * chances(plot)[stops].sum())
     assert day.scene.chance == pytest.approx(chances(plot))
 
 
@@ -157,7 +157,7 @@ def test_a_member_s_day_is_expected_to_find_what_its_stops_hold_for_its_own_eyes
 def test_two_are_never_worse_than_one_of_the_same_hours(seed):
     plot = plot_of()
     one, two = (
-        plan_team(plot, chances(plot, seed), team_of(n, Robot(hours=0.7))).expected_found
+        plan_team(plot, chances(plot, seed), team_of(n, Robot(hours=0.7))).expected_finds
         for n in (1, 2)
     )
     assert two >= one
@@ -167,9 +167,9 @@ def test_on_an_even_plot_a_team_comes_within_a_twentieth_of_its_bound():
     plot = plot_of(30, 30)
     for n in (2, 3):
         plan = plan_team(plot, chances(plot), team_of(n, Robot(hours=2.0)))
-        assert plan.expected_found >= 0.95 * plan.bound
+        assert plan.expected_finds >= 0.95 * plan.bound
     assert plan.sentence.startswith(
-        f"{estimate(plan.expected_found)} finds expected; no routes of "
+        f"{estimate(plan.expected_finds)} finds expected; no routes of "
     )
 
 
@@ -196,7 +196,7 @@ def test_the_days_of_a_team_have_a_bound_as_long_as_they_are_whole():
     plan = usual_plan()
     said = bound_of_days(plan.days)
     number, rest = said.split(maxsplit=1)
-    assert float(number) == pytest.approx(plan.expected_found, abs=0.05)
+    assert float(number) == pytest.approx(plan.expected_finds, abs=0.05)
     assert rest.startswith("finds expected; no routes of these hours ")
     begun = replace(plan.days[0], scene=replace(plan.days[0].scene, seconds_left=60.0))
     assert bound_of_days([begun, plan.days[1]]) == ""

@@ -507,7 +507,7 @@ def _in_the_field(phone, line, season):
     page.locator("#place .good", has_text="You are there").wait_for()
     first = plant_of(page)
     row, number = (int(each[0]) for each in plant_numbers(plot.grid, [first]))
-    assert re.search(rf"Row \W?{row}, plant \W?{number}, face [12]", page.locator("h1").inner_text())
+    assert re.search(rf"Row\W+{row}, plant\W+{number}, face\W[12]", page.locator("h1").inner_text())
     assert page.locator("#here").count() == 0, "on neither face"
     # the neighbours of a find come next
     told_now(page, "found", 7)
@@ -553,11 +553,11 @@ def _asks_for_the_face(page, stays):
     assert page.evaluate("document.activeElement.tagName") == "H2"
     page.locator("#faces:not([data-resting])").wait_for()
     assert plant_of(page) == stays
-    return [int(faces.nth(k).get_attribute("data-plant")) for k in range(faces.count())]
+    return {int(faces.nth(k).get_attribute("data-plant")) for k in range(faces.count())}
 
 
 def _faces(plot, plant):
-    return sorted((plant, int(plot.grid.twin[plant])))
+    return {plant, int(plot.grid.twin[plant])}
 
 
 def _brings_a_photo_asked_for(page, season):

@@ -205,7 +205,10 @@ export class PlotMap {
     ink.fillStyle = paint.ground;
     ink.strokeStyle = paint.found;
     ink.lineWidth = 2;
-    for (const plant of this.shown.recorded) this.#diamond(ink, plant, r);
+    for (const plant of this.shown.recorded) {
+      this.#blank(ink, plant);
+      this.#diamond(ink, plant, r);
+    }
     ink.fillStyle = paint.found;
     ink.strokeStyle = paint.ring;
     ink.lineWidth = 1.5;
@@ -218,6 +221,12 @@ export class PlotMap {
     ink.moveTo(px - r, py - r); ink.lineTo(px + r, py + r);
     ink.moveTo(px + r, py - r); ink.lineTo(px - r, py + r);
     ink.stroke();
+  }
+
+  /** Take a plant's square away: its corners would make a star of the diamond on it. */
+  #blank(ink, plant) {
+    const [px, py] = this.#pixels(this.plot.x[plant], this.plot.y[plant]), side = Math.min(this.plot.room * 0.6 * this.scale, 14) + 2;
+    ink.fillRect(px - side / 2, py - side / 2, side, side);
   }
 
   #diamond(ink, plant, r) {

@@ -297,7 +297,8 @@ export class Page {
     const { plot, plant } = field, away = field.metresAway();
     const where = away == null ? say("no_position") : field.isThere() ? say("there") : say("away", { m: Math.round(away) });
     place.replaceChildren(
-      h("h1", {}, placeOf(plot, plant)),
+      // a number stays with its word
+      h("h1", {}, placeOf(plot, plant).replace(/ (?=\W?\d)/g, "\u00a0")),
       h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where),
         // what was seen today is no chance
         !field.done.has(plant) && !field.back.has(plant) && h("span", {}, chanceSaid(field.day.chance[plant])),
@@ -410,9 +411,11 @@ export class Page {
     const place = say("place", { row: signOf(plot, plant), plant: plot.number[plant] });
     let rests = true; // a glove that bounces chooses none
     const tap = (act) => () => { if (!rests) { this.menu.close(); act?.(); } };
-    const faces = [plant, twin].sort((a, b) => plot.face[a] - plot.face[b]);
+    // left and right as on the map, in every language; from the first where they are above each other
+    const { x } = plot.drawn ?? plot, far = (a, b) => Math.round(100 * (x[a] - x[b]));
+    const faces = [plant, twin].sort((a, b) => far(a, b) || plot.face[a] - plot.face[b]);
     const head = h("h2", { tabindex: "-1", autofocus: true }, place); // a key that is held presses no button
-    const choice = h("div", { class: "pair", id: "faces", "data-resting": true, role: "group", "aria-labelledby": "which" }, ...faces.map((one) => h("button", {
+    const choice = h("div", { class: "pair", id: "faces", dir: "ltr", "data-resting": true, role: "group", "aria-labelledby": "which" }, ...faces.map((one) => h("button", {
       type: "button", class: "face", "data-plant": one, onclick: tap(() => go(one)) }, `${plot.face[one]} ${arrowOf(plot, one)}`)));
     setTimeout(() => { rests = false; choice.removeAttribute("data-resting"); }, REST_MS);
     this.#show(h("div", {}, head, h("p", { id: "which" }, say("which_face"), plot.drawn && ` ${say("as_on_map")}`), choice,

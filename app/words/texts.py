@@ -1280,6 +1280,7 @@ SCOUT_PAGE = {
     "photo": "Photo", "note_button": "Note", "undo": "Undo", "here": "I am at another plant",
     "other_plant": "Another plant", "back_to_route": "Back to the route",
     "photos": "Photos: {n}", "drop_photos": "Throw these photos away?",
+    "which_face": "Which face?", "as_on_map": "Each arrow points to it as on the map.",
     "row": "Row", "plant": "Plant", "no_such_plant": "There is no such plant.",
     "several_rows": "Several rows are called {row}: tap the plant on the map.",
     "no_picture": "This is no picture that the phone can read.",

@@ -36,10 +36,10 @@ if TYPE_CHECKING:
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.hotspots import HotSpots, HotSpotSettings, hot_spots
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.records import Records
     from fieldmon.infestation.spread import Spread
     from fieldmon.io.library import (
         read_inspections,
@@ -102,7 +102,7 @@ _MODULES = {
     "infestation.pest_in_weather": ("PestInWeather",),
     "infestation.hotspots": ("HotSpotSettings", "HotSpots", "hot_spots"),
     "infestation.inspections": ("Inspections",),
-    "infestation.observations": ("Observations",),
+    "infestation.records": ("Records",),
     "infestation.spread": ("Spread",),
     "io.library": (
         "read_inspections",
@@ -182,7 +182,6 @@ __all__ = [
     "MonitoringSettings",
     "Movement",
     "ObservationError",
-    "Observations",
     "Pest",
     "PestInWeather",
     "PlantNames",
@@ -195,6 +194,7 @@ __all__ = [
     "PriorSettings",
     "ProductLabel",
     "Ratio",
+    "Records",
     "Robot",
     "Route",
     "Sampler",
@@ -250,7 +250,8 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401 - any of the names above
     if name in _AS_MODULES:
         return import_module(f"fieldmon.{_AS_MODULES[name]}")
     if name not in _HOME:
-        raise AttributeError(f"module 'fieldmon' has no attribute {name!r}")
+        now = ": it is called Records now" if name == "Observations" else ""
+        raise AttributeError(f"module 'fieldmon' has no attribute {name!r}{now}")
     value = getattr(import_module(f"fieldmon.{_HOME[name]}"), name)
     globals()[name] = value
     return value

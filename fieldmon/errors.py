@@ -113,16 +113,16 @@ class PlotError(FieldmonError):
 
 
 class ObservationError(FieldmonError):
-    """The observations do not fit the plot or their own columns.
+    """What was observed, records or inspections, does not fit the plot or its own columns.
 
     Examples
     --------
     >>> import fieldmon as fm
     >>> try:
-    ...     fm.Observations.of([[35.15, 30.36]], [1, 1])
+    ...     fm.Records.of([[35.15, 30.36]], [1, 1])
     ... except fm.ObservationError as problem:
     ...     print(problem)
-    All columns of the observations must have 1 entries, but present has 2.
+    All columns of the records must have 1 entries, but present has 2.
     """
 
 

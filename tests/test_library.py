@@ -219,7 +219,7 @@ def test_what_the_library_gives_says_itself_in_one_short_line():
     season.record(fm.Inspections.of([0, 1], [0, 1], date(2026, 11, 18)))
     said = {
         plot: "<Plot Gate: 3,825 plants in 45 rows>",
-        fm.read_records("sample_data/mite_records.csv", plot): "<Observations: 329 records>",
+        fm.read_records("sample_data/mite_records.csv", plot): "<Records: 329 records>",
         day: f"<DayPlan: {len(day.route)} of 3,825 plants, {day.route.drive_m / 1000:.2f} km, ",
         day.route: f"<Route: {len(day.route)} stops, ",
         start: f"<Start: {start.infested.sum()} of 3,825 plants infested>",
@@ -250,7 +250,7 @@ MISTAKES = {
     "a day as a number": (lambda plot: fm.plan_day(plot, on=20260101), "as 2026-11-18"),
     "a season for no GIS": (lambda plot: fm.Season.create("w1.txt", plot), "Name it 'w1.gpkg'"),
     "no time": (lambda plot: fm.plan_day(plot, on=pd.NaT), "as 2026-11-18, but it is 'NaT'"),
-    "records as a table": (lambda plot: fm.plan_day(plot, pd.DataFrame()), "must be Observations"),
+    "records as a table": (lambda plot: fm.plan_day(plot, pd.DataFrame()), "must be fm.Records"),
     "records as a path": (lambda plot: fm.plan_day(plot, "mites.csv"), "near=plot"),
     "a risk of words": (lambda plot: fm.plan_day(plot, risk=["a"]), "risk map must hold numbers"),
     "a chance of words": (lambda plot: fm.Monitor(plot, chance="x"), "must hold numbers, but 'x'"),
@@ -273,14 +273,17 @@ MISTAKES = {
     "a season's day": (
         lambda plot: fm.Season.create("s.gpkg", plot, begins="soon"), "but it is 'soon'",
     ),
-    "a season's records": (lambda plot: fm.Season.create("s.gpkg", plot, "m.csv"), "Observations"),
-    "a record half infested": (
-        lambda _: fm.Observations.of([[35.1, 30.3]], [0.7]), "1 (infested), 0 (clean) or -1",
+    "a season's records": (lambda plot: fm.Season.create("s.gpkg", plot, "m.csv"), "be Records"),
+    "a season's records by their old name": (
+        lambda plot: fm.Season.create("s.gpkg", plot, observations=None), "Write records=",
     ),
-    "records latitude first": (lambda _: fm.Observations.of([[30, 120]], [1]), "longitude first"),
-    "records by numbers": (lambda _: fm.Observations.of([3, 4], [1, 1]), "pairs of longitude"),
+    "a record half infested": (
+        lambda _: fm.Records.of([[35.1, 30.3]], [0.7]), "1 (infested), 0 (clean) or -1",
+    ),
+    "records latitude first": (lambda _: fm.Records.of([[30, 120]], [1]), "longitude first"),
+    "records by numbers": (lambda _: fm.Records.of([3, 4], [1, 1]), "pairs of longitude"),
     "records of no day": (
-        lambda _: fm.Observations.of([[35, 30]], [1], day=["soon"]), "must be as 2026-11-18",
+        lambda _: fm.Records.of([[35, 30]], [1], day=["soon"]), "must be as 2026-11-18",
     ),
     "a chance of too few": (lambda plot: fm.draw_start(plot, [0.1, 0.2]), "shape (3825,)"),
     "a chance above 1": (lambda plot: fm.draw_start(plot, np.full(3825, 2.0)), "0..1, but plant 0"),
@@ -385,12 +388,12 @@ def test_chances_that_pandas_sorted_are_not_taken_by_their_place(asked, plot):
 def test_columns_of_records_and_inspections_that_pandas_sorted_apart_are_refused():
     frame = pd.DataFrame({"plant": [1, 2], "seen": [0, 1], "lon": 35.1, "lat": 30.3}, index=[4, 2])
     fm.Inspections.of(frame["plant"], frame["seen"], "2026-11-18")
-    fm.Observations.of(frame[["lon", "lat"]], frame["seen"])
+    fm.Records.of(frame[["lon", "lat"]], frame["seen"])
     later = frame["seen"].sort_index()
     with pytest.raises(fm.SettingError, match="inspections must have one index, but that of resu"):
         fm.Inspections.of(frame["plant"], later, "2026-11-18")
     with pytest.raises(fm.SettingError, match="records must have one index, but that of present"):
-        fm.Observations.of(frame[["lon", "lat"]], later)
+        fm.Records.of(frame[["lon", "lat"]], later)
 
 
 @pytest.mark.usefixtures("_here")
@@ -407,7 +410,7 @@ def test_records_that_lie_elsewhere_or_nowhere_are_told_of(begin, plot):
     lonlat = plot.grid.lonlat(np.arange(6))
     lonlat[1], lonlat[2], lonlat[3, 0] = lonlat[1, ::-1], np.nan, lonlat[3, 0] + 1
     accuracy_m = [np.nan] * 4 + [1e9, 5.0]
-    seen = fm.Observations.of(lonlat, np.ones(6), "2026-11-17", accuracy_m=accuracy_m)
+    seen = fm.Records.of(lonlat, np.ones(6), "2026-11-17", accuracy_m=accuracy_m)
     with pytest.warns(ImportDoubt) as said:
         begin(plot, seen)
     sentences = [str(one.message) for one in said]
@@ -419,4 +422,4 @@ def test_records_that_lie_elsewhere_or_nowhere_are_told_of(begin, plot):
     ):
         assert any(sentence.startswith(part) for sentence in sentences), sentences
     if Path("s.gpkg").exists():
-        np.testing.assert_array_equal(fm.Season("s.gpkg").observations.lonlat, lonlat)
+        np.testing.assert_array_equal(fm.Season("s.gpkg").records.lonlat, lonlat)

@@ -44,7 +44,7 @@ def command(*words):
 
 
 def of_one(records):
-    return ["--feature", PLOT, "--observations", records, "--hours", 0.5]
+    return ["--feature", PLOT, "--records", records, "--hours", 0.5]
 
 
 def planned(records):
@@ -55,7 +55,7 @@ def planned(records):
 
 def planned_with_all(records):
     """Return the plot's route of `fieldmon plan --all`."""
-    words = ["--observations", records, "--date", DAY, "--hours", 0.5, "-o", "routes"]
+    words = ["--records", records, "--date", DAY, "--hours", 0.5, "-o", "routes"]
     # of whose rows they are is not asked where one cannot mistake it
     whose = ["--record-option", f"plot={PLOT}"] if records == "rows.csv" else []
     command("plan", "plots.geojson", "--all", *words, *whose)
@@ -82,7 +82,7 @@ def simulated(records):
 
 def played(records):
     """Return the seasons of `fieldmon study prior`."""
-    words = ["--plot", "plots.geojson", "--feature", PLOT, "--observations", records]
+    words = ["--plot", "plots.geojson", "--feature", PLOT, "--records", records]
     command("study", "prior", *words, "--seeds", 2)
     return Path("prior_plot.csv").read_bytes()
 
@@ -92,7 +92,7 @@ def studied(records):
     to = Path("study", Path(records).stem)
     one = ["--feature", PLOT] if records == "rows.csv" else []
     size = ["--sampler", "naive", "--hours", 0.5, "--days", 2, "--seeds", 2, "--workers", 1]
-    words = ["--observations", records, "--date", DAY, *size, "-o", to]
+    words = ["--records", records, "--date", DAY, *size, "-o", to]
     command("study", "run", "plots.geojson", *words, *one)
     rows = [row for part in to.rglob("*.parquet") for row in pq.read_table(part).to_pylist()]
     return sorted((row for row in rows if row["plot"] == PLOT), key=lambda row: row["seed"])

@@ -107,16 +107,16 @@ _FINE: dict[str, dict[str, set[str]]] = {
     "Inspections.of": _COLUMNS,
     "Inspections.take": {"which": _PICKED},
     "Inspections.on": {"date": {"moment", "numpy's NaT"}},
-    "Observations": {
+    "Records": {
         "present": {"array of -1"}, "day": {"array of dates"},
         **dict.fromkeys(("count", "accuracy_m", "leaves_sampled"), _RECORDED),
     },
-    "Observations.of": {
+    "Records.of": {
         "present": {"array of -1", "mask"}, "day": {"array of dates", "moment"},
         **{name: {"array of nan"} for name in ("species", "stage")},
         **dict.fromkeys(("count", "accuracy_m", "leaves_sampled"), _RECORDED),
     },
-    "Observations.take": {"which": _PICKED},
+    "Records.take": {"which": _PICKED},
     "Field": {
         "gate": {"list", "pair"}, "plants": {"empty array", "table"},
         **{f"plant_{of}": {"empty array", "array of texts"} for of in ("rows", "blocks", "names")},
@@ -137,7 +137,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
     "Pest.infests_per_day": {"temperature_c": {"empty array"}},
     "Season.create": {
         "path": {"text", "path"}, "messages": {"None", "empty list", "empty array"},
-        **{name: {"None"} for name in ("observations", "settings", "risk")},
+        **{name: {"None"} for name in ("records", "settings", "risk")},
     },
     "SimulationSettings": {"believe": {"class", "function"}, "own_night": {"class", "function"}},
     "Increase": {name: {"list", "pair"} for name in ("at_c", "per_day")},
@@ -286,7 +286,7 @@ def _of_plots(plot: fm.Plot) -> Iterator[Case]:
 
 def _of_records(plot: fm.Plot) -> Iterator[Case]:
     seen = fm.Inspections.of([0, 1, 2], [0, 1, 2], TODAY)
-    records = fm.Observations.of([[35.15, 30.36]] * 3, [1, 0, 1], ["2026-11-10"] * 3)
+    records = fm.Records.of([[35.15, 30.36]] * 3, [1, 0, 1], ["2026-11-10"] * 3)
     columns = {"count": [1, 2, 3], "second": [1.0, 2.0, 3.0], "who": ["a"] * 3, "notes": ["a"] * 3}
     yield Case("Inspections", fm.Inspections, _fields_of(seen))
     yield Case("Inspections.of", fm.Inspections.of,
@@ -294,9 +294,9 @@ def _of_records(plot: fm.Plot) -> Iterator[Case]:
     yield Case("Inspections.take", seen.take, {"which": seen.result == 1})
     yield Case("Inspections.and_those", seen.and_those, {"others": seen})
     yield Case("Inspections.on", seen.on, {"date": TODAY})
-    yield Case("Observations", fm.Observations, _fields_of(records))
-    yield Case("Observations.of", fm.Observations.of, _fields_of(records))
-    yield Case("Observations.take", records.take, {"which": records.present == 1})
+    yield Case("Records", fm.Records, _fields_of(records))
+    yield Case("Records.of", fm.Records.of, _fields_of(records))
+    yield Case("Records.take", records.take, {"which": records.present == 1})
     belief = fm.BeliefSettings()
     yield Case("BeliefSettings", fm.BeliefSettings, _fields_of(belief))
     chance = np.full(len(plot.grid), 0.1)
@@ -425,7 +425,7 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         return fm.Season.create(own, season.plot, **more)
 
     yield Case("Season", fm.Season, {"path": season.path})
-    yield Case("Season.create", create, {"path": _NEW, "observations": None, "settings": None,
+    yield Case("Season.create", create, {"path": _NEW, "records": None, "settings": None,
                "messages": (), "risk": None})  # fmt: skip
     on, who = {"on": TODAY}, {"who": ""}
     planned = on | {"now": None, "keep": True, "wishes": None}
@@ -450,7 +450,7 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         "keep_labels": who | {"labels": (), "source": ""},
         "kept_route": on | who,
         "merge": {"other": season},
-        "other_maps": {"whole": True, "tell": None},
+        "changed_maps": {"whole": True, "tell": None},
         "plan": planned | {"who": None},
         "plan_each": planned,
         "record": recorded | {"inspections": seen, "source": ""},

@@ -163,7 +163,7 @@ def _from_season(name: str, work: Work) -> Choices:
     said = tuple(FileMessage(key, _message(kept)) for kept in cached.import_messages(key, season))
     by = season.planned_by(day)
     choices = Choices(
-        key, season.plot, season.observations, said, by.robot, by.sampler, str(day),
+        key, season.plot, season.records, said, by.robot, by.sampler, str(day),
         units, season, key, today=calendar.today, prior=settings.prior,
     )  # fmt: skip
     changing_strategy.show(name, choices, work, by)

@@ -9,7 +9,7 @@ import shapely
 import streamlit as st
 
 from fieldmon.errors import FieldmonError, PlotError
-from fieldmon.infestation.observations import UNKNOWN
+from fieldmon.infestation.records import UNKNOWN
 from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
 from fieldmon.plot.planting import Planting
 
@@ -28,7 +28,7 @@ from . import bending, drawing_plot, turning_rows
 if TYPE_CHECKING:
     from pydeck import Layer
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
 
@@ -150,7 +150,7 @@ def set_gate() -> None:
     menu.turn_to_page("plot")
 
 
-def _of_records(records: Observations, choices: Choices) -> list[legends.LegendPart]:
+def _of_records(records: Records, choices: Choices) -> list[legends.LegendPart]:
     unknown = bool((records.present == UNKNOWN).any())
     return legends.records(dark=choices.dark, unknown=unknown)
 
@@ -163,7 +163,7 @@ def undo_last(plot_key: str) -> None:
 
 
 def content(
-    choices: Choices, records: Observations, before: Plot | None = None
+    choices: Choices, records: Records, before: Plot | None = None
 ) -> tuple[MapContent, MapAnswers]:
     """Return the map on which the gate, paths and no-go areas are drawn, and who hears of it.
 

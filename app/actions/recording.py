@@ -436,7 +436,7 @@ def ask_about_contradictions(choices: Choices) -> None:
         _ask_anew(choices, waiting)
         return
     others = waiting.results.take(_but(against.which, len(waiting.results)))
-    new = season.new_of(others)
+    new = season.count_new(others)
     source = recorded_batches.source(waiting.source)
     st.warning(texts.CONTRADICTING.format(n=len(said), source=source))
     st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))

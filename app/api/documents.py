@@ -17,7 +17,7 @@ from fieldmon.compute.arrays import run_ends
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import RESULT_NAMES
-from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.infestation.records import ABSENT, PRESENT
 from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring import kept_open
 from fieldmon.monitoring.day_ahead import (
@@ -125,7 +125,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         # who has no route would be given the hours of a robot that a team does without
         "seconds_left": hours.left_s if ahead.has_route(part) else 0.0,
         "has_route": ahead.has_route(part),
-        "route": _route(route, season.reads(on, scout.name)),
+        "route": _route(route, season.detection_of(on, scout.name)),
         "plan": plan,
         # evening: what was found today counts
         "chance": np.round(season.evening(on) * 1000).astype(int).tolist(),
@@ -166,7 +166,7 @@ def rest_document(
         on, part = _day(season, on), WorkPart(scout.rows, scout.name)
         route = planned_again(season, on, part, seconds_left)
         plan = DayAhead.of(season, on).plan_of(part)
-        told = _route(route, season.reads(on, scout.name))
+        told = _route(route, season.detection_of(on, scout.name))
     last_heard.note(season.path, scout.name, on, plan)
     return _json({"day": on.isoformat(), "route": told, "plan": plan})
 

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from pydeck import Layer
 
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.records import PRESENT
 
 from ..words import texts
 from . import answers_map
@@ -18,7 +18,7 @@ from .maps import colours, deck, legends
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.plot.plot import Plot
 
     from ..state.tried_answers import TriedAnswer
@@ -64,14 +64,14 @@ def tapped(tried: tuple[TriedAnswer, ...], layer: str, index: int) -> str | None
     return seen[index] if layer == PLACES and 0 <= index < len(seen) else None
 
 
-def _some(records: Observations) -> Floats:
+def _some(records: Records) -> Floats:
     """Return the places of records, or of some of very many, spread evenly over the file."""
     n = len(records)
     places: Floats = records.lonlat[np.linspace(0, n - 1, min(n, _MOST)).astype(int)]
     return places
 
 
-def _middle(records: Observations) -> list[float]:
+def _middle(records: Records) -> list[float]:
     place: list[float] = np.median(records.lonlat, axis=0).round(7).tolist()
     return place
 
@@ -84,7 +84,7 @@ def _are_same(places: list[Floats]) -> bool:
     )
 
 
-def _points(tried: tuple[TriedAnswer, ...], found: dict[int, Observations]) -> list[Layer]:
+def _points(tried: tuple[TriedAnswer, ...], found: dict[int, Records]) -> list[Layer]:
     """Return each answer's records: a dot each, and a ring round finds, wider by the answer."""
     made = []
     for number, (k, records) in enumerate(found.items()):

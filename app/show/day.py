@@ -155,7 +155,7 @@ def say_of_day(choices: Choices, plan: DayPlan) -> None:
 
 def say_otherwise(choices: Choices) -> None:
     """Show where two people said otherwise of one plant on the chosen day: both count as said."""
-    said = () if choices.season is None else choices.open_season.said_otherwise(
+    said = () if choices.season is None else choices.open_season.contradiction_lines(
         choices.on, texts.isolated
     )  # fmt: skip
     if not said:

@@ -26,12 +26,12 @@ def show(choices: Choices) -> None:
     And with which inspections another detection was said than the season's own.
     """
     st.markdown(f"**{texts.LEARNT_TITLE}**")
-    estimates, said = chosen_day.learnt(choices), chosen_day.told_otherwise(choices)
+    estimates, said = chosen_day.learnt(choices), chosen_day.other_detections(choices)
     if not estimates:
         st.caption(texts.NOT_LEARNT)
         _list(one.sentence() for one in said)
         return
-    taught = choices.open_season.taught()
+    taught = choices.open_season.earlier_season_note()
     notes = [] if taught is None else [in_words(taught)]
     if not chosen_day.progress(choices).inspected:
         notes.append(texts.LEARNT_AT_FIRST)

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.infestation.records import ABSENT, PRESENT
 
 from ..state import chosen_units
 from ..words import texts
 
 if TYPE_CHECKING:
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
 
     from ..state.choices import Choices
 
 _SEEN = {"found": PRESENT, "clean": ABSENT}
 
 
-def records_until(records: Observations) -> tuple[Observations, str]:
+def records_until(records: Records) -> tuple[Records, str]:
     """Show a slider over the days of the records; return those up to its day, and how many."""
     known = np.unique(records.day[~np.isnat(records.day)])
     shown = records

@@ -68,7 +68,7 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         treatments=() if season is None else treated_on(season, choices.on),
         labels=() if season is None else season.labels(),
         recorded=recorded,
-        otherwise=() if season is None else season.said_otherwise(choices.on, words.isolated),
+        otherwise=() if season is None else season.contradiction_lines(choices.on, words.isolated),
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
     on = choices.on

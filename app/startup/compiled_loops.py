@@ -7,7 +7,7 @@ from shapely import MultiPolygon
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.hotspots import hot_spots, record_states
-from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.infestation.records import PRESENT, Records
 from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
@@ -25,7 +25,7 @@ _CORNERS = [(35.15, 30.36), (35.1504, 30.3601), (35.1503, 30.3604), (35.15, 30.3
 def load_planning() -> None:
     """Plan a day from a record, and look for hot spots, as Today does."""
     plot = Plot.of(Field("", MultiPolygon([(_CORNERS, [])])))
-    record = Observations.of(np.array([(35.1502, 30.3602)]), np.array([PRESENT]))
+    record = Records.of(np.array([(35.1502, 30.3602)]), np.array([PRESENT]))
     with_bound(first_day(plot, record, np.datetime64("2026-11-16"), PlanSettings()))
     hot_spots(plot.grid, record_states(plot.grid, record))
 

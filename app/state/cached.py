@@ -38,9 +38,9 @@ if TYPE_CHECKING:
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
-    from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.records import Records
     from fieldmon.monitoring import DayFigures, KeptMessage, PlannedAndDone, Progress, Season
     from fieldmon.monitoring.advice import Advice
     from fieldmon.monitoring.advice_settings import AdviceSettings
@@ -70,7 +70,7 @@ def day_plan(
     settings: PlanSettings,
     sampler_name: str,
     _plot: Plot,
-    _known: tuple[Observations, Array | None],
+    _known: tuple[Records, Array | None],
     wishes: Wishes,
 ) -> DayPlan:
     """Return the planned day; `key` stands for plot, records and risk, the last two `_known`."""
@@ -84,7 +84,7 @@ def first_belief(
     day: str,
     prior: PriorSettings,
     _plot: Plot,
-    _known: tuple[Observations, Array | None],
+    _known: tuple[Records, Array | None],
 ) -> tuple[Array, TracedPairs]:
     """Return the chance map of a day and what a season believes that begins with it."""
     chance = chance_map(key, day, prior, _plot, _known)
@@ -97,7 +97,7 @@ def chance_map(
     day: str,
     prior: PriorSettings,
     _plot: Plot,
-    _known: tuple[Observations, Array | None],
+    _known: tuple[Records, Array | None],
 ) -> Array:
     """Return the chance map of a day, whoever is to work on it; `key` as above."""
     records, at_risk = _known
@@ -106,13 +106,13 @@ def chance_map(
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=False)
-def newest_records(key: str, _plot: Plot, _records: Observations) -> NewestRecords:
+def newest_records(key: str, _plot: Plot, _records: Records) -> NewestRecords:
     """Return what records say of plants; `key` stands for the plot, its records and the day."""
     return hotspots.newest_records(_plot.grid, _records)
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=False)
-def recorded_hot_spots(key: str, _plot: Plot, _records: Observations) -> HotSpots:
+def recorded_hot_spots(key: str, _plot: Plot, _records: Records) -> HotSpots:
     """Return where records cluster; `key` as above."""
     return hot_spots(_plot.grid, newest_records(key, _plot, _records).state)
 
@@ -268,9 +268,11 @@ def learnt(key: str, revision: str, day: str, _season: Season) -> tuple[Learnt, 
 
 
 @st.cache_resource(max_entries=_MAPS, show_spinner=False)
-def told_otherwise(key: str, revision: str, day: str, _season: Season) -> tuple[ToldOtherwise, ...]:
+def other_detections(
+    key: str, revision: str, day: str, _season: Season
+) -> tuple[ToldOtherwise, ...]:
     """Return with which inspections up to a day of a season another detection rate was said."""
-    return _season.told_otherwise(date.fromisoformat(day))
+    return _season.other_detections(date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiLineString
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, Source
     from fieldmon.io.plot_request import (
@@ -62,7 +62,7 @@ def records(
     _plot: Plot,
     _fields: tuple[Field, ...],
     _measured: Plants | None,
-) -> Imported[Observations]:
+) -> Imported[Records]:
     """Return the records on and near a plot; `key` stands for the file and the plot.
 
     They may name one of `_fields`, or rows and plants, the measured ones by their own labels.

@@ -18,7 +18,7 @@ from . import browser, cached, widget_memory, wishes
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.monitoring import Season
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.plot import Plot
@@ -64,7 +64,7 @@ class Choices:
 
     key: str
     plot: Plot
-    records: Observations
+    records: Records
     messages: tuple[FileMessage, ...]
     robot: Robot
     sampler: str

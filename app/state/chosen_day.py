@@ -11,7 +11,7 @@ import numpy as np
 
 from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.level_range import first_level_range
-from fieldmon.infestation.observations import usable
+from fieldmon.infestation.records import usable
 from fieldmon.monitoring import day_was_worked, plant_states
 from fieldmon.monitoring.shift_work import made_by
 from fieldmon.planning import day_bound
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
-    from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.plot_estimate import PlotEstimate
+    from fieldmon.infestation.records import Records
     from fieldmon.monitoring import DayFigures, PlannedAndDone, Progress
     from fieldmon.monitoring.found_again import FoundAgain
     from fieldmon.monitoring.told_detection import ToldOtherwise
@@ -253,9 +253,9 @@ def learnt(choices: Choices) -> tuple[Learnt, ...]:
     return cached.learnt(choices.key, choices.revision, choices.day, choices.open_season)
 
 
-def told_otherwise(choices: Choices) -> tuple[ToldOtherwise, ...]:
+def other_detections(choices: Choices) -> tuple[ToldOtherwise, ...]:
     """Return with which inspections another detection rate was said than the season's own."""
-    return cached.told_otherwise(choices.key, choices.revision, choices.day, choices.open_season)
+    return cached.other_detections(choices.key, choices.revision, choices.day, choices.open_season)
 
 
 def forecast(choices: Choices) -> Forecast:
@@ -310,13 +310,13 @@ def _known_on(choices: Choices) -> str:
     return choices.day if choices.season is None else str(choices.season.settings.begins)
 
 
-def records_known(choices: Choices) -> Observations:
+def records_known(choices: Choices) -> Records:
     """Return the records that count: in a season those from which it began."""
     return _recorded(choices)[2]
 
 
-def _recorded(choices: Choices) -> tuple[str, Plot, Observations]:
+def _recorded(choices: Choices) -> tuple[str, Plot, Records]:
     """Return the records that are known, their plot, and a key for both."""
     on = _known_on(choices)
-    known = usable(choices.records, np.datetime64(on)).observations
+    known = usable(choices.records, np.datetime64(on)).records
     return f"{choices.key} {on}", choices.plot, known

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.io.drawn_rows import parted
 from fieldmon.io.open_sea import said_of_place
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
@@ -104,7 +104,7 @@ class PlotFromFiles:
 
     key: str
     plot: Plot
-    records: Observations
+    records: Records
     risk: cached.Array | None
     messages: tuple[FileMessage, ...]
     left_out: tuple[LeftOut, ...] = ()
@@ -272,15 +272,15 @@ def draw(plot_key: str, edits: tuple[Edit, ...]) -> None:
 
 def _records(
     file: File | None, outline: Outline, plot: Plot, key: str
-) -> tuple[Observations, tuple[FileMessage, ...], tuple[LeftOut, ...], str]:
+) -> tuple[Records, tuple[FileMessage, ...], tuple[LeftOut, ...], str]:
     """Return the records, what was said, whether they had to be left out, and the longer key."""
     if file is None:
-        return Observations.none(), (), (), key
+        return Records.none(), (), (), key
     try:
         options = settled(file, RecordOptions())
         longer = f"{key}{file.key}{options}"
         source = RecordSource(file.source, options)
         read = cached_files.records(longer, source, plot, outline.fields, outline.measured)
     except FieldmonError as problem:
-        return Observations.none(), (), (LeftOut(file, problem),), key
+        return Records.none(), (), (LeftOut(file, problem),), key
     return read.value, messages_of(file, read), (), longer

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.errors import ChoiceNeeded, FieldmonError
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.records import PRESENT
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_plots, read_records
 from fieldmon.io.readers.nearby import records_on_plot
@@ -22,7 +22,7 @@ from .brought_files import PLOT, settled
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.plot.field import Field
 
     from .brought_files import File, LeftOut
@@ -63,7 +63,7 @@ class TriedAnswer:
     answer: str
     plots: tuple[Field, ...] = ()
     zone: str = ""
-    records: Observations | None = None
+    records: Records | None = None
     near: int = 0
     option: str = ""
 

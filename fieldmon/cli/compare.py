@@ -19,7 +19,7 @@ from fieldmon.cli.options import (
     MaybePlotFile,
     Passing,
     PlotFiles,
-    Records,
+    RecordsFile,
     SeasonDays,
     VisitEvery,
     WorkDate,
@@ -53,7 +53,7 @@ class CompareOptions:
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder for the tables and the report.")
     ] = Path()
-    observations: Records = None
+    records: RecordsFile = None
     feature: Feature = None
     robots: Annotated[str, typer.Option(help="How many robots: 1-5, or 1,2,4.")] = "1-3"
     hectares: Annotated[
@@ -118,7 +118,7 @@ def compare(options: CompareOptions) -> None:
     With --visit-every 7 all of them work on days 1, 8, 15 and 22, and insects spread on all.
 
     Example: fieldmon compare vines.zip --feature 3 --pest spider-mite --weather station.csv
-    Example: fieldmon compare vines.zip --feature 3 --observations mites.csv --robots 1-3
+    Example: fieldmon compare vines.zip --feature 3 --records mites.csv --robots 1-3
     Example: fieldmon compare --hectares 1 --hectares 5 --spread 0.1 --spread 0.3 --robots 1-5
     """
     from fieldmon.studies.teams.report import report_html
@@ -193,7 +193,7 @@ def _own(
 ) -> tuple[tuple[Plot, NDArray[np.float64]], PestInWeather | None]:
     """Return the plot of the command's files with what is believed of it, and its pest."""
     told = day(options.on)
-    known = prepared(options.files.request(options.plot, options.feature, options.observations))
+    known = prepared(options.files.request(options.plot, options.feature, options.records))
     begins = day_on(known.plot.field, told)
     pest_in_weather = options.pest_options.in_weather(known.plot.field, begins)
     chance = believed(known, begins, prior_of(pest_in_weather, begins))

@@ -12,7 +12,7 @@ from fieldmon.cli.messages import tell_found_again
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.season_files import day_meant
+from fieldmon.cli.season_files import default_date
 from fieldmon.cli.times import day
 from fieldmon.compute.ranges import MOST_COUNTED, SURE, USUAL_SURE
 from fieldmon.decisions.sprayer import COSTS, SWITCHED, Sprayer, TreatmentCosts
@@ -247,7 +247,7 @@ def decide(
         *sprayer.idle(),
     )
     kept = Season(asked.season)
-    when = day_meant(kept, day(asked.on))
+    when = default_date(kept, day(asked.on))
     learnt = kept.learnt_efficacy(when, files.product) if costs.works is None else None
     settings = AdviceSettings(
         sure=asked.sure,

@@ -21,7 +21,7 @@ from fieldmon.cli.options import (
     Feature,
     MaybePlotFile,
     PlotFiles,
-    Records,
+    RecordsFile,
     WorkDate,
     WorkerOptions,
     sampler_of,
@@ -126,7 +126,7 @@ class DriveOptions:
     bag: Annotated[
         Path | None, typer.Option(help="Bag of ROS 2 (.mcap), for RViz and Foxglove.")
     ] = None
-    observations: Records = None
+    records: RecordsFile = None
     feature: Feature = None
     sampler: OneSampler = USUAL_SAMPLER
     every: Every = None
@@ -218,7 +218,7 @@ def _plot(options: DriveOptions) -> None:
         from fieldmon.drive.robot_body import with_turning_radius
 
         worker = with_turning_radius(worker)
-    known = prepared(options.files.request(options.plot, options.feature, options.observations))
+    known = prepared(options.files.request(options.plot, options.feature, options.records))
     plot, on = known.plot, day_on(known.plot.field, day(options.on))
     aisles, prior = plot.aisles.for_robot(worker), PriorSettings()
     chance = prior_chance(

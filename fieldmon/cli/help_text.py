@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 # an end of line that ends no paragraph and begins no example
 _WRAPPED = re.compile(r"(?<!\n)\n(?!\n|Example: )")
 
+# names of options that are still taken, though no help shows them
+_CALLED_NOW = {"observations": "records"}
+_OLD_NAMES = {"token_normalize_func": lambda name: _CALLED_NOW.get(name, name)}
+
 
 class Commands(typer.Typer):
     """Commands that are told by their docstrings, paragraph by paragraph."""
@@ -34,6 +38,7 @@ class Commands(typer.Typer):
                 return function(**told)
 
             known = {"help": flowing(getdoc(function) or "")} | options
+            known.setdefault("context_settings", _OLD_NAMES)
             typer.Typer.command(self, name, **known)(called)
             return function
 

@@ -19,7 +19,7 @@ from fieldmon.cli.options import (
     Feature,
     MaybePlotFile,
     PlotFiles,
-    Records,
+    RecordsFile,
     Robots,
     StartTime,
     TeamworkOptions,
@@ -39,8 +39,8 @@ from fieldmon.samplers import USUAL_SAMPLER
 if TYPE_CHECKING:
     from datetime import datetime, time
 
-    from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.records import Records
     from fieldmon.monitoring import MonitoringSettings
     from fieldmon.monitoring.belief_settings import BeliefSettings
     from fieldmon.planning.members import TeamMember
@@ -52,7 +52,7 @@ class InitOptions:
 
     season: Annotated[Path, typer.Argument(help="File of the season to make: season.gpkg.")]
     plot: MaybePlotFile = None
-    observations: Records = None
+    records: RecordsFile = None
     feature: Feature = None
     sampler: OneSampler = USUAL_SAMPLER
     every: Every = None
@@ -128,13 +128,13 @@ class InitOptions:
         )
 
 
-def _counting(records: Observations, settings: MonitoringSettings) -> str:
+def _counting(records: Records, settings: MonitoringSettings) -> str:
     """Return how many records count, and of how many."""
     import numpy as np
 
-    from fieldmon.infestation.observations import usable
+    from fieldmon.infestation.records import usable
 
-    n = len(usable(records, np.datetime64(settings.begins, "D")).observations)
+    n = len(usable(records, np.datetime64(settings.begins, "D")).records)
     if n == len(records):
         return counted(n, "record")
     return f"{n} of {counted(len(records), 'record')} {'counts' if n == 1 else 'count'}"
@@ -158,7 +158,7 @@ def init(options: InitOptions) -> None:
 
     With --earlier a season begins with what an earlier one learnt: detection, arrivals, jumps.
 
-    Example: fieldmon init season.gpkg estate.zip --feature Gate --observations mites.csv
+    Example: fieldmon init season.gpkg estate.zip --feature Gate --records mites.csv
     Example: fieldmon init season.gpkg estate.zip --feature Gate --robots 2
     Example: fieldmon init season.gpkg estate.zip --feature Gate --pest spider-mite
     Example: fieldmon init season.gpkg estate.zip --feature Gate --earlier last_year.gpkg
@@ -169,7 +169,7 @@ def init(options: InitOptions) -> None:
 
     path, (team, at) = options.season, options.team()
     starts = WorkStart(day(options.begins, "--begins"), at)
-    request = options.files.request(options.plot, options.feature, options.observations)
+    request = options.files.request(options.plot, options.feature, options.records)
     known = prepared(request)
     begins = starts.on_plot(known.plot.field)
     pest_in_weather = options.pest_options.in_weather(known.plot.field, begins.date())
@@ -182,6 +182,6 @@ def init(options: InitOptions) -> None:
         f"Season begun in {path}: {_counting(known.records, settings)}, about "
         f"{estimate(ahead.expected)} plants believed infested ({ahead.low:,} to {ahead.high:,})."
     )
-    if (taught := season.taught()) is not None:
+    if (taught := season.earlier_season_note()) is not None:
         typer.echo(taught)
     typer.echo(f"Next: fieldmon plan {shlex.quote(str(path))} -o route.geojson")

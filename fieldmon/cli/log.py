@@ -36,10 +36,10 @@ def log(
 
     kept = Season(season)
     typer.echo("\n".join(lines(kept.log(), local_clock(kept.plot.field))))
-    refuse_unlike_log(kept.held_to_log())
+    refuse_unlike_log(kept.check_against_log())
     whole = mornings or kept.is_short
     with counting("Mornings worked out again") as count:
-        said = kept.other_maps(whole=whole, tell=count)
+        said = kept.changed_maps(whole=whole, tell=count)
     for sentence in said:
         typer.echo(f"doubtful: {sentence}", err=True)
     if not whole:

@@ -42,8 +42,8 @@ app = Commands(
     help="Which plants to inspect for pests today, and in which order.\n\n"
     "Start with [bold]fieldmon app[/bold] to see everything on a map, or plan a day at once:\n\n"
     "    fieldmon plots estate.zip\n\n"
-    "    fieldmon plan estate.zip --feature Gate --observations mites.csv -o route.geojson\n\n"
-    "    fieldmon simulate estate.zip --feature Gate --observations mites.csv",
+    "    fieldmon plan estate.zip --feature Gate --records mites.csv -o route.geojson\n\n"
+    "    fieldmon simulate estate.zip --feature Gate --records mites.csv",
 )
 _PANELS: dict[str, dict[str, Any]] = {
     "Begin": {"app": open_app, "plots": plots, "plan": plan, "init": init},

@@ -68,7 +68,7 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         )
     for sentence in done.overlaps:
         typer.echo(f"  codes: {sentence}")
-    typer.echo("\n".join(lines(kept, kept.status(kept.day_meant()))))
+    typer.echo("\n".join(lines(kept, kept.status(kept.default_date()))))
 
 
 def _entered_early(season: Season) -> list[str]:

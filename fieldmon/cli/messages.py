@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.records import Records
     from fieldmon.io.prepared_plots import Laid, SourceMessage
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -236,13 +236,13 @@ def tell_past_midnight(on: date, settings: MonitoringSettings) -> None:
         )
 
 
-def tell_unusable(records: Observations, day: np.datetime64, prior: PriorSettings) -> None:
+def tell_unusable(records: Records, day: np.datetime64, prior: PriorSettings) -> None:
     """Print of which days records are, and which say nothing, or hardly anything, about a day."""
-    from fieldmon.infestation.observations import usable
+    from fieldmon.infestation.records import usable
 
     known = usable(records, day, prior)
-    if len(known.observations):
-        typer.echo(f"seen: {known.observations.sentence()}", err=True)
+    if len(known.records):
+        typer.echo(f"seen: {known.records.sentence()}", err=True)
     for sentence in known.messages():
         typer.echo(sentence, err=True)
 

@@ -55,9 +55,9 @@ Crs = Annotated[
     str | None, typer.Option(help="Coordinate system of the plot file if it has none: EPSG:2039.")
 ]
 Layer = Annotated[str | None, typer.Option(help="Layer of the plot file.")]
-Records = Annotated[
+RecordsFile = Annotated[
     Path | None,
-    typer.Option("--observations", help="Dated pest records: CSV, Excel, shapefile, GeoJSON, ..."),
+    typer.Option(help="Dated pest records: CSV, Excel, shapefile, GeoJSON, ..."),
 ]
 RecordChoices = Annotated[
     list[str] | None,
@@ -488,19 +488,17 @@ class PlotFiles:
     files: FileOptions = field(default_factory=FileOptions)
     rasters: RasterFiles = field(default_factory=RasterFiles)
 
-    def request(
-        self, plot: Path | None, feature: str | None, observations: Path | None
-    ) -> PlotRequest:
+    def request(self, plot: Path | None, feature: str | None, records: Path | None) -> PlotRequest:
         """Return what to prepare from the command's files."""
         from fieldmon.io.options import RecordOptions
         from fieldmon.io.plot_request import PlotRequest, RecordSource
 
-        flags = "--record-option", "--observations"
-        options = chosen_of_file(RecordOptions(), self.files.record_option, observations, flags)
+        flags = "--record-option", "--records"
+        options = chosen_of_file(RecordOptions(), self.files.record_option, records, flags)
         return PlotRequest(
             self.files.sources(plot, feature),
             self.rows.choices(),
-            None if observations is None else RecordSource(observations, options),
+            None if records is None else RecordSource(records, options),
             self.rasters.canopy_source(),
             self.rasters.risk_source(),
         )

@@ -41,17 +41,17 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     """Plan today's route on a plot or in a season, and write it to files.
 
     A route file holds the line to drive, which crosses no row of plants, and the stops in order,
-    with arrival time, row, plant and chance of infestation. Without observations every plant has
+    with arrival time, row, plant and chance of infestation. Without records every plant has
     the same chance, except at the plot's edge, from which insects come.
 
     In a season (see fieldmon init) the route uses everything recorded so far. If something was
     already recorded on that day, the rest of the day is planned. Plants where people may not be
     yet after a treatment are left out.
 
-    Example: fieldmon plan vines.zip --feature 3 --observations mites.csv --hours 6 -o route.geojson
+    Example: fieldmon plan vines.zip --feature 3 --records mites.csv --hours 6 -o route.geojson
     Example: fieldmon plan season.gpkg -o route.geojson
     Example: fieldmon plan vines.zip --feature 3 --robots 2 --hours 4 -o route.geojson
-    Example: fieldmon plan estate.zip --all --observations mites.csv -o routes
+    Example: fieldmon plan estate.zip --all --records mites.csv -o routes
 
     For a whole day, it also states how much any other route of the same hours could gain at most.
 
@@ -111,7 +111,7 @@ def _plan_one(options: PlanOptions) -> None:
 
     refuse_unrecorded(None, options.output or [ROUTE])
     robot, starts = options.pest_options.seen(options.worker.robot()), options.starts()
-    request = options.files.request(options.plot, options.feature, options.observations)
+    request = options.files.request(options.plot, options.feature, options.records)
     known = prepared(request)
     begins = starts.on_plot(known.plot.field)
     on = np.datetime64(begins.date(), "D")
@@ -183,7 +183,7 @@ def _request_of_all(options: PlanOptions) -> PlotRequest:
             "--all plans every plot of one plot file: leave out --feature, --plants, --gate, "
             "--risk, --canopy, --chance-map and --no-rows."
         )
-    return options.files.request(options.plot, None, options.observations)
+    return options.files.request(options.plot, None, options.records)
 
 
 def _folder(outputs: list[Path] | None) -> Path:

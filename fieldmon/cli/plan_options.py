@@ -16,7 +16,7 @@ from fieldmon.cli.options import (
     Outputs,
     Passing,
     PlotFiles,
-    Records,
+    RecordsFile,
     Robots,
     StartTime,
     WorkDate,
@@ -62,7 +62,7 @@ class PlanOptions:
 
     plot: MaybePlotFile = None
     output: Outputs = None
-    observations: Records = None
+    records: RecordsFile = None
     feature: Feature = None
     sampler: OneSamplerOrOwn = USUAL_SAMPLER
     every: Every = None

@@ -40,7 +40,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     members, first = members_of(robots, options.starts().at, options.worker)
     starts, files = WorkStart(options.starts().on, first), files_of_each(options.output, members)
     refuse_unrecorded(None, (file for each in files for file in each))
-    known = prepared(options.files.request(options.plot, options.feature, options.observations))
+    known = prepared(options.files.request(options.plot, options.feature, options.records))
     plot, begins = known.plot, starts.on_plot(known.plot.field)
     pest_in_weather = options.pest_options.in_weather(plot.field, begins.date())
     prior = prior_of(pest_in_weather, begins.date(), options.background)

@@ -11,7 +11,7 @@ import typer
 
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.report_languages import Language, spoken
-from fieldmon.cli.season_files import day_meant
+from fieldmon.cli.season_files import default_date
 from fieldmon.cli.times import day, day_on
 from fieldmon.errors import SettingError
 
@@ -112,7 +112,7 @@ def _certified(seasons: list[Season], until: str | None, units: Units) -> Report
     told = day(until, "--until")
     if told is None:
         for season in seasons:
-            day_meant(season, None, "--until")
+            default_date(season, None, "--until")
     return certification_report(seasons, units, told)
 
 
@@ -125,4 +125,4 @@ def _made(season: Season, on: str | None, until: str | None, units: Units) -> Re
     if asked is not None:
         today = day_on(season.plot.field, None)
         return day_report(DayFacts.of_season(season, asked, today), units)
-    return season_report(season, day_meant(season, day(until, "--until"), "--until"), units)
+    return season_report(season, default_date(season, day(until, "--until"), "--until"), units)

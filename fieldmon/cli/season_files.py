@@ -62,7 +62,7 @@ def _instead(one: Season, other: Season) -> str:
     return f"Leave one away, or bring them together first: fieldmon merge {pasted}"
 
 
-def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:
+def default_date(season: Season, told: date | None, flag: str = "--date") -> date:
     """Return the day that was told, else the last one up to today; say where later ones are kept.
 
     `flag` names the option that tells it. A later day that was recorded is doubted in any case.
@@ -72,7 +72,7 @@ def day_meant(season: Season, told: date | None, flag: str = "--date") -> date:
         _tell_recorded_ahead(season, recorded)
     if told is not None:
         return told
-    meant, was = season.day_meant(), "recorded" if last == recorded else "planned"
+    meant, was = season.default_date(), "recorded" if last == recorded else "planned"
     if last <= max(today, season.settings.begins):
         return meant
     typer.echo(
@@ -172,7 +172,7 @@ def refuse_unrecorded(season: Season | None, files: Iterable[Path]) -> None:
         )
     for file in filled_in:
         said, left_out = _results_in(file, season)
-        if n := season.unrecorded(said):
+        if n := season.count_never_recorded(said):
             pasted = shlex.join([str(season.path), str(file)])
             results = "1 result" if n == 1 else f"{n} results"
             raise SettingError(

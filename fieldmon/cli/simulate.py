@@ -17,7 +17,7 @@ from fieldmon.cli.options import (
     InfestedAtStart,
     MaybePlotFile,
     PlotFiles,
-    Records,
+    RecordsFile,
     SeasonDays,
     VisitEvery,
     WorkDate,
@@ -55,7 +55,7 @@ class SimulateOptions:
     output: Annotated[Path | None, typer.Option("--output", "-o", help="Table to write (CSV).")] = (
         None
     )
-    observations: Records = None
+    records: RecordsFile = None
     feature: Feature = None
     sampler: Annotated[
         list[str] | None,
@@ -131,7 +131,7 @@ def simulate(options: SimulateOptions) -> None:
     names = options.sampler or COMPARED
     refuse_idle_every(names, options.every)
     robot, told = options.pest_options.seen(options.worker.robot()), day(options.on)
-    request = options.files.request(options.plot, options.feature, options.observations)
+    request = options.files.request(options.plot, options.feature, options.records)
     known = prepared(request)
     begins = day_on(known.plot.field, told)
     pest_in_weather = options.pest_options.in_weather(known.plot.field, begins)

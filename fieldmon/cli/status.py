@@ -14,7 +14,7 @@ from fieldmon.cli.messages import (
     tell_found_again,
 )
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.season_files import day_meant, learnt_of_each
+from fieldmon.cli.season_files import default_date, learnt_of_each
 from fieldmon.cli.times import day
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def status(
     kept = Season(season)
     tell_drafts(kept.drafts)
     with kept.one_moment():
-        _show(kept, kept.status(day_meant(kept, day(on))), batches=batches, rows=rows)
+        _show(kept, kept.status(default_date(kept, day(on))), batches=batches, rows=rows)
 
 
 def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
@@ -85,7 +85,7 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
 
 def _contradicting(season: Season, on: date) -> Iterator[str]:
     """Yield of which plants two people said otherwise on a day, line by line."""
-    said = season.said_otherwise(on)
+    said = season.contradiction_lines(on)
     for line in said[:_CONTRADICTING]:
         yield f"  contradiction          {line}"
     if (more := len(said) - _CONTRADICTING) > 0:
@@ -139,7 +139,7 @@ def lines(season: Season, now: Status) -> Iterator[str]:
     yield from _of_infestation(now)
     yield from _of_learnt(season, now)
     yield from _told_otherwise(season, now.on)
-    if (taught := season.taught()) is not None:
+    if (taught := season.earlier_season_note()) is not None:
         yield f"  an earlier season      {taught}"
     yield from _of_pest(season, now)
     yield _of_hot_spots(now)
@@ -268,7 +268,7 @@ def _of_who_inspects(season: Season, now: Status, of_all: str) -> Iterator[str]:
 
 def _told_otherwise(season: Season, until: date) -> Iterator[str]:
     """Yield with which inspections another detection was said than the season's own."""
-    said = season.told_otherwise(until)
+    said = season.other_detections(until)
     lines = [str(one.sentence()) for one in said[:_MOST_SAID]]
     if len(said) > _MOST_SAID:
         lines.append(f"And {len(said) - _MOST_SAID} more.")

@@ -52,7 +52,7 @@ class PriorOptions:
         Path | None, typer.Option(help="Plot file: run the samplers on that plot instead.")
     ] = None
     feature: Annotated[str | None, typer.Option(help="Which plot of the file.")] = None
-    observations: Annotated[
+    records: Annotated[
         Path | None, typer.Option(help="Pest records of that plot, from which seasons start.")
     ] = None
     pest: PestName = None
@@ -146,7 +146,7 @@ def _on_plot(plot: Path, options: PriorOptions, choices: OpenChoices) -> None:
     from fieldmon.studies.thesis.chapter5.study import rows, run_site
     from fieldmon.studies.tidy_csv import csv_text
 
-    site = site_of(plot, options.feature, options.observations)
+    site = site_of(plot, options.feature, options.records)
     with counting("Simulating") as count:
         made = run_site(site, options.seeds, options.seed, choices, count)
     for part in made.parts:
@@ -158,7 +158,7 @@ def _on_plot(plot: Path, options: PriorOptions, choices: OpenChoices) -> None:
     write_all(options.output, written)
 
 
-def site_of(file: Path, feature: str | None, observations: Path | None) -> Site:
+def site_of(file: Path, feature: str | None, records: Path | None) -> Site:
     """Return a plot of a file; its records' chance map if there are any, on their last day."""
     import numpy as np
 
@@ -169,14 +169,15 @@ def site_of(file: Path, feature: str | None, observations: Path | None) -> Site:
     from fieldmon.studies.thesis.chapter5.sites import Site
 
     sources = PlotSources(file, PlotOptions(feature=feature))
-    asked = None if observations is None else RecordSource(observations)
+    asked = None if records is None else RecordSource(records)
     known = prepared(PlotRequest(sources, records=asked), Terminal(flags={}, takes_rows=False))
-    plot, records = known.plot, known.records
-    if observations is None:
+    plot = known.plot
+    if records is None:
         return Site(plot.field.name, plot.aisles, plot.field)
-    dated = records.day[~np.isnat(records.day)]
+    days = known.records.day
+    dated = days[~np.isnat(days)]
     last = dated.max() if dated.size else np.datetime64("today", "D")
-    chance = prior_chance(plot.grid, plot.field, records, last, PriorSettings())
+    chance = prior_chance(plot.grid, plot.field, known.records, last, PriorSettings())
     return Site(plot.field.name, plot.aisles, plot.field, chance)
 
 

@@ -53,7 +53,7 @@ class StudyOptions:
         Path, typer.Option("--output", "-o", help="Folder of the Parquet dataset.")
     ] = Path("study")
     feature: Annotated[str | None, typer.Option(help="Only this plot: name or number.")] = None
-    observations: Annotated[Path | None, typer.Option(help="Dated pest records.")] = None
+    records: Annotated[Path | None, typer.Option(help="Dated pest records.")] = None
     sampler: Annotated[
         list[str] | None,
         typer.Option(help=f"Sampler, or {OWN}; repeat for more. Default: {', '.join(COMPARED)}."),
@@ -144,7 +144,7 @@ class StudyOptions:
 
         # the same command goes on tomorrow with the study of today
         told = day(self.on) or first_day(self.output)
-        records = None if self.observations is None else RecordSource(self.observations)
+        records = None if self.records is None else RecordSource(self.records)
         sources = PlotSources(self.plot, PlotOptions(feature=self.feature))
         choices, terminal = self.planting(), Terminal(flags={})
         known = estate(PlotRequest(sources, choices, records), terminal)

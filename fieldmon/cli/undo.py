@@ -61,7 +61,7 @@ def undo(
     if redo is not None:
         typer.echo(kept.redo(redo, who))
         return
-    undone = kept.take_back(batch, inspection, who)
+    undone = kept.undo_with_batches(batch, inspection, who)
     typer.echo(undone.said)
     if undone.batch is None:
         typer.echo("This cannot be redone. If it was right, record it again.")

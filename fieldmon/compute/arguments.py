@@ -34,7 +34,7 @@ def must_be(
     Parameters
     ----------
     what
-        What is asked for, and what it must be: ``"Records must be Observations"``.
+        What is asked for, and what it must be: ``"Records must be fm.Records"``.
     given
         What was handed over.
     kind
@@ -137,13 +137,30 @@ def of_kind(kind: type) -> str:
     return with_article(kind.__name__)
 
 
+def must_have_its_name(what: str, given: Collection[str], old: str, new: str) -> None:
+    """Raise `SettingError` where an argument is given by a name that it has no more.
+
+    Examples
+    --------
+    >>> must_have_its_name("A season's records", {"observations"}, "observations", "records")
+    Traceback (most recent call last):
+    ...
+    fieldmon.errors.SettingError: A season's records must be given as 'records', but they are given as 'observations', their name before. Write records=.
+    """  # noqa: E501 - a sentence
+    if old in given:
+        raise SettingError(
+            f"{what} must be given as {new!r}, but they are given as {old!r}, their name before. "
+            f"Write {new}=."
+        )
+
+
 def with_article(name: str) -> str:
     """Return a word behind its article; one of many things has none.
 
     Examples
     --------
-    >>> with_article("Robot"), with_article("Observations")
-    ('a Robot', 'Observations')
+    >>> with_article("Robot"), with_article("Records")
+    ('a Robot', 'Records')
     """
     if name.endswith("s"):
         return name

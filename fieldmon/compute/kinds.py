@@ -39,7 +39,7 @@ _INSTEAD = {
     "PlantGrid": "Give plot.grid.",
     "Inspections": "Read them with read_inspections(path, plot), or give Inspections.of(...).",
     "MultiPolygon": "Give shapely.MultiPolygon([polygon]), in degrees.",
-    "Observations": "Read them with read_records(path, near=plot).",
+    "Records": "Read them with read_records(path, near=plot).",
     "OpenSeason": "Open it with Season(path).",
     "Start": "Draw one with draw_start.",
     "Spread": "Give Spread(0.3).",

@@ -24,13 +24,13 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-# coins of those that die are not those of who is infested
+# coins of those that die are not those of which plants are infested
 _DEATHS, _TREATED = np.uint64(0x5DEECE66D), np.uint64(0x2545F4914F6CDD1D)
 
 
 @dataclass(frozen=True, eq=False)
 class Colonies:
-    """Who is infested, and how far each plant's insects have come; never changed.
+    """Which plants are infested, and how far each plant's insects have come; never changed.
 
     Parameters
     ----------

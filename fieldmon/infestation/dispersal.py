@@ -224,7 +224,7 @@ def dispersal_of(
 def settle(
     infested: NDArray[np.bool_], landed: Floats, key: np.uint64, turn: int = 0
 ) -> NDArray[np.bool_]:
-    """Return who is infested where so much has landed on each plant ``(n,)``.
+    """Return which plants are infested where so much has landed on each plant ``(n,)``.
 
     What lands is a number drawn by Poisson, so a clean plant stays clean with exp(-landed). Its
     coin is its own: with the same `key` and `turn` two histories differ only where they differ.

@@ -29,14 +29,14 @@ from fieldmon.compute.ranges import AllowedRange
 from fieldmon.compute.wording import counted
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.nearby_plants import outside_m
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN
 from fieldmon.plot.grid import PlantGrid
 from fieldmon.plot.plot import Plot
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
 
     Floats = NDArray[np.float64]
 
@@ -178,14 +178,14 @@ class NewestRecords:
 
 
 def record_states(
-    grid: PlantGrid, observations: Observations, within_m: float | None = None
+    grid: PlantGrid, records: Records, within_m: float | None = None
 ) -> NDArray[np.int8]:
     """Return the state ``(n,)`` that records give the plants nearest to them; see below."""
-    return newest_records(grid, observations, within_m).state
+    return newest_records(grid, records, within_m).state
 
 
 def newest_records(
-    grid: PlantGrid, observations: Observations, within_m: float | None = None
+    grid: PlantGrid, records: Records, within_m: float | None = None
 ) -> NewestRecords:
     """Return what the newest records of the plants nearest to them say.
 
@@ -193,8 +193,8 @@ def newest_records(
     find. Records farther than `within_m` (default: half a row spacing, and the record's own
     accuracy on top) from any plant say nothing.
     """
-    says = (observations.present != UNKNOWN) & (outside_m(grid, observations.lonlat) < _NEARBY_M)
-    said = observations.take(says)
+    says = (records.present != UNKNOWN) & (outside_m(grid, records.lonlat) < _NEARBY_M)
+    said = records.take(says)
     metres, plant = grid.tree.query(grid.frame.xy_m(said.lonlat))
     own_m = np.where(said.accuracy_m >= 0.0, said.accuracy_m, 0.0)
     near = metres <= (grid.row_spacing_m / 2 + own_m if within_m is None else within_m)

@@ -18,14 +18,14 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.chance_bounds import MOST_CHANCE
 from fieldmon.infestation.nearby_plants import SearchRows, distance_m
-from fieldmon.infestation.observations import usable
 from fieldmon.infestation.record_kernel import record_chance
+from fieldmon.infestation.records import usable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.records import Records
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
 
@@ -38,7 +38,7 @@ _LEAST_CHANGE = 1e-4
 def prior_chance(
     grid: PlantGrid,
     field: Field,
-    observations: Observations,
+    records: Records,
     on_day: np.datetime64,
     settings: PriorSettings,
     risk: Floats | None = None,
@@ -63,7 +63,7 @@ def prior_chance(
         ways.append(_checked_risk(grid, risk))
     clean = np.prod([1.0 - way for way in ways], axis=0)
     base = np.minimum(1.0 - clean, MOST_CHANCE)
-    return record_chance(grid, base, usable(observations, on_day).observations, on_day, settings)
+    return record_chance(grid, base, usable(records, on_day).records, on_day, settings)
 
 
 def edge_chance(grid: PlantGrid, settings: PriorSettings) -> Floats:
@@ -139,7 +139,7 @@ def _odds_shift(chance: Floats, wanted: float) -> float:
 def start_infested(
     chance: Floats, expected_share: float | None, rng: np.random.Generator
 ) -> NDArray[np.bool_]:
-    """Draw who is infested on the first morning, ``(n,)``, each plant by its own chance.
+    """Draw which plants are infested on the first morning, ``(n,)``, each plant by its own chance.
 
     With `expected_share` the chances are :func:`scaled` to that mean first. The same generator
     state and more chance infest the same plants and others besides.

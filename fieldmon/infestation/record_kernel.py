@@ -22,13 +22,13 @@ from fieldmon.infestation.nearby_plants import (
     first_from,
     outside_m,
 )
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.records import PRESENT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.records import Records
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
@@ -58,7 +58,7 @@ class _Records(NamedTuple):
 def record_chance(
     grid: PlantGrid,
     base: Floats,
-    observations: Observations,
+    records: Records,
     on_day: np.datetime64,
     settings: PriorSettings,
 ) -> Floats:
@@ -70,59 +70,57 @@ def record_chance(
     All records must be `usable` ones; raise `ObservationError` if all lie elsewhere than on the
     plot or near it.
     """
-    if not len(observations):
+    if not len(records):
         return base.copy()
-    every = _kernel(grid, observations, settings)
-    near = _within_reach(grid, observations, every.radius_m)
+    every = _kernel(grid, records, settings)
+    near = _within_reach(grid, records, every.radius_m)
     if not near.any():
         return base.copy()
-    nearby = observations.take(near)
+    nearby = records.take(near)
     xy_m = grid.frame.xy_m(nearby.lonlat)
     age_days = _age_days(nearby, on_day, settings)
     find = nearby.present == PRESENT
     kernel = _RecordKernel(*(column[near] for column in every))
     # oldest first, a day's finds before its clean looks; the rest only settles the last digit
     order = np.lexsort((*kernel, *xy_m.T, ~find, -age_days))
-    records = _Records(xy_m[order, 0].copy(), xy_m[order, 1].copy(), age_days[order], find[order])
+    in_order = _Records(xy_m[order, 0].copy(), xy_m[order, 1].copy(), age_days[order], find[order])
     search = SearchRows.of(grid)
     chance = search.sorted(base)
     _apply_records(
         chance,
         search.rows,
-        records,
+        in_order,
         _RecordKernel(*(column[order] for column in kernel)),
         1.0 / settings.half_life_days,
     )
     return search.numbered(chance)
 
 
-def _kernel(grid: PlantGrid, observations: Observations, settings: PriorSettings) -> _RecordKernel:
-    find = observations.present == PRESENT
-    accuracy_m = np.where(
-        observations.accuracy_m >= 0.0, observations.accuracy_m, settings.accuracy_m
-    )
+def _kernel(grid: PlantGrid, records: Records, settings: PriorSettings) -> _RecordKernel:
+    find = records.present == PRESENT
+    accuracy_m = np.where(records.accuracy_m >= 0.0, records.accuracy_m, settings.accuracy_m)
     # A plant is a bell as heavy as its own ground, so that a record without error says all of it
     # to its own plant; an error of position widens both bells and lowers them, mass kept.
     plant_m2 = grid.row_spacing_m * grid.plant_spacing_m / (2.0 * np.pi)
     own_m2 = plant_m2 + accuracy_m**2
     near_m2 = settings.reach_m**2 + accuracy_m**2
     own = np.where(find, settings.at_record, 1.0) * plant_m2 / own_m2
-    near = _about(observations, settings) * settings.reach_m**2 / near_m2
-    strength = np.where(find, 1.0, _detection(observations, settings))
+    near = _about(records, settings) * settings.reach_m**2 / near_m2
+    strength = np.where(find, 1.0, _detection(records, settings))
     radius_m = np.maximum(_radius_m(own, own_m2), _radius_m(near, near_m2))
     return _RecordKernel(own, own_m2, near, near_m2, strength, radius_m)
 
 
-def _about(observations: Observations, settings: PriorSettings) -> Floats:
+def _about(records: Records, settings: PriorSettings) -> Floats:
     """Return how much each record says of the plants about it: more, the more was counted."""
-    count = np.where(np.isnan(observations.count), settings.half_count, observations.count)
-    count = np.where(observations.present == PRESENT, np.maximum(count, 0.0), 0.0)
+    count = np.where(np.isnan(records.count), settings.half_count, records.count)
+    count = np.where(records.present == PRESENT, np.maximum(count, 0.0), 0.0)
     full = np.where(np.isinf(count), 1.0, count / (np.minimum(count, 1e300) + settings.half_count))
     return settings.beside_one + (settings.beside_many - settings.beside_one) * full
 
 
-def _detection(observations: Observations, settings: PriorSettings) -> Floats:
-    leaves = observations.leaves_sampled
+def _detection(records: Records, settings: PriorSettings) -> Floats:
+    leaves = records.leaves_sampled
     found = 1.0 - (1.0 - settings.leaf_detection) ** np.where(leaves >= 0.0, leaves, 0.0)
     return np.minimum(np.where(leaves >= 0.0, found, settings.detection), MOST_CHANCE)
 
@@ -131,24 +129,22 @@ def _radius_m(peak: Floats, variance_m2: Floats) -> Floats:
     return np.sqrt(2.0 * variance_m2 * np.log(np.maximum(peak / _LEAST_CHANGE, 1.0)))
 
 
-def _age_days(observations: Observations, on_day: np.datetime64, settings: PriorSettings) -> Floats:
-    age = (on_day.astype("datetime64[D]") - observations.day) / np.timedelta64(1, "D")
+def _age_days(records: Records, on_day: np.datetime64, settings: PriorSettings) -> Floats:
+    age = (on_day.astype("datetime64[D]") - records.day) / np.timedelta64(1, "D")
     return np.where(np.isnan(age), settings.undated_days, age)
 
 
-def _within_reach(
-    grid: PlantGrid, observations: Observations, radius_m: Floats
-) -> NDArray[np.bool_]:
-    off_m = outside_m(grid, observations.lonlat)
+def _within_reach(grid: PlantGrid, records: Records, radius_m: Floats) -> NDArray[np.bool_]:
+    off_m = outside_m(grid, records.lonlat)
     near: NDArray[np.bool_] = off_m <= np.minimum(radius_m, FAR_M)
     # of a neighbour's records some are taken for this plot's own, and reach none of its plants
-    if (near | (off_m <= observations.reach_m())).any():
+    if (near | (off_m <= records.reach_m())).any():
         return near
-    turned_m = outside_m(grid, observations.lonlat[:, ::-1])
+    turned_m = outside_m(grid, records.lonlat[:, ::-1])
     turned = turned_m.min() <= radius_m.max()
     raise ObservationError(
         f"At least one record must lie on the plot or within {radius_m.max():.0f} m of it, but "
-        f"of {len(observations)} the nearest is {_in_words(off_m.min())}. "
+        f"of {len(records)} the nearest is {_in_words(off_m.min())}. "
         + (
             "With longitude and latitude exchanged they would lie there: give longitude first."
             if turned

@@ -79,7 +79,7 @@ class Spread:
 def night(
     grid: PlantGrid, infested: NDArray[np.bool_], spread: Spread, key: np.uint64
 ) -> NDArray[np.bool_]:
-    """Return who is infested the next morning, ``(n,)``; `infested` stays as it is.
+    """Return which plants are infested the next morning, ``(n,)``; `infested` stays as it is.
 
     Every coin belongs to a pair of plants (or to a plant), not to the order of asking: with the
     same `key` two histories differ only where they differ.

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.io.import_report import ImportMessage
     from fieldmon.io.options import Source
     from fieldmon.pests.pest import Pest
@@ -192,7 +192,7 @@ def read_plots(source: Source, **options: object) -> tuple[Field, ...]:
     return read.value
 
 
-def read_records(source: Source, near: Plot, **options: object) -> Observations:
+def read_records(source: Source, near: Plot, **options: object) -> Records:
     """Return the dated pest records on a plot or near it.
 
     Parameters
@@ -208,7 +208,7 @@ def read_records(source: Source, near: Plot, **options: object) -> Observations:
 
     Returns
     -------
-    Observations
+    Records
         m records, an array entry each.
 
     Warns

@@ -10,7 +10,7 @@ import shapely
 
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FieldmonError, ObservationError, PlotError
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.io.import_report import Imported, ImportMessage, doubtful
 from fieldmon.io.options import source_name
 from fieldmon.io.prepared_plots import EstateRecords, Laid
@@ -44,7 +44,7 @@ def records_on(
     source: RecordSource,
     fields: Callable[[], tuple[Field, ...]] | None = None,
     measured: Plants | None = None,
-) -> Imported[Observations]:
+) -> Imported[Records]:
     """Return the records on a plot or near it.
 
     They give positions, or name rows and plants, or plots.
@@ -79,8 +79,8 @@ def records_on(
 
 
 def _doubted(
-    read: Imported[Observations], doubts: Callable[[PlacedTwice], list[ImportMessage]]
-) -> Imported[Observations]:
+    read: Imported[Records], doubts: Callable[[PlacedTwice], list[ImportMessage]]
+) -> Imported[Records]:
     """Return what was read with doubts in place of what is said of records placed twice."""
     twice = next((one for one in read.messages if isinstance(one, PlacedTwice)), None)
     said = [] if twice is None else doubts(twice)
@@ -176,7 +176,7 @@ def records_of(
 
 
 def _far_from_all(
-    fields: tuple[Field, ...], source: RecordSource, records: Observations
+    fields: tuple[Field, ...], source: RecordSource, records: Records
 ) -> list[ImportMessage]:
     """Return a doubt where no record lies near any plot; ask where all are on another continent."""
     west, south, east, north = shapely.total_bounds([field.boundary for field in fields])
@@ -209,7 +209,7 @@ def _by_plant(
     named_plots = plots_called(plots, fields) if plots else (_plot_by_hand(fields, source),)
     places = NamedPlaces(fields, plants_of=_plants_of(named_plots, lay))
     by_plot = read_records_by_plot(source.file, source.options, places)
-    none = Observations.none()
+    none = Records.none()
     named = {field.name: by_plot.value.get(field.name, none) for field in fields}
     return by_plot.having(EstateRecords(named=named))
 

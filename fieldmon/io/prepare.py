@@ -17,7 +17,7 @@ import numpy as np
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import first_few, joined, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.io.drawn_rows import with_rows
 from fieldmon.io.guessed_bearing import doubts_of_bearing, guessed_bearing
 from fieldmon.io.import_report import ImportMessage, WrongRows, gathered, guessed
@@ -101,7 +101,7 @@ def prepare(request: PlotRequest, listener: Listener | None = None) -> Prepared:
         hearing.say("plot", file, doubts_of_bearing(laid.plot.field, request.planting))
     if listener is not None:
         listener.laid(laid)
-    plot, records, risk = laid.plot, Observations.none(), None
+    plot, records, risk = laid.plot, Records.none(), None
     if (asked := request.records) is not None:
         named = partial(_every_field, sources)
         records = hearing.read(

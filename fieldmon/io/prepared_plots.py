@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.wording import worded
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.io.import_report import ImportMessage, doubtful
 from fieldmon.io.readers.crews import Crew
 from fieldmon.io.readers.nearby import records_on_plot
@@ -111,7 +111,7 @@ class Prepared:
     """
 
     plot: Plot
-    records: Observations
+    records: Records
     risk: NDArray[np.float64] | None
     messages: tuple[SourceMessage, ...]
     assumed: tuple[Assumed, ...]
@@ -129,14 +129,14 @@ class EstateRecords:
         Those that name a plot's rows and plants, by the plot's name; empty where records do not.
     """
 
-    anywhere: Observations = field(default_factory=Observations.none)
-    named: Mapping[str, Observations] = field(default_factory=dict)
+    anywhere: Records = field(default_factory=Records.none)
+    named: Mapping[str, Records] = field(default_factory=dict)
 
-    def candidates(self, name: str) -> Observations:
+    def candidates(self, name: str) -> Records:
         """Return the records among which those of a plot are."""
         return self.named.get(name, self.anywhere)
 
-    def on(self, plot: Field) -> Observations:
+    def on(self, plot: Field) -> Records:
         """Return the records on a plot or near it; there may be none."""
         return records_on_plot(self.candidates(plot.name), plot)
 

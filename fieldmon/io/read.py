@@ -21,7 +21,7 @@ from fieldmon.io.sandbox import process
 if TYPE_CHECKING:
     from shapely import MultiLineString, MultiPolygon
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.io.formats.layer import LayerInfo
     from fieldmon.io.import_report import Imported
     from fieldmon.io.readers.crews import Crew
@@ -78,7 +78,7 @@ def read_records(
     near: Field | None = None,
     places: NamedPlaces | None = None,
     apart_m: float | None = None,
-) -> Imported[Observations]:
+) -> Imported[Records]:
     """Return the pest records of a source.
 
     Parameters
@@ -96,7 +96,7 @@ def read_records(
         usual.
     """
     options = options or RecordOptions()
-    records: Imported[Observations]
+    records: Imported[Records]
     try:
         records = _read("records", source, options, places, apart_m)
     except ChoiceNeeded as question:
@@ -123,9 +123,9 @@ def _middle(field: Field) -> tuple[float, float]:
 
 def read_records_by_plot(
     source: Source, options: RecordOptions, places: NamedPlaces
-) -> Imported[dict[str, Observations]]:
+) -> Imported[dict[str, Records]]:
     """Return the records of a source that name a plot, a row and a plant, by the plots' names."""
-    records: Imported[dict[str, Observations]] = _read("plot_records", source, options, places)
+    records: Imported[dict[str, Records]] = _read("plot_records", source, options, places)
     return records
 
 

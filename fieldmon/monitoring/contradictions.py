@@ -216,7 +216,7 @@ def contradicting(held: Inspections) -> Inspections:
     return said.take(np.argsort(said.plant, kind="stable"))
 
 
-def said_otherwise(
+def contradiction_lines(
     held: Inspections, grid: PlantGrid, named: Callable[[str], str] = str
 ) -> tuple[Worded, ...]:
     """Return of each plant that was both clean and found on a day who says what, a line each.

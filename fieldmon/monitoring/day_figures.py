@@ -10,8 +10,8 @@ import numpy as np
 
 from fieldmon.compute.wording import Worded, estimate, figure, worded
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.plot_estimate import PlotEstimate
+from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring.transactions import get_meta, set_meta
 from fieldmon.samplers.base import NEVER
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot
 
-#: of this season: what records from before say is in the layer of the observations
+#: of this season: what records from before say is in the layer `observations`
 STATES = {
     -1: "never inspected",
     0: "looked clean",

@@ -16,7 +16,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.parse.result_words import GONE, gone_note
 from fieldmon.monitoring import inspection_lots, inspection_table, repeated_recordings
 from fieldmon.monitoring.contradictions import contradictions, said_before

@@ -35,7 +35,7 @@ def causes(db: sqlite3.Connection, begins: date, settings: PriorSettings) -> str
     """Return a name for all from which the first morning follows, our own rules among it."""
     said = [
         value
-        for table in (schema.ARRAYS, schema.PLACES, schema.OBSERVATIONS)
+        for table in (schema.ARRAYS, schema.PLACES, schema.RECORDS)
         for row in db.execute(f"SELECT * FROM {table.name} ORDER BY fid")  # noqa: S608 - ours
         for value in row
     ]

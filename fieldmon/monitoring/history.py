@@ -17,9 +17,9 @@ from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.infestation.learnt import learnt_from, with_start
 from fieldmon.infestation.level_range import level_range
-from fieldmon.infestation.observations import PRESENT
 from fieldmon.infestation.origins import Estimate
 from fieldmon.infestation.plot_estimate import estimate_of
+from fieldmon.infestation.records import PRESENT
 from fieldmon.infestation.traced_pairs import in_hindsight, in_sight
 from fieldmon.io.parse.result_words import says_gone
 from fieldmon.monitoring.belief_settings import BeliefSettings

@@ -21,11 +21,11 @@ from fieldmon.compute.ranges import DAYS
 from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.forecast import NIGHTS, forecast
-from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.pest_in_weather import seen_in_weather
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import Records
 from fieldmon.infestation.traced_pairs import in_hindsight, in_sight
 from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.still_infested import not_found_yet, still_certain
@@ -603,6 +603,6 @@ class MonitorDay(AskedDay):
 
 def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.float64]:
     if chance is None:
-        none, day = Observations.none(), np.datetime64(local_clock(plot.field).today())
+        none, day = Records.none(), np.datetime64(local_clock(plot.field).today())
         return prior_chance(plot.grid, plot.field, none, day, PriorSettings())
     return chances_of(chance, len(plot.grid))

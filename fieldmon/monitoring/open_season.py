@@ -14,8 +14,8 @@ import shapely
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.hotspots import record_states
-from fieldmon.infestation.observations import Observations, usable
 from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.records import Records, usable
 from fieldmon.monitoring import (
     derived_layers,
     first_morning,
@@ -146,7 +146,7 @@ class OpenSeason:
         self._waits: tuple[FileRevision, tuple[EntryWait, ...]] | None = None
         with self.store.reading() as db:
             self.plot: Plot = tables.read_plot(db)
-            self.observations: Observations = tables.read_observations(db)
+            self.records: Records = tables.read_records(db)
             self.risk: Floats | None = tables.read_arrays(db, "risk").get("risk")
             self._first_entry = season_log.first(db)
 
@@ -308,10 +308,10 @@ class OpenSeason:
         with self.store.reading() as db:
             return season_log.entries(db)
 
-    def records_known(self) -> Observations:
+    def records_known(self) -> Records:
         """Return the records from which the season began."""
         begins = np.datetime64(self.settings.begins, "D")
-        return usable(self.observations, begins).observations
+        return usable(self.records, begins).records
 
     def last_date(self) -> date:
         """Return the last day on which anything was planned or recorded; at first the first."""
@@ -333,7 +333,7 @@ class OpenSeason:
         is_anything = len(history.inspections) or len(history.treatments)
         return last if is_anything and (last := self.last_recorded()) > today else None
 
-    def day_meant(self) -> date:
+    def default_date(self) -> date:
         """Return the day that is meant where none is named: the last date, but today at most.
 
         Where today is before the season it is the last date.
@@ -540,7 +540,7 @@ class OpenSeason:
                 inspections = before.history.inspections
             else:
                 inspections = inspection_lots.load(db, settings.begins)
-            begun = nothing_yet(self.plot, settings, prior, self.observations, told_at_first(db))
+            begun = nothing_yet(self.plot, settings, prior, self.records, told_at_first(db))
             told = told_detection(db, inspections, settings.begins)
             history = replace(
                 begun,
@@ -564,7 +564,7 @@ class OpenSeason:
             if chance is None:
                 begins, plot = np.datetime64(settings.begins, "D"), self.plot
                 chance = prior_chance(
-                    plot.grid, plot.field, self.observations, begins, settings.prior, self.risk
+                    plot.grid, plot.field, self.records, begins, settings.prior, self.risk
                 )
             self._prior = _Prior(key, causes, chance)
         return self._prior.chance
@@ -615,14 +615,14 @@ class OpenSeason:
 
 
 def nothing_yet(
-    plot: Plot, settings: MonitoringSettings, prior: Floats, records: Observations, told: float
+    plot: Plot, settings: MonitoringSettings, prior: Floats, records: Records, told: float
 ) -> History:
     """Return the history of a season in which nothing was found or treated.
 
     `told` is what inspections were told to find when it began.
     """
     belief = settings.belief.first_morning(plot.grid, prior, settings.pest, told)
-    known = usable(records, np.datetime64(settings.begins, "D")).observations
+    known = usable(records, np.datetime64(settings.begins, "D")).records
     return History(
         plot.grid,
         settings.begins,

@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import SKIPPED
-from fieldmon.infestation.observations import PRESENT, UNKNOWN
+from fieldmon.infestation.records import PRESENT, UNKNOWN
 from fieldmon.io.parse.result_words import begins_gone
 
 if TYPE_CHECKING:

@@ -94,7 +94,8 @@ PLANTS = GeoPackageTable(
     "POINT",
     "Plants: number in this file, row and place in the row as people count.",
 )
-OBSERVATIONS = GeoPackageTable(
+# called so by files and projects of all versions
+RECORDS = GeoPackageTable(
     "observations",
     (
         "present INTEGER",
@@ -289,14 +290,14 @@ CHANCE = GeoPackageTable(
 
 TABLES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, DAYS, PLANT_STATE),
-    *(PLOTS, PLACES, ROWS, PLANTS, OBSERVATIONS, INSPECTIONS, TREATMENTS),
+    *(PLOTS, PLACES, ROWS, PLANTS, RECORDS, INSPECTIONS, TREATMENTS),
     *(ROUTES, STOPS, HOT_SPOTS, OUTSIDE_CHANGES, LEARNT, LABELS, LOG, MORNINGS, INSPECTION_LOTS),
     *phone_tables.TABLES,
 )
 #: layers from which everything else follows: what must be saved from a damaged file
 CAUSES = (
     *(META, SETTINGS, IMPORTS, ARRAYS, BATCHES, PLOTS, PLACES, ROWS, PLANTS),
-    *(OBSERVATIONS, INSPECTIONS, TREATMENTS, ROUTES, STOPS, OUTSIDE_CHANGES, LABELS, LOG),
+    *(RECORDS, INSPECTIONS, TREATMENTS, ROUTES, STOPS, OUTSIDE_CHANGES, LABELS, LOG),
     *phone_tables.TABLES,
 )
 #: what an inspection says, for people; of a trigger's row `old`

@@ -57,11 +57,6 @@ class SeasonCopies(OpenSeason):
             apart = same_season.are_of_two_pests(db, theirs)
             return not apart or same_season.hold_in_common(db, theirs)
 
-    def is_of_one_plot(self, file: Path) -> bool:
-        """Return whether the season in a file has the same rows and plants as this one."""
-        with self.store.reading() as db, Store(file).reading() as theirs:
-            return same_season.are_of_one_plot(db, theirs)
-
     @cached_property
     def planting(self) -> str:
         """What stands for the rows and plants: other seasons of the plot have the same."""

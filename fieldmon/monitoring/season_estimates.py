@@ -26,7 +26,7 @@ from fieldmon.monitoring.left_plot import FewInspected, InspectAgain, NotReached
 from fieldmon.monitoring.mornings import rules
 from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.status import Status
-from fieldmon.monitoring.told_detection import read_now, told_at_first, told_otherwise
+from fieldmon.monitoring.told_detection import other_detections, read_now, told_at_first
 from fieldmon.pests.development import development
 
 if TYPE_CHECKING:
@@ -225,14 +225,14 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             return contents.history.learnt(morning, day, detection)
 
-    def told_otherwise(self, on: Day) -> tuple[ToldOtherwise, ...]:
+    def other_detections(self, on: Day) -> tuple[ToldOtherwise, ...]:
         """Return with which inspections up to `on` another detection was said than the season's."""
         with self._lock, self.store.reading() as db:
             now = self._read(db)
             done = now.history.until(now.settings.day(on))
-            return told_otherwise(db, done, now.settings.begins)
+            return other_detections(db, done, now.settings.begins)
 
-    def reads(self, on: Day, who: str = "") -> float:
+    def detection_of(self, on: Day, who: str = "") -> float:
         """Return what inspections of `who` on `on` find, where nothing else is said with them.
 
         That is by the day's last plan, or else by what counts when it is recorded first.
@@ -247,7 +247,7 @@ class SeasonEstimates(OpenSeason):
         with self.store.reading() as db:
             return read_now(db, on, who)
 
-    def taught(self) -> Worded | None:
+    def earlier_season_note(self) -> Worded | None:
         """Return what of an earlier season counts in this one; None: it began without one."""
         now = self._now()
         belief, settings = now.settings.belief, now.settings
@@ -262,7 +262,7 @@ class SeasonEstimates(OpenSeason):
 
         Raise `SettingError` if it learnt nothing: nothing was inspected, or finds are not traced.
         """
-        on = self.day_meant()
+        on = self.default_date()
         with self._asked(on) as (contents, morning, day):
             evening = contents.history.evening(morning, day)
         inspected = (contents.history.inspections.result != SKIPPED).any()

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.arguments import must_be_language
+from fieldmon.compute.arguments import must_be_language, must_have_its_name
 from fieldmon.compute.array_arguments import array_of_plants
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.records import Records
 from fieldmon.io.readers.nearby import warn_of_left_out
 from fieldmon.monitoring import (
     derived_layers,
@@ -122,7 +122,7 @@ class Season(SeasonPlans, SeasonFrames):
         cls,
         path: str | Path,
         plot: Plot,
-        observations: Observations | None = None,
+        records: Records | None = None,
         settings: MonitoringSettings | None = None,
         messages: Iterable[KeptMessage] | None = None,
         risk: Any = None,  # noqa: ANN401 - held to its kind below
@@ -136,7 +136,7 @@ class Season(SeasonPlans, SeasonFrames):
             The file, a GeoPackage; it must not exist.
         plot
             Plants and the ways between them.
-        observations
+        records
             Records from before; None: none.
         settings
             What is chosen; None: the defaults, from today on in the plot's time zone.
@@ -160,20 +160,20 @@ class Season(SeasonPlans, SeasonFrames):
             did not end before.
         """
         settings = _chosen_for(plot, settings, chosen)
-        if observations is None:
-            observations = Observations.none()
+        if records is None:
+            records = Records.none()
         begins = np.datetime64(settings.begins, "D")
         if messages is None:
-            warn_of_left_out(observations, begins, plot.field)
+            warn_of_left_out(records, begins, plot.field)
         if risk is not None:
             risk = array_of_plants(np.float64, "A risk map", risk)
-        prior = prior_chance(plot.grid, plot.field, observations, begins, settings.prior, risk)
+        prior = prior_chance(plot.grid, plot.field, records, begins, settings.prior, risk)
         told = settings.robot.detects
-        history = nothing_yet(plot, settings, prior, observations, told)
+        history = nothing_yet(plot, settings, prior, records, told)
         first = SeasonContents(FileRevision(0, 0), settings, history, Mornings(history))
         with Store.new(path) as db:
             tables.write_plot(db, plot)
-            tables.write_observations(db, observations)
+            tables.write_records(db, records)
             tables.write_messages(db, () if messages is None else messages)
             if risk is not None:
                 tables.write_array(db, "risk", risk)
@@ -303,7 +303,7 @@ class Season(SeasonPlans, SeasonFrames):
             if _advised(db, on)[-1:] != [said]:  # nor has anybody else written it meanwhile
                 season_log.append(db, "advised", written_in(db, who), date=str(on), said=said)
 
-    def held_to_log(self) -> tuple[str, ...]:
+    def check_against_log(self) -> tuple[str, ...]:
         """Return a sentence for each thing that the file says otherwise than its log."""
         with self.store.reading() as db:
             return outside_changes.not_as_logged(db)
@@ -325,10 +325,10 @@ class Season(SeasonPlans, SeasonFrames):
         """
         doubt = () if self.store.doubt is None else (self.store.doubt,)
         doubt = (*doubt, *self.settings.unlike_its_pest())
-        held = self.held_to_log() if whole else ()
-        return (*doubt, *held, *self.other_maps(whole=whole))
+        held = self.check_against_log() if whole else ()
+        return (*doubt, *held, *self.changed_maps(whole=whole))
 
-    def other_maps(
+    def changed_maps(
         self, *, whole: bool = True, tell: Callable[[int, int], object] | None = None
     ) -> tuple[str, ...]:
         """Return a sentence for each day whose chance map is not the one that was used then.
@@ -364,6 +364,7 @@ def _chosen_for(
     plot: Plot, settings: MonitoringSettings | None, chosen: dict[str, Any]
 ) -> MonitoringSettings:
     """Return the settings of a new season, given as one or one by one; raise if none can be."""
+    must_have_its_name("A season's records", chosen, "observations", "records")
     if settings is None:
         clock = local_clock(plot.field)
         settings = settings_from({"begins": clock.today()} | chosen, clock.at)

@@ -76,7 +76,7 @@ class SeasonFrames(SeasonInspections, SeasonTreatments, SeasonEstimates):
             return _inspections(self)
         if of == "treatments":
             return _treatments(self)
-        return _plants(self, self.day_meant() if on is None else on)
+        return _plants(self, self.default_date() if on is None else on)
 
     def to_pandas(self) -> DataFrame:
         """Return a line for each day on which anything was planned or recorded.

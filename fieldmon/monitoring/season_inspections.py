@@ -30,10 +30,10 @@ from fieldmon.monitoring.batches import Recorded, Undone
 from fieldmon.monitoring.contradictions import (
     Contradictions,
     contradicting,
+    contradiction_lines,
     contradictions,
     known_before,
     said_before,
-    said_otherwise,
 )
 from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import as_written, names_written, written_in
@@ -62,11 +62,11 @@ class SeasonInspections(SeasonCorrections):
         """Return which `inspections` say otherwise than what is recorded of their plant and day."""
         return contradictions(inspections, self.history.inspections)
 
-    def new_of(self, inspections: Inspections) -> int:
+    def count_new(self, inspections: Inspections) -> int:
         """Return how many `inspections` say more than what is recorded."""
         return int(np.count_nonzero(~known_before(inspections, self.history.inspections)))
 
-    def unrecorded(self, inspections: Inspections) -> int:
+    def count_never_recorded(self, inspections: Inspections) -> int:
         """Return how many `inspections` are of a plant, day and result that were never recorded.
 
         What was recorded and taken back since was recorded.
@@ -81,9 +81,11 @@ class SeasonInspections(SeasonCorrections):
         """Return a day's inspections of plants that were both clean and found on it."""
         return contradicting(self.history.inspections.on(on))
 
-    def said_otherwise(self, on: Day, named: Callable[[str], str] = str) -> tuple[Worded, ...]:
+    def contradiction_lines(
+        self, on: Day, named: Callable[[str], str] = str
+    ) -> tuple[Worded, ...]:
         """Return a line for each such plant `on` a day: who says what; `named` writes a name."""
-        return said_otherwise(self.history.inspections.on(on), self.plot.grid, named)
+        return contradiction_lines(self.history.inspections.on(on), self.plot.grid, named)
 
     def record(
         self,
@@ -306,9 +308,9 @@ class SeasonInspections(SeasonCorrections):
         SettingError
             If there is nothing to take back, or both are given.
         """
-        return self.take_back(batch, inspection, who).said
+        return self.undo_with_batches(batch, inspection, who).said
 
-    def take_back(
+    def undo_with_batches(
         self, batch: int | None = None, inspection: int | None = None, who: str = ""
     ) -> Undone:
         """Do what `undo` does; return also which batches `redo` then lets count again.

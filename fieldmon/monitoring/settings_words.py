@@ -155,7 +155,7 @@ def telling_anew(
     if all(was.get(name) == now.get(name) for name in _OF_ALL_DAYS):
         yield
         return
-    on = season.day_meant()
+    on = season.default_date()
     told = _still_there(season, on)
     yield
     if (still := _still_there(season, on)) != told:

@@ -101,18 +101,12 @@ class ShiftWork:
     inspections: Inspections
     days: NDArray[np.int32]
 
-    def by_all(self, day: int) -> Inspections:
-        """Return what anybody inspected from when the work of a day began until it ends.
+    def own(self, day: int) -> Inspections:
+        """Return what they inspected from when the work of a day began until it ends.
 
         Inspections after midnight are dated the next day; here their seconds go on from 86 400.
         """
-        return self._take(self._work_days == day, day)
-
-    def own(self, day: int) -> Inspections:
-        """Return what is theirs of that."""
-        return self._take((self._work_days == day) & self._is_own, day)
-
-    def _take(self, rows: NDArray[np.bool_], day: int) -> Inspections:
+        rows = (self._work_days == day) & self._is_own
         done, late = self.inspections.take(rows), self.days[rows] > day
         return replace(done, second=done.second + np.where(late, DAY_S, 0.0))
 

@@ -16,7 +16,7 @@ from shapely import LineString, MultiLineString, MultiPolygon, Point
 from fieldmon.compute.arrays import offsets
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import schema
 from fieldmon.monitoring.geopackage import blob, geometry, insert, point_blobs, touch, unpacked
 from fieldmon.plot.assumed import Assumed
@@ -278,7 +278,7 @@ def _field(db: sqlite3.Connection, arrays: dict[str, NDArray[Any]]) -> Field:
     )
 
 
-def write_observations(db: sqlite3.Connection, records: Observations) -> None:
+def write_records(db: sqlite3.Connection, records: Records) -> None:
     """Keep pest records from before the season."""
     rows = zip(
         point_blobs(records.lonlat),
@@ -290,24 +290,24 @@ def write_observations(db: sqlite3.Connection, records: Observations) -> None:
         _known(records.leaves_sampled),
         strict=True,
     )
-    insert(db, schema.OBSERVATIONS, list(rows))
+    insert(db, schema.RECORDS, list(rows))
     placed = records.lonlat[~np.isnan(records.lonlat).any(axis=1)]
     if len(placed):
         low, high = placed.min(axis=0).tolist(), placed.max(axis=0).tolist()
-        touch(db, schema.OBSERVATIONS.name, (*low, *high))
+        touch(db, schema.RECORDS.name, (*low, *high))
 
 
-def read_observations(db: sqlite3.Connection) -> Observations:
+def read_records(db: sqlite3.Connection) -> Records:
     """Return the pest records from before the season."""
-    names = ", ".join(schema.OBSERVATIONS.names)
+    names = ", ".join(schema.RECORDS.names)
     rows = db.execute(f"SELECT {names} FROM observations ORDER BY fid").fetchall()  # noqa: S608 - names of ours
     if not rows:
-        return Observations.none()
+        return Records.none()
     geom, present, day, count, accuracy, species, stage, leaves = zip(*rows, strict=True)
     lonlat = np.full((len(geom), 2), np.nan)  # the point of no position is empty
     placed, which = shapely.get_coordinates([geometry(one) for one in geom], return_index=True)
     lonlat[which] = placed
-    return Observations(
+    return Records(
         lonlat,
         np.array(present, np.int8),
         np.array([np.datetime64(d or "NaT", "D") for d in day]),

@@ -195,7 +195,7 @@ def _held(
     return held
 
 
-def told_otherwise(
+def other_detections(
     db: sqlite3.Connection, inspections: Inspections, begins: date
 ) -> tuple[ToldOtherwise, ...]:
     """Return which inspections are read by what was said with them, and not by the season's own."""

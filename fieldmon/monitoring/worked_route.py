@@ -33,7 +33,7 @@ def day_was_worked(season: Season, on: date, ahead: Route, today: date | None = 
     A day planned ahead ends none. `today` by the calendar; None: somebody may still go on with a
     day that has passed.
     """
-    passed = on < season.day_meant() or (today is not None and on < today)
+    passed = on < season.default_date() or (today is not None and on < today)
     return (not len(ahead) or passed) and bool(len(season.history.on(season.settings.day(on))))
 
 

@@ -21,7 +21,7 @@ from fieldmon.samplers.own import is_own, own_text
 if TYPE_CHECKING:
     import numpy as np
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.pests.pest import Pest
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.field import Field
@@ -110,7 +110,7 @@ class Task:
             if name not in self.orders.robot
         ]
 
-    def digest(self, observations: Observations) -> str:
+    def digest(self, records: Records) -> str:
         """Return what tells this task from any other, however alike."""
         ordered = dict(vars(self.orders))
         # folders of routes from before these could be ordered hold the tasks of today's usual
@@ -124,16 +124,16 @@ class Task:
         # what was left aside stands in the summary
         aside = [self.left_aside] * bool(self.left_aside)
         parts = (*self.plot.content, self.who, self.stated, *ordered.values(), *aside)
-        return digest(*parts, *vars(observations).values(), length=16)
+        return digest(*parts, *vars(records).values(), length=16)
 
 
-def plan_task(task: Task, plot: Plot, observations: Observations) -> DayPlan:
+def plan_task(task: Task, plot: Plot, records: Records) -> DayPlan:
     """Plan the day on a task's plot; raise a `FieldmonError` where it cannot be done."""
     orders = task.orders
     robot = _robot(task)
     decides = sampler_with(orders.sampler, orders.every)
     plans = PlanSettings(robot, decides, orders.prior)
-    today = first_day(plot, observations, orders.day, plans)
+    today = first_day(plot, records, orders.day, plans)
     if not len(today.route):
         raise SettingError(
             worded(

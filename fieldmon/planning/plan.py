@@ -14,9 +14,9 @@ from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
-from fieldmon.infestation.observations import Observations, must_be_records
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import Records, must_be_records
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.io.readers.nearby import warn_of_left_out
 from fieldmon.io.writers.day_file import RouteNotes
@@ -153,7 +153,7 @@ class DayPlan:
 
 def plan_day(
     plot: Plot,
-    records: Observations | None = None,
+    records: Records | None = None,
     on: str | date | datetime | np.datetime64 | None = None,
     *,
     robot: Robot | None = None,
@@ -213,7 +213,7 @@ def plan_day(
     starts = starts_at(on, plot)
     decides = sampler_or_name(sampler)
     plans = PlanSettings(robot or Robot(), decides)
-    given = Observations.none() if records is None else records
+    given = Records.none() if records is None else records
     day = np.datetime64(starts.date(), "D")
     warn_of_left_out(given, day, plot.field)
     today = first_day(plot, given, day, plans, risk)
@@ -253,13 +253,13 @@ def starts_at(on: str | date | datetime | np.datetime64 | None, plot: Plot) -> d
 
 def first_day(
     plot: Plot,
-    observations: Observations,
+    records: Records,
     on_day: np.datetime64,
     plans: PlanSettings,
     risk: NDArray[np.float64] | None = None,
 ) -> DayPlan:
     """Plan a day on a plot of which nothing but records is known, and perhaps a risk ``(n,)``."""
-    chance = prior_chance(plot.grid, plot.field, observations, on_day, plans.prior, risk)
+    chance = prior_chance(plot.grid, plot.field, records, on_day, plans.prior, risk)
     return plan_from(plot, chance, plans)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.compute.wording import chance_figure, estimate, figure, share_figure, worded
 from fieldmon.infestation.hotspots import hot_spots
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.records import PRESENT
 from fieldmon.io.spray_rate import litres_figure
 from fieldmon.monitoring.plant_states import shown_apart
 from fieldmon.plot.grid import plant_numbers, row_ends

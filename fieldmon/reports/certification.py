@@ -68,13 +68,13 @@ class _PlotRecord:
 
     @classmethod
     def of(cls, season: Season, until: date | None, units: Units) -> _PlotRecord:
-        on = season.day_meant() if until is None else until
+        on = season.default_date() if until is None else until
         done = tuple(one for one in season.treatments() if one.on <= on)
         # until when nobody may enter stands with each treatment: a record is read after it
         beware = tuple(one for one in season.cautions(on, units) if one.kind != "entry")
         told = season.effects(on, units)
         try:
-            log, wrong = season.log(), " ".join(season.held_to_log())
+            log, wrong = season.log(), " ".join(season.check_against_log())
         except FieldmonError as changed:
             log, wrong = (), str(changed)
         first = season.harvest_from(on)

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import chance_figure, estimate, figure, hours_figure, runs, worded
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.cautions import label_of, waits
 from fieldmon.monitoring.closures import closed_in_words
@@ -176,7 +176,7 @@ class DayFacts:
                     on, "".join(names[:1]), plan.scene.seconds_left
                 ),
                 skipped=() if worked else left_out_in_words(plan.scene, route),
-                recorded=recorded, otherwise=season.said_otherwise(on, words.isolated),
+                recorded=recorded, otherwise=season.contradiction_lines(on, words.isolated),
             )  # fmt: skip
 
 

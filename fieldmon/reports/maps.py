@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from fieldmon.infestation.hotspots import outlines_m
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.records import PRESENT
 from fieldmon.plot.grid import before_rows
 from fieldmon.reports import colours, words
 from fieldmon.reports.drawing import (

@@ -12,7 +12,7 @@ import numpy as np
 
 from fieldmon.compute.wording import chance_figure, counted, estimate, figure, joined, worded
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import DayFigures
 from fieldmon.monitoring.day_figures import flagged_said, found_pct
 from fieldmon.monitoring.plant_states import finds_apart
@@ -331,7 +331,7 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
 
 def _goes_by(facts: _Facts) -> Iterator[Block]:
     yield _batches(facts)
-    if otherwise := facts.season.told_otherwise(facts.on):
+    if otherwise := facts.season.other_detections(facts.on):
         rest = _left_out(otherwise, _MOST_OTHERWISE, words.REST)
         yield Listing("", (*(one.sentence() for one in otherwise[:_MOST_OTHERWISE]), *rest))
     yield _treatments(facts)
@@ -362,7 +362,7 @@ def _batches(facts: _Facts) -> Block:
         contents = facts.season.contents([one.number for one in batches])
         later = {number for number, of in contents.items() if of.first > str(facts.on)}
         batches = tuple(one for one in batches if one.number not in later)
-    brought = len(facts.season.observations)
+    brought = len(facts.season.records)
     if not batches and not brought:
         return Listing(words.BATCHES, (words.BATCHES_NONE,))
     rows, clock = [], local_clock(facts.season.plot.field)

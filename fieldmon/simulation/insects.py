@@ -24,7 +24,7 @@ class PlotInsects(Protocol):
 
     @property
     def infested(self) -> NDArray[np.bool_]:
-        """Who is infested now, ``(n,)``."""
+        """Which plants are infested now, ``(n,)``."""
         ...
 
     def showing(self, number: int) -> NDArray[np.bool_]:
@@ -74,7 +74,7 @@ class PestInsects:
 
     @property
     def infested(self) -> NDArray[np.bool_]:
-        """Who is infested now, ``(n,)``."""
+        """Which plants are infested now, ``(n,)``."""
         return self.colonies.infested
 
     @property

@@ -86,7 +86,7 @@ def simulate(
     plot
         Plants and the ways between them.
     start
-        Who is infested on the first morning, and what is believed of it, see `draw_start`.
+        Which plants are infested on the first morning, and what is believed; see `draw_start`.
     sampler
         Name of a sampler, or one of your own.
     robot
@@ -138,7 +138,7 @@ def simulate_days(
     settings: SimulationSettings | None = None,
     seed: int = 1,
 ) -> Iterator[SimulatedDay]:
-    """Simulate a season as `simulate` does, day by day: who is infested, inspected and found.
+    """Simulate a season as `simulate` does, day by day: which plants are infested and inspected.
 
     Parameters
     ----------

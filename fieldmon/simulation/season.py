@@ -66,8 +66,8 @@ class SimulationSettings:
     believe
         How plot and first chance map become a belief.
     own_night
-        Who is infested the next morning, from the plants, those infested in the evening and the
-        night's key; None: as `spread` says.
+        Which plants are infested the next morning, from the plants, those infested in the
+        evening and the night's key; None: as `spread` says.
     hidden_nights
         Nights for which a new infestation spreads and no inspection finds it; 0 for those of the
         first morning.
@@ -127,14 +127,14 @@ class SimulationSettings:
     def night(
         self, grid: PlantGrid, infested: NDArray[np.bool_], key: np.uint64
     ) -> NDArray[np.bool_]:
-        """Return who is infested the next morning, ``(n,)``.
+        """Return which plants are infested the next morning, ``(n,)``.
 
         Parameters
         ----------
         grid
             The plants.
         infested
-            ``(n,)`` who is infested in the evening.
+            ``(n,)`` which plants are infested in the evening.
         key
             The night's stream, see `RandomStreams.key`.
         """
@@ -253,7 +253,7 @@ class SimulatedDay:
 
     @property
     def in_the_evening(self) -> NDArray[np.bool_]:
-        """Return who is infested before the night, ``(n,)``: not found, not cleaned by spraying."""
+        """Return which plants are infested before the night, ``(n,)``: not found nor cleaned."""
         evening = self.infested.copy() if self.evening is None else self.evening.copy()
         if self.evening is None:
             evening[self.work.plant[self.work.found]] = False
@@ -331,7 +331,7 @@ class RunningSeason:
 
     @property
     def infested(self) -> NDArray[np.bool_]:
-        """Who is infested now, ``(n,)``."""
+        """Which plants are infested now, ``(n,)``."""
         return self.insects.infested
 
     @property

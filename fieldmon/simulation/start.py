@@ -1,4 +1,4 @@
-"""The first morning of a simulated season: who is infested, and what is believed about it."""
+"""The first morning of a simulated season: which plants are infested, what is believed."""
 
 from __future__ import annotations
 

@@ -11,8 +11,8 @@ from fieldmon.compute.digest import digest
 if TYPE_CHECKING:
     import numpy as np
 
-    from fieldmon.infestation.observations import Observations
     from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.records import Records
     from fieldmon.plot.field import Field
     from fieldmon.plot.planting import Planting
 
@@ -32,7 +32,7 @@ class StudyPlot:
         The plot.
     planting
         How it is planted.
-    observations
+    records
         Records on it, from which the first morning's chances follow.
     day
         The day they are seen from.
@@ -42,14 +42,14 @@ class StudyPlot:
 
     field: Field
     planting: Planting
-    observations: Observations
+    records: Records
     day: np.datetime64
     pest_in_weather: PestInWeather | None = None
 
     @cached_property
     def digest(self) -> str:
         """Return what tells this plot and its records from any others."""
-        parts = (*self.field.content, *vars(self.observations).values())
+        parts = (*self.field.content, *vars(self.records).values())
         # unsaid, it leaves a plot what it was before pests could be named
         pest = () if self.pest_in_weather is None else self.pest_in_weather.content
         return digest(*parts, as_written(self.planting), str(self.day), *pest, length=DIGITS)

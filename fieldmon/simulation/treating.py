@@ -42,7 +42,7 @@ class TreatmentRule:
     every_days
         Days from one treatment to the next at least.
     seed
-        Whom a treatment cleans: the same seed, the same plants.
+        Which plants a treatment cleans: the same seed, the same plants.
 
     Raises
     ------
@@ -88,7 +88,7 @@ class TreatmentRule:
         return kept if len(kept) else None
 
     def cleaned(self, zones: Zones, day: int) -> NDArray[np.bool_]:
-        """Return whom treating `zones` on a `day` cleans if infested, ``(n,)``."""
+        """Return which plants treating `zones` on a `day` cleans if infested, ``(n,)``."""
         draws = RandomStreams(self.seed).of("treat", day).random(len(zones.treated))
         cleaned: NDArray[np.bool_] = zones.treated & (draws < self.costs.works)
         return cleaned

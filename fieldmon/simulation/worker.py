@@ -133,7 +133,7 @@ class _Unhashed:
 def _laid(digest: str, of: _Unhashed) -> LaidPlot:  # noqa: ARG001 - the key
     """Return a plot with its plants, and their chances of infestation."""
     plot = plot_of(of.plot.field, of.plot.planting)
-    records, day, pest_in_weather = of.plot.observations, of.plot.day, of.plot.pest_in_weather
+    records, day, pest_in_weather = of.plot.records, of.plot.day, of.plot.pest_in_weather
     prior = PriorSettings()
     if pest_in_weather is not None:
         prior = prior_for(

@@ -61,7 +61,7 @@ class Interval(NamedTuple):
     grid
         Its plants.
     before, after
-        ``(n,)`` who was infested.
+        ``(n,)`` which plants were infested.
     half
         ``(n,)`` which half of the plot each plant is in.
     earlier

@@ -11,7 +11,7 @@ import numpy as np
 
 from fieldmon.compute.wording import first_few
 from fieldmon.errors import FileProblem, ObservationError
-from fieldmon.infestation.observations import PRESENT, UNKNOWN
+from fieldmon.infestation.records import PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.tables import read_text_table
 from fieldmon.io.options import ReadOptions, RecordOptions
@@ -351,7 +351,7 @@ def _some(cells: list[str]) -> str:
 def _states(
     cells: list[str], column: str, file: str
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return who is infested, and of whom it is known, as records say it."""
+    """Return which plants are infested, and of which it is known, as records say it."""
     words, mark = ResultWords(cells, RecordOptions()), decimal_mark(cells) or "."
     said = {}
     for cell in set(cells):

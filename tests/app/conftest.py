@@ -25,7 +25,7 @@ from streamlit.runtime.state.safe_session_state import SafeSessionState
 from streamlit.testing.v1 import local_script_runner
 
 from app.words import language
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.plot import local_clock
 from fieldmon.plot.plant_names import PlantNames
@@ -181,7 +181,7 @@ def season_named(seasons_folder):
     names = PlantNames(np.array(["5a", "C", "2", "D"])[row], None, called.astype(np.str_))
     plot = plot_around("own", lonlat, names=names)
     settings = MonitoringSettings(date(2026, 11, 16), robot=Robot(hours=1.0))
-    return Season.create(seasons_folder / "Own 2026.gpkg", plot, Observations.none(), settings)
+    return Season.create(seasons_folder / "Own 2026.gpkg", plot, Records.none(), settings)
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import numpy as np
 from app.state import menu
 from app.words import language, texts
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from tests.app.driving import PAGES, go, opened
 from tests.app.map_in_browser import IDLE, asked_of_the_world, open_item, open_page, rest
@@ -36,7 +36,7 @@ def hostile_season(path, name=EVERY):
     plot = a_plot()
     plot = replace(plot, field=replace(plot.field, name=name))
     on = np.datetime64("2026-11-16")
-    records = Observations.of(
+    records = Records.of(
         plot.grid.lonlat()[[3]], np.ones(1, np.int8), np.array([on]),
         species=np.array([name]), stage=np.array([name]),
     )  # fmt: skip

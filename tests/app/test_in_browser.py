@@ -25,7 +25,7 @@ from app.show.maps import colours
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.level_range import first_level_range
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.io.options import PlotOptions, RecordOptions
 from fieldmon.io.read import read_lines, read_plots, read_records
 from fieldmon.io.writers import FORMATS
@@ -123,7 +123,7 @@ def sample():
 
 def season(path, plot, **settings):
     settings = MonitoringSettings(date(2026, 11, 16), **settings)
-    return Season.create(path, plot, Observations.none(), settings)
+    return Season.create(path, plot, Records.none(), settings)
 
 
 def test_plants_and_route_are_drawn_where_they_are(screen):

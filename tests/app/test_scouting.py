@@ -160,9 +160,9 @@ def test_what_a_phone_was_planned_to_find_holds_though_another_robot_is_set_mean
     phone.page.evaluate("dispatchEvent(new Event('online'))")
     phone.page.locator(SENT).wait_for(timeout=120_000)
     now = Season(season.path)
-    assert now.reads(BEGINS) == 0.5
+    assert now.detection_of(BEGINS) == 0.5
     assert now.history.detections.tolist() == [0.84, 0.84]
-    assert [(one.who, one.n, one.own) for one in now.told_otherwise(BEGINS)] == [("Ann", 2, 0.5)]
+    assert [(one.who, one.n, one.own) for one in now.other_detections(BEGINS)] == [("Ann", 2, 0.5)]
 
 
 def test_a_scout_says_that_a_plant_is_gone_and_takes_it_back(season, line, phone):

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season, transactions
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import Plot
@@ -34,7 +34,7 @@ def begun(path: Path, n_plants: int) -> int:
     days = [np.datetime64(today - timedelta(days=int(k))) for k in rng.integers(1, 60, N_RECORDS)]
     seen = (rng.random(N_RECORDS) < 0.05).astype(np.int8)
     where = plot.grid.lonlat(rng.integers(0, len(plot.grid), N_RECORDS))
-    records = Observations.of(where, seen, np.array(days))
+    records = Records.of(where, seen, np.array(days))
     Season.create(path, plot, records, MonitoringSettings(today))
     return len(plot.grid)
 

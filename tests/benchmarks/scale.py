@@ -23,10 +23,10 @@ from app.show.maps import colours, deck, plant_layers, route_layers
 from app.show.maps.plant_layers import PlantNotes
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.independent_plants import IndependentPlants, overnight
-from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.prior import prior_chance, start_infested
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import ABSENT, PRESENT, Records
 from fieldmon.infestation.spread import Spread, night
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import MonitoringSettings, Season
@@ -62,7 +62,7 @@ def best_of(measured, most=7, at_most_s=2.0):
 
 def records_on(grid, rng):
     lonlat = grid.lonlat(rng.integers(0, len(grid), RECORDS))
-    return Observations.of(
+    return Records.of(
         lonlat + rng.normal(0.0, 2e-5, lonlat.shape),
         rng.choice([ABSENT, PRESENT], RECORDS, p=[0.8, 0.2]),
         DAY - rng.integers(0, 60, RECORDS),
@@ -76,9 +76,9 @@ def measure(n_plants):
     planting = Planting(row_bearing_deg=33.0, headland_m=1.0)
     took["laying the plants"], grid = best_of(lambda: lay(field, planting))
     took["finding the ways"], aisles = best_of(lambda: Aisles.of(grid))
-    plot, observations = Plot(field, aisles), records_on(grid, rng)
+    plot, records = Plot(field, aisles), records_on(grid, rng)
     took[f"chances from {RECORDS:,} records"], chance = best_of(
-        lambda: prior_chance(grid, field, observations, DAY, PriorSettings())
+        lambda: prior_chance(grid, field, records, DAY, PriorSettings())
     )
     n = len(grid)
     infested = rng.random(n) < 0.1
@@ -102,7 +102,7 @@ def measure(n_plants):
         took[f"a season of 25 days: {name}"], _ = best_of(
             lambda name=name: season(aisles, name, start)
         )
-    took |= files_and_map(plot, chance, observations)
+    took |= files_and_map(plot, chance, records)
     return {"plants": n, "took": took, "memory_mb": memory_mb()}
 
 
@@ -112,7 +112,7 @@ def season(aisles, name, start, believe=PairApproximation.of):
     return [day.detection_pct for day in walk]
 
 
-def files_and_map(plot, chance, observations):
+def files_and_map(plot, chance, records):
     """Return the seconds of writing the route, of a season's file, and of the first map."""
     took = {}
     today = plan_from(plot, chance, PlanSettings())
@@ -122,7 +122,7 @@ def files_and_map(plot, chance, observations):
         took["writing the route"], _ = best_of(lambda: route.to_file(to / "route.geojson"))
         setup = MonitoringSettings(date(2026, 5, 20))
         took["beginning a season's file"], _ = best_of(
-            lambda: Season.create(to / "season.gpkg", plot, observations, setup), 1
+            lambda: Season.create(to / "season.gpkg", plot, records, setup), 1
         )
         took["opening a season's file"], _ = best_of(lambda: Season(to / "season.gpkg"))
 

@@ -32,7 +32,7 @@ from playwright.sync_api import sync_playwright
 from shapely import MultiPolygon, box
 
 from app.state.scout_page import invitation
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season, scouts
 from fieldmon.plot.field import Field
 from fieldmon.plot.plot import Plot
@@ -77,7 +77,7 @@ def a_season(folder: Path, plants: int) -> Season:
     boundary = MultiPolygon([box(35.15, 30.36, 35.15 + 1.16 * side, 30.36 + side)])
     plot = Plot.of(Field("Large", boundary, gate=(35.15, 30.36)))
     settings = MonitoringSettings(_DAY, robot=scout())
-    return Season.create(folder / "large.gpkg", plot, Observations.none(), settings)
+    return Season.create(folder / "large.gpkg", plot, Records.none(), settings)
 
 
 def measured(browser, season: Season, asked: argparse.Namespace) -> str:

@@ -58,7 +58,7 @@ def test_a_study_of_seasons(benchmark, tmp_path, workers):
     """Two workers take 1 / 1.8 of one's time or less (workers warmed up, cores free)."""
     from distributed import default_client
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.plot.plot import planting_of
     from fieldmon.simulation import executor
     from fieldmon.simulation.design import Design, study_of
@@ -68,7 +68,7 @@ def test_a_study_of_seasons(benchmark, tmp_path, workers):
     from fieldmon.simulation.worker import simulate_chunk
 
     (field,) = (f for f in read_plots(ESTATE).value if f.name == "Gate")
-    plots = [StudyPlot(field, planting_of(field), Observations.none(), np.datetime64("2026-11-02"))]
+    plots = [StudyPlot(field, planting_of(field), Records.none(), np.datetime64("2026-11-02"))]
     with executor.cluster(workers=workers) as ready:
         warm = (plots[0], Design().combinations[0])
         default_client().run(simulate_chunk, warm, range(1, 2), 1)

@@ -4,9 +4,9 @@ import shapely
 from shapely import MultiLineString
 
 from fieldmon.infestation.hotspots import hot_spots, record_states
-from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.prior import prior_chance, start_infested
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import ABSENT, PRESENT, Records
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 
@@ -25,25 +25,25 @@ def plot(side, n_records):
     boundary = grid.frame.geometry_lonlat(grid.drivable_m)
     paths = MultiLineString([grid.frame.geometry_lonlat(round_m)])
     lonlat = grid.lonlat(rng.integers(0, len(grid), n_records))
-    observations = Observations.of(
+    records = Records.of(
         lonlat + rng.normal(0.0, 2e-5, lonlat.shape),
         rng.choice([ABSENT, PRESENT], n_records, p=[0.8, 0.2]),
         TODAY - rng.integers(0, 60, n_records),
     )
-    return grid, Field("plot", boundary, paths=paths), observations
+    return grid, Field("plot", boundary, paths=paths), records
 
 
 @SIZES
 def test_bench_a_prior_from_records_edges_and_paths(benchmark, side, n_records):
-    grid, field, observations = plot(side, n_records)
-    chance = benchmark(prior_chance, grid, field, observations, TODAY, PriorSettings())
+    grid, field, records = plot(side, n_records)
+    chance = benchmark(prior_chance, grid, field, records, TODAY, PriorSettings())
     assert chance.shape == (len(grid),)
 
 
 @SIZES
 def test_bench_a_start_with_an_expected_share(benchmark, side, n_records):
-    grid, field, observations = plot(side, n_records)
-    chance = prior_chance(grid, field, observations, TODAY, PriorSettings())
+    grid, field, records = plot(side, n_records)
+    chance = prior_chance(grid, field, records, TODAY, PriorSettings())
     infested = benchmark(start_infested, chance, 0.05, np.random.default_rng(1))
     assert infested.any()
 
@@ -60,6 +60,6 @@ def test_bench_hot_spots_where_every_plant_was_inspected(benchmark, side, n_reco
 
 @SIZES
 def test_bench_states_from_records(benchmark, side, n_records):
-    grid, _, observations = plot(side, n_records)
-    state = benchmark(record_states, grid, observations)
+    grid, _, records = plot(side, n_records)
+    state = benchmark(record_states, grid, records)
     assert (state == PRESENT).any()

@@ -7,8 +7,8 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import start_infested
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.field import Field
@@ -26,7 +26,7 @@ def plot_of(n_rows, n_plants):
 
 
 def season_of(path, plot, n_days):
-    project = Season.create(path, plot, Observations.none(), MonitoringSettings(BEGINS))
+    project = Season.create(path, plot, Records.none(), MonitoringSettings(BEGINS))
     infested = start_infested(project.morning(BEGINS), 0.02, RandomStreams(1).of("start"))
     for day in range(n_days):
         work(project, day, infested)

@@ -35,7 +35,7 @@ def run(monkeypatch, capsys, tmp_path):
 def begun(tmp_path_factory):
     """Begin a season on the smallest plot by its command, once; return its file."""
     file = tmp_path_factory.mktemp("begun") / "season.gpkg"
-    words = ["init", file, ZIP, "--feature", "Nursery", "--observations", MITES]
+    words = ["init", file, ZIP, "--feature", "Nursery", "--records", MITES]
     words += ["--begins", BEGINS, "--hours", "1"]
     with redirect_stdout(StringIO()) as said:
         app([str(word) for word in words], standalone_mode=False)

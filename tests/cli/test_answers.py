@@ -138,7 +138,7 @@ def test_what_the_files_of_findings_leave_open_is_answered_as_they_say(run, seas
 def test_records_that_say_nothing_of_what_was_found_are_all_finds_if_one_says_so(run, tmp_path):
     (tmp_path / "m.csv").write_text("lon,lat,date\n35.1505,30.3605,2026-03-01\n")
     square(geometry=box(35.15, 30.36, 35.151, 30.361)).to_file(tmp_path / "p.gpkg")
-    words = ("plan", "p.gpkg", "--observations", "m.csv", "-o", "r.csv", "--date", "2026-03-02")
+    words = ("plan", "p.gpkg", "--records", "m.csv", "-o", "r.csv", "--date", "2026-03-02")
     code, _, err, _ = run(*words)
     assert code == 2
     assert "must have a column that says what was found" in err

@@ -21,7 +21,7 @@ def test_robots_are_a_range_or_a_list():
 
 
 def test_ones_own_plot_is_answered_in_a_sentence_and_gone_on_with(run, tmp_path):
-    asked = ("compare", ZIP, "--feature", "Nursery", "--observations", MITES, *SHORT)
+    asked = ("compare", ZIP, "--feature", "Nursery", "--records", MITES, *SHORT)
     code, out, err, files = run(*asked, "--robots", "1-2", "--date", "2026-11-02", "--sections")
     assert code == 0, err
     assert "(adaptive, together, contact every 30 min): A second robot would save " in out

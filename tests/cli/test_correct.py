@@ -142,7 +142,7 @@ def test_where_nothing_is_corrected_there_is_no_batch(run, season):
     assert Season(season).history.inspections.result.tolist() == [1, 0]
     run("undo", season)
     assert Season(season).history.inspections.result.tolist() == [0, 0]
-    assert Season(season).held_to_log() == ()
+    assert Season(season).check_against_log() == ()
 
 
 def test_a_time_that_the_clock_left_out_is_refused(run, season, monkeypatch):

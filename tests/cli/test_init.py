@@ -11,7 +11,7 @@ from tests.cli.estate import BEGINS, MITES, ZIP
 
 def test_a_season_keeps_what_it_is_told_and_what_the_files_said(run, tmp_path):
     code, out, err, made = run(
-        *["init", "s.gpkg", ZIP, "--feature", "Nursery", "--observations", MITES],
+        *["init", "s.gpkg", ZIP, "--feature", "Nursery", "--observations", MITES],  # the old name
         *["--begins", BEGINS, "--start", "05:45", "--sampler", "bouncy", "--every", 3],
         *["--flag-only", "--spread", 0.03, "--seed", 9, "--hours", 2, "--look", 25],
     )

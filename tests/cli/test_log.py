@@ -37,7 +37,7 @@ def test_entries_are_shown_before_any_morning_is_worked_out_again(run, season, m
     def fails(*_, **__):
         raise FileProblem("no morning was worked out")
 
-    monkeypatch.setattr(Season, "other_maps", fails)
+    monkeypatch.setattr(Season, "changed_maps", fails)
     code, out, err, _ = run("log", season)
     assert code == 2
     assert "1 entry, the chain holds" in out

@@ -16,8 +16,8 @@ from fieldmon.cli.messages import (
     tell_unusable,
 )
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import PRESENT, Records
 from fieldmon.io.import_report import Remedy, guessed
 from fieldmon.io.prepared_plots import Laid, SourceMessage
 from fieldmon.monitoring.settings import MonitoringSettings
@@ -131,13 +131,13 @@ def test_a_question_is_asked_with_how_this_command_answers_it(question, flags, h
 def test_records_that_say_nothing_about_a_day_are_named(capsys):
     day = np.datetime64("2026-11-02")
     dates = np.array([day + 5, day - 1])
-    records = Observations.of(np.zeros((2, 2)), np.array([PRESENT, PRESENT]), dates)
+    records = Records.of(np.zeros((2, 2)), np.array([PRESENT, PRESENT]), dates)
     tell_unusable(records, day, PriorSettings())
     assert "1 of the records are of a later day" in capsys.readouterr().err
     tell_unusable(records.take(np.array([1])), day, PriorSettings())
     said = "seen: Chances and hot spots begin with 1 record of 2026-11-01.\n"
     assert capsys.readouterr().err == said
-    tell_unusable(Observations.none(), day, PriorSettings())
+    tell_unusable(Records.none(), day, PriorSettings())
     assert capsys.readouterr().err == ""
 
 

@@ -26,7 +26,7 @@ def pipe(tmp_path):
     [
         ("plots", "{pipe}"),
         ("plan", "{pipe}"),
-        ("plan", ZIP, "--feature", "Nursery", "--observations", "{pipe}"),
+        ("plan", ZIP, "--feature", "Nursery", "--records", "{pipe}"),
         ("plan", "--plants", "{pipe}"),
         ("plan", ZIP, "--feature", "Nursery", "--paths", "{pipe}"),
         ("plan", ZIP, "--feature", "Nursery", "--risk", "{pipe}"),

@@ -96,7 +96,7 @@ def test_how_a_file_is_read_is_not_said_without_the_file(role):
 
 def test_how_records_are_read_is_not_said_without_records():
     said = PlotFiles(files=FileOptions(record_option=["date_order=dmy"]))
-    with pytest.raises(SettingError, match=r"--record-option .* give it with --observations FILE"):
+    with pytest.raises(SettingError, match=r"--record-option .* give it with --records FILE"):
         said.request(Path("e.zip"), None, None)
 
 

@@ -18,7 +18,7 @@ from fieldmon.cli.outputs import (
 )
 from fieldmon.compute.wording import estimate
 from fieldmon.errors import FieldmonError, SettingError
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.plan import PlanSettings, first_day
 from fieldmon.plot.field import Field
@@ -35,7 +35,7 @@ NOTES = RouteNotes("square", "adaptive", DAY.astype("datetime64[s]").item())
 
 @pytest.fixture(scope="module")
 def today():
-    return first_day(PLOT, Observations.none(), DAY, PlanSettings(Robot(hours=0.5)))
+    return first_day(PLOT, Records.none(), DAY, PlanSettings(Robot(hours=0.5)))
 
 
 def test_a_route_is_written_as_geojson_unless_said_otherwise(today, tmp_path, monkeypatch, capsys):

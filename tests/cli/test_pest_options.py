@@ -17,7 +17,7 @@ from fieldmon.monitoring.settings import MonitoringSettings
 from tests.cli.estate import BEGINS, MITES, ZIP
 from tests.monitoring.seasons import a_season
 
-PLOT = (ZIP, "--feature", "Nursery", "--observations", MITES)
+PLOT = (ZIP, "--feature", "Nursery", "--records", MITES)
 
 
 @pytest.fixture

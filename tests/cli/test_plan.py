@@ -14,7 +14,7 @@ from tests.cli.estate import MITES, ZIP, square
 
 
 def test_a_day_is_planned_and_its_route_written(run, tmp_path):
-    code, out, err, made = run("plan", ZIP, "--feature", "Gate", "--observations", MITES)
+    code, out, err, made = run("plan", ZIP, "--feature", "Gate", "--records", MITES)
     assert code == 0, err
     assert made == {tmp_path / "route.geojson"}
     route = json.loads((tmp_path / "route.geojson").read_text(encoding="utf-8"))
@@ -27,7 +27,7 @@ def test_a_day_is_planned_and_its_route_written(run, tmp_path):
 
 
 def test_a_short_day_far_below_its_bound_names_the_route_that_no_find_changes(run):
-    words = ("plan", ZIP, "--feature", "Gate", "--observations", MITES, "--date", "2026-11-18")
+    words = ("plan", ZIP, "--feature", "Gate", "--records", MITES, "--date", "2026-11-18")
     finds = {}
     for hours, more in ((1, ()), (12, ()), (1, ("--robots", 1))):
         code, out, err, _ = run(*words, "--hours", hours, *more)
@@ -101,11 +101,11 @@ def test_parts_and_holes_are_planned_around(run, tmp_path):
 def test_records_that_name_rows_and_plants_or_plots_are_taken(run, tmp_path):
     (tmp_path / "r.csv").write_text("row,plant,date,count\n3,7,2026-03-01,4\n99,1,2026-03-01,2\n")
     words = ["plan", ZIP, "--feature", "Gate", "--date", "2026-03-02", "--hours", 1]
-    code, _, err, _ = run(*words, "--observations", "r.csv")
+    code, _, err, _ = run(*words, "--records", "r.csv")
     assert code == 0, err
     assert "dropped: 1 record names 1 plant not known: 99/1." in err
     (tmp_path / "p.csv").write_text("plot,date,count\nGATE,2026-03-01,4\nMoon,2026-03-01,2\n")
-    code, _, err, _ = run(*words, "--observations", "p.csv")
+    code, _, err, _ = run(*words, "--records", "p.csv")
     assert code == 0, err
     assert "dropped: 1 record names 1 plot not known: Moon." in err
     assert "1 record is placed to" in err
@@ -115,15 +115,15 @@ def test_a_finding_is_printed_with_its_remedy_and_the_remedy_works(run, tmp_path
     _, lon, lat, *_ = Path(MITES).read_text("utf-8").splitlines()[1].split(",")
     (tmp_path / "r.csv").write_text(f"lon,lat,date,eggs\n{lon},{lat},03/04/2026,4\n")
     words = ["plan", ZIP, "--feature", "Gate", "--date", "2026-05-02", "--hours", 1]
-    code, _, err, _ = run(*words, "--observations", "r.csv")
+    code, _, err, _ = run(*words, "--records", "r.csv")
     assert code == 2
     assert "none was recognised among: lon, lat, date, eggs" in err
     options = ["--record-option", "columns=count=eggs"]
-    code, _, err, _ = run(*words, "--observations", "r.csv", *options)
+    code, _, err, _ = run(*words, "--records", "r.csv", *options)
     assert code == 0, err
     assert "(Read month first: --record-option date_order=mdy)" in err
     options += ["--record-option", "date_order=mdy"]
-    code, _, err, _ = run(*words, "--observations", "r.csv", *options)
+    code, _, err, _ = run(*words, "--records", "r.csv", *options)
     assert code == 0, err
     assert "guessed" not in err
     assert "Counts are in column 'eggs'" in err
@@ -145,7 +145,7 @@ def test_a_date_that_is_none_is_said(run, tmp_path):
     square().to_file(tmp_path / "p.geojson")
     rows = "lon,lat,date,count\n35.1505,30.3605,yesterday or so,3\n"
     (tmp_path / "r.csv").write_text(rows, encoding="utf-8")
-    code, _, err, _ = run("plan", "p.geojson", "--observations", "r.csv")
+    code, _, err, _ = run("plan", "p.geojson", "--records", "r.csv")
     assert code == 0
     assert "yesterday or so" in err
 

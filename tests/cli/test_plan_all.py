@@ -157,7 +157,7 @@ def test_a_plot_is_not_refused_for_what_was_found_next_to_it(run, parcels, summa
     ((lon, lat),) = frame.lonlat(np.array([[east_m + 60.0, 0.0]]))
     found = f"date,longitude,latitude,count\n2026-11-01,{lon:.7f},{lat:.7f},9\n"
     (parcels.parent / "r.csv").write_text(found)
-    words = ["--observations", "r.csv", "--date", "2026-11-02", "--hours", 1]
+    words = ["--records", "r.csv", "--date", "2026-11-02", "--hours", 1]
     assert run("plan", parcels, "--all", "-o", "routes", *words)[0] == 0
     assert summary()["Plot 1"]["state"] == "planned"
     code, _, err, _ = run("plan", parcels, "--feature", "Plot 1", "-o", "one.geojson", *words)

@@ -187,7 +187,7 @@ def test_five_days_by_command_are_five_days_of_the_library(run, season, tmp_path
     begun = Season(season)
     with pytest.warns(ImportDoubt, match="15 of the records are of a later day"):
         with_library = Season.create(
-            tmp_path / "library.gpkg", begun.plot, begun.observations, begun.settings
+            tmp_path / "library.gpkg", begun.plot, begun.records, begun.settings
         )
     for day in range(5):
         on = date.fromisoformat(BEGINS) + timedelta(days=day)

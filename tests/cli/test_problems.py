@@ -32,7 +32,7 @@ def too_small(folder):
 def records_elsewhere(folder):
     square().to_file(folder / "p.geojson")
     (folder / "r.csv").write_text("lon,lat,date,count\n8.0,49.0,2026-11-01,3\n", encoding="utf-8")
-    return ["plan", "p.geojson", "--observations", "r.csv"]
+    return ["plan", "p.geojson", "--records", "r.csv"]
 
 
 def nothing_at_all(_):

@@ -46,7 +46,7 @@ def test_a_season_is_not_taken_twice_nor_beside_its_copy(run, season, tmp_path):
 
 
 def test_two_seasons_of_one_plot_begun_on_one_day_are_no_copies(run, season, tmp_path):
-    words = ("--feature", "Nursery", "--observations", MITES, "--begins", BEGINS, "--hours", "1")
+    words = ("--feature", "Nursery", "--records", MITES, "--begins", BEGINS, "--hours", "1")
     code, _, err, _ = run("init", "flies.gpkg", ZIP, *words)
     assert code == 0, err
     flies = tmp_path / "flies.gpkg"

@@ -26,7 +26,7 @@ def seasons(run, begun, tmp_path):
     """Return the files of two seasons."""
     shutil.copy(begun, tmp_path / "nursery.gpkg")
     code, _, err, _ = run(
-        "init", "bend.gpkg", ZIP, "--feature", "Bend", "--observations", MITES, "--begins", BEGINS
+        "init", "bend.gpkg", ZIP, "--feature", "Bend", "--records", MITES, "--begins", BEGINS
     )
     assert code == 0, err
     return "nursery.gpkg", "bend.gpkg"

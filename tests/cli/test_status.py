@@ -200,7 +200,7 @@ def test_a_season_all_of_which_lies_ahead_is_told_as_of_its_last_day(season, mon
     for before, meant in ((1, ahead), (-1, ahead - timedelta(days=1)), (-9, ahead)):
         today = kept.settings.begins - timedelta(days=before)
         monkeypatch.setattr(LocalClock, "today", lambda _, today=today: today)
-        assert kept.day_meant() == meant
+        assert kept.default_date() == meant
 
 
 def test_plants_that_are_gone_by_a_note_of_before_are_said_to_count_so(tmp_path):

@@ -52,7 +52,7 @@ def test_of_a_map_without_infested_plants_no_share_is_said(run, tmp_path):
 
 def test_an_own_plot_is_played_from_its_records(run, tmp_path):
     words = ["study", "prior", "--plot", ZIP, "--feature", "Nursery", "--seeds", 2]
-    code, out, err, made = run(*words, "--observations", MITES)
+    code, out, err, made = run(*words, "--records", MITES)
     assert code == 0, err
     assert {path.name for path in made} == {"prior_plot.csv", "prior_plot.html"}
     assert "Nursery: dynamic finds" in out

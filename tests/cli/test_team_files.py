@@ -20,7 +20,7 @@ from tests.cli.estate import BEGINS, MITES, ZIP, filled_in
 @pytest.fixture
 def season(run, tmp_path):
     code, _, err, _ = run(
-        *("init", "season.gpkg", ZIP, "--feature", "Nursery", "--observations", MITES),
+        *("init", "season.gpkg", ZIP, "--feature", "Nursery", "--records", MITES),
         *("--begins", BEGINS, "--hours", "0.5", "--robots", "2", "--contact", "10"),
     )
     assert code == 0, err

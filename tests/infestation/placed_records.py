@@ -3,8 +3,8 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import ABSENT, PRESENT, Records
 from fieldmon.plot.layout import rectangle
 
 TODAY = np.datetime64("2026-05-20")
@@ -18,14 +18,14 @@ def records(xy_m, present, age_days=0.0, grid=GRID, **columns):
     m = len(xy_m)
     ages = np.broadcast_to(np.asarray(age_days), m).astype(int)
     full = {name: np.broadcast_to(np.asarray(v, float), m).copy() for name, v in columns.items()}
-    return Observations.of(
+    return Records.of(
         grid.frame.lonlat(xy_m), np.broadcast_to(present, m).copy(), TODAY - ages, **full
     )
 
 
 def together(*several):
     names = vars(several[0])
-    return Observations(**{n: np.concatenate([getattr(o, n) for o in several]) for n in names})
+    return Records(**{n: np.concatenate([getattr(o, n) for o in several]) for n in names})
 
 
 def at_middle(present, age_days=0, **columns):

@@ -18,7 +18,7 @@ from fieldmon.infestation.hotspots import (
     record_states,
     states,
 )
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN, Observations
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN, Records
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from tests.crooked import crooked_grids
@@ -293,17 +293,17 @@ def test_a_plant_found_once_is_found_and_one_never_inspected_is_unknown():
 def observed(plants, present, day, **columns):
     at = GRID.lonlat(np.array(plants))
     days = np.array(day, "datetime64[D]")
-    return Observations.of(at, np.array(present, np.int8), days, **columns)
+    return Records.of(at, np.array(present, np.int8), days, **columns)
 
 
 def test_the_newest_record_of_a_plant_counts():
-    observations = observed(
+    records = observed(
         [7, 7, 8, 8, 9, 9, 10, 10, 11],
         [PRESENT, ABSENT, ABSENT, PRESENT, PRESENT, ABSENT, PRESENT, ABSENT, UNKNOWN],
         [DAY, DAY - 1, DAY - 1, DAY, DAY, DAY, "NaT", DAY - 90, DAY],
     )
     for order in (slice(None), slice(None, None, -1)):
-        state = record_states(GRID, observations.take(np.arange(9)[order]))
+        state = record_states(GRID, records.take(np.arange(9)[order]))
         assert state[7:12].tolist() == [PRESENT, PRESENT, PRESENT, ABSENT, UNKNOWN]
         assert (np.delete(state, [7, 8, 9, 10]) == UNKNOWN).all()
 
@@ -316,15 +316,15 @@ def test_a_record_speaks_of_its_nearest_plant_unless_that_is_too_far():
         (2.5, 1.0, PRESENT),
     ):
         at = GRID.frame.lonlat([corner - [0.0, off_m]])
-        observations = Observations.of(at, [PRESENT], accuracy_m=np.array([accuracy]))
-        assert record_states(GRID, observations)[0] == said
-        assert record_states(GRID, observations, within_m=10.0)[0] == PRESENT
+        records = Records.of(at, [PRESENT], accuracy_m=np.array([accuracy]))
+        assert record_states(GRID, records)[0] == said
+        assert record_states(GRID, records, within_m=10.0)[0] == PRESENT
 
 
 def test_records_from_nowhere_say_nothing_about_plants():
-    lost = Observations.of([[np.nan, np.nan], [30.36, 35.15], [-179.0, 89.0]], [PRESENT] * 3)
+    lost = Records.of([[np.nan, np.nan], [30.36, 35.15], [-179.0, 89.0]], [PRESENT] * 3)
     assert (record_states(GRID, lost) == UNKNOWN).all()
-    assert (record_states(GRID, Observations.none()) == UNKNOWN).all()
+    assert (record_states(GRID, Records.none()) == UNKNOWN).all()
 
 
 # --- refusals

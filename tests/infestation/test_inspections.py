@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED, Inspections
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 
 MONDAY, TUESDAY = np.datetime64("2026-04-06"), np.datetime64("2026-04-07")
 
@@ -76,7 +76,7 @@ def test_a_time_of_day_is_when_plants_were_inspected(on, second):
 def test_a_time_of_a_zone_is_refused_where_no_plot_is_known(on):
     for asked in (
         lambda: Inspections.of([3, 4], [FOUND, CLEAN], on),
-        lambda: Observations.of([[35.1, 30.3]] * 2, [1, 0], on),
+        lambda: Records.of([[35.1, 30.3]] * 2, [1, 0], on),
     ):
         with pytest.raises(ObservationError, match=r"must be the plot's own, but 2026.* names"):
             asked()
@@ -120,8 +120,8 @@ def test_missing_texts_are_nothing_whatever_they_stand_in(who):
     for names in (
         Inspections.of([1, 2], [0, 1], MONDAY, who=who).who,
         Inspections.of([1, 2], [0, 1], MONDAY, notes=who).take([0, 1]).notes,
-        Observations.of(places, [1, 0], MONDAY, species=who).species,
-        Observations.of(places, [1, 0], MONDAY, stage=who).stage,
+        Records.of(places, [1, 0], MONDAY, species=who).species,
+        Records.of(places, [1, 0], MONDAY, stage=who).stage,
     ):
         assert names.tolist() == ["Ann", ""]
     assert Inspections.of([1, 2], [0, 1], MONDAY, who=[np.nan, np.nan]).who.tolist() == ["", ""]
@@ -132,7 +132,7 @@ def test_what_is_no_text_is_refused_by_name(who):
     with pytest.raises(ObservationError, match="who of inspections must be texts"):
         Inspections.of([1, 2], [0, 1], MONDAY, who=who)
     with pytest.raises(SettingError, match="species of records must be texts"):
-        Observations.of([[35.1, 30.3]] * 2, [1, 0], MONDAY, species=who)
+        Records.of([[35.1, 30.3]] * 2, [1, 0], MONDAY, species=who)
 
 
 def test_columns_of_another_length_are_refused_by_name():

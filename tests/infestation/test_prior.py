@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from shapely import MultiLineString, MultiPolygon
 
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN, Observations
 from fieldmon.infestation.prior import (
     edge_chance,
     path_chance,
@@ -19,6 +18,7 @@ from fieldmon.infestation.prior import (
     start_infested,
 )
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN, Records
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from tests.crooked import crooked_grids
@@ -50,7 +50,7 @@ def test_without_records_the_ways_of_being_infested_are_independent():
     edge = 0.05 * np.exp(-shapely.distance(points, shapely.boundary(GRID.drivable_m)) / 10.0)
     from_path = 0.05 * np.exp(-shapely.distance(points, shapely.LineString(path)) / 10.0)
     expected = 1.0 - 0.99 * (1.0 - edge) * (1.0 - from_path) * (1.0 - risk)
-    chance = prior_chance(GRID, field, Observations.none(), TODAY, USUAL, risk)
+    chance = prior_chance(GRID, field, Records.none(), TODAY, USUAL, risk)
     # both are cut where they would say less than 1e-4
     np.testing.assert_allclose(chance, expected, rtol=0, atol=2e-4)
 
@@ -89,7 +89,7 @@ def test_roads_of_a_whole_continent_may_come_along():
 def test_a_chance_of_zero_at_edges_and_paths_is_allowed():
     quiet = PriorSettings(background_chance=0.02, edge_chance=0.0, path_chance=0.0)
     field = field_of(GRID, [[(0.0, -60.0), (0.0, 60.0)]])
-    chance = prior_chance(GRID, field, Observations.none(), TODAY, quiet)
+    chance = prior_chance(GRID, field, Records.none(), TODAY, quiet)
     np.testing.assert_allclose(chance, 0.02)
 
 
@@ -107,7 +107,7 @@ def test_what_is_left_out_changes_nothing():
     only = together(at_middle(UNKNOWN), at_middle(ABSENT, -9))
     np.testing.assert_array_equal(
         prior_chance(GRID, field, only, TODAY, USUAL),
-        prior_chance(GRID, field, Observations.none(), TODAY, USUAL),
+        prior_chance(GRID, field, Records.none(), TODAY, USUAL),
     )
 
 
@@ -123,27 +123,27 @@ def test_every_chance_is_a_chance_on_any_plot(grid, data):
     n = len(grid)
     which = data.draw(st.lists(st.integers(0, n - 1), min_size=1, max_size=8))
     m = len(which)
-    observations = records(
+    given = records(
         grid.xy_m[which] + data.draw(st.floats(-5, 5)),
         np.array(data.draw(st.lists(st.integers(-1, 1), min_size=m, max_size=m)), np.int8),
         data.draw(st.lists(st.integers(-5, 50), min_size=m, max_size=m)),
         grid=grid,
     )
     risk = np.where(np.arange(n) % 3 == 0, np.nan, (np.arange(n) % 2).astype(float))
-    chance = prior_chance(grid, field_of(grid), observations, TODAY, USUAL, risk)
+    chance = prior_chance(grid, field_of(grid), given, TODAY, USUAL, risk)
     assert chance.shape == (n,)
     assert ((chance >= 0.0) & (chance <= 1.0)).all()
 
 
 @settings(deadline=None)
 @given(some_records, st.floats(-80.0, 80.0))
-def test_the_direction_of_the_frame_does_not_matter(observations, turn_deg):
+def test_the_direction_of_the_frame_does_not_matter(given, turn_deg):
     frame = GRID.frame.turned(GRID.frame.bearing_deg + turn_deg)
     xy_m = frame.xy_m(GRID.lonlat())
     boundary = field_of(GRID).boundary
     turned = replace(GRID, frame=frame, xy_m=xy_m, drivable_m=frame.geometry_m(boundary))
     field = field_of(GRID, [[(-30.0, -90.0), (50.0, 90.0)]])
-    there, here = (prior_chance(g, field, observations, TODAY, USUAL) for g in (turned, GRID))
+    there, here = (prior_chance(g, field, given, TODAY, USUAL) for g in (turned, GRID))
     np.testing.assert_allclose(there, here, rtol=0, atol=1.01e-4)
     assert np.mean(np.abs(there - here) < 1e-8) > 0.95  # but for plants on the rim of a reach
 
@@ -156,7 +156,7 @@ def test_a_risk_map_raises_chances_where_it_speaks():
     risk = np.full(len(GRID), np.nan)
     risk[:10] = 0.4
     with_risk, without = (
-        prior_chance(GRID, field, Observations.none(), TODAY, USUAL, r) for r in (risk, None)
+        prior_chance(GRID, field, Records.none(), TODAY, USUAL, r) for r in (risk, None)
     )
     np.testing.assert_array_equal(with_risk[10:], without[10:])
     np.testing.assert_allclose(with_risk[:10], 1 - 0.6 * (1 - without[:10]))
@@ -172,7 +172,7 @@ def test_a_risk_map_raises_chances_where_it_speaks():
 )
 def test_a_risk_map_that_does_not_fit_is_refused(risk, says):
     with pytest.raises(ObservationError, match=says):
-        prior_chance(GRID, field_of(GRID), Observations.none(), TODAY, USUAL, risk)
+        prior_chance(GRID, field_of(GRID), Records.none(), TODAY, USUAL, risk)
 
 
 # --- a season's start
@@ -226,7 +226,7 @@ def test_a_risk_that_is_no_chance_is_refused_below_as_above(odd):
     risk = np.full(len(GRID), 0.5)
     risk[7] = odd
     with pytest.raises(ObservationError, match=r"chances in 0\.\.1"):
-        prior_chance(GRID, field_of(GRID), Observations.none(), TODAY, USUAL, risk)
+        prior_chance(GRID, field_of(GRID), Records.none(), TODAY, USUAL, risk)
 
 
 @pytest.mark.parametrize("sure", [0.0, 1.0])

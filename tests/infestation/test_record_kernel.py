@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from pyproj import Geod
 
 from fieldmon.errors import ObservationError
-from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.record_kernel import record_chance
+from fieldmon.infestation.records import ABSENT, PRESENT, Records
 from fieldmon.plot.layout import rectangle
 from tests.infestation.placed_records import (
     GRID,
@@ -25,8 +25,8 @@ from tests.infestation.placed_records import (
 )
 
 
-def heard(observations, grid=GRID, prior=USUAL, base=0.01):
-    return record_chance(grid, np.full(len(grid), base), observations, TODAY, prior)
+def heard(given, grid=GRID, prior=USUAL, base=0.01):
+    return record_chance(grid, np.full(len(grid), base), given, TODAY, prior)
 
 
 # --- a single record
@@ -126,12 +126,12 @@ def test_an_unknown_accuracy_is_the_usual_one():
 # --- several records
 
 
-def one_by_one(base, observations, prior):
+def one_by_one(base, given, prior):
     """Hear records slowly, plant by plant, with nothing left out for being far."""
     area = GRID.row_spacing_m * GRID.plant_spacing_m / (2 * np.pi)
-    xy = GRID.frame.xy_m(observations.lonlat)
-    ages = (TODAY - observations.day) / np.timedelta64(1, "D")
-    finds = observations.present == PRESENT
+    xy = GRID.frame.xy_m(given.lonlat)
+    ages = (TODAY - given.day) / np.timedelta64(1, "D")
+    finds = given.present == PRESENT
     chance = np.full(len(GRID), base)
     clock = None
     for r in sorted(range(len(ages)), key=lambda r: (-ages[r], not finds[r])):
@@ -139,7 +139,7 @@ def one_by_one(base, observations, prior):
             chance = base + (chance - base) * 0.5 ** ((clock - ages[r]) / prior.half_life_days)
         clock = ages[r]
         accuracy, count, leaves = (
-            getattr(observations, name)[r] for name in ("accuracy_m", "count", "leaves_sampled")
+            getattr(given, name)[r] for name in ("accuracy_m", "count", "leaves_sampled")
         )
         accuracy = prior.accuracy_m if np.isnan(accuracy) else accuracy
         count = prior.half_count if np.isnan(count) else count
@@ -159,36 +159,36 @@ def one_by_one(base, observations, prior):
 
 
 @given(some_records, st.floats(0.0, 0.5))
-def test_records_add_up_as_they_do_when_heard_one_by_one_on_all_plants(observations, base):
+def test_records_add_up_as_they_do_when_heard_one_by_one_on_all_plants(given, base):
     # each is cut where it would say less than 1e-4
     np.testing.assert_allclose(
-        heard(observations, base=base),
-        one_by_one(base, observations, USUAL),
+        heard(given, base=base),
+        one_by_one(base, given, USUAL),
         rtol=0,
-        atol=3e-4 * len(observations),
+        atol=3e-4 * len(given),
     )
 
 
 @given(some_records, st.randoms(use_true_random=False))
-def test_the_order_of_the_records_does_not_matter(observations, random):
-    order = list(range(len(observations)))
+def test_the_order_of_the_records_does_not_matter(given, random):
+    order = list(range(len(given)))
     random.shuffle(order)
-    np.testing.assert_array_equal(heard(observations), heard(observations.take(np.array(order))))
+    np.testing.assert_array_equal(heard(given), heard(given.take(np.array(order))))
 
 
 @given(some_records, some_records)
-def test_one_more_find_never_lowers_and_one_more_clean_look_never_raises(observations, others):
-    before = heard(observations, base=0.1)
+def test_one_more_find_never_lowers_and_one_more_clean_look_never_raises(given, others):
+    before = heard(given, base=0.1)
     for present, sign in ((PRESENT, 1.0), (ABSENT, -1.0)):
         more = replace(others, present=np.full(len(others), present, np.int8))
-        after = heard(together(observations, more), base=0.1)
+        after = heard(together(given, more), base=0.1)
         assert (sign * (after - before) >= -1e-12).all()
 
 
 @given(some_records, st.sampled_from((PRESENT, ABSENT)))
-def test_a_record_far_from_all_plants_changes_nothing(observations, present):
+def test_a_record_far_from_all_plants_changes_nothing(given, present):
     far = records([[5_000.0, 0.0], [0.0, -90_000.0]], present, accuracy_m=5.0)
-    np.testing.assert_array_equal(heard(observations), heard(together(observations, far)))
+    np.testing.assert_array_equal(heard(given), heard(together(given, far)))
 
 
 def test_a_record_changes_nothing_far_from_itself():
@@ -252,9 +252,9 @@ def test_a_record_without_a_date_counts_as_the_settings_say():
     ("xy_m", "distance"), [((0.0, 542.0), "500 m away"), ((-3_040.0, 0.0), "3 km away")]
 )
 def test_records_that_are_all_elsewhere_are_refused_with_the_distance(xy_m, distance):
-    observations = records([xy_m, (0.0, 20_000.0)], PRESENT)
+    given = records([xy_m, (0.0, 20_000.0)], PRESENT)
     with pytest.raises(ObservationError, match=f"of 2 the nearest is {distance}") as refused:
-        heard(observations)
+        heard(given)
     assert "coordinate system" in str(refused.value)
 
 
@@ -266,16 +266,16 @@ def test_records_near_the_plot_that_reach_no_plant_say_nothing():
 
 
 def test_records_on_another_continent_are_refused_with_the_distance():
-    observations = Observations.of([[-72.0, -41.0]], [PRESENT])
+    given = Records.of([[-72.0, -41.0]], [PRESENT])
     km = Geod(ellps="WGS84").inv(-72.0, -41.0, GRID.frame.lon, GRID.frame.lat)[2] / 1000
     with pytest.raises(ObservationError) as refused:
-        heard(observations)
+        heard(given)
     said = float(str(refused.value).split("nearest is ")[1].split(" km")[0])
     assert said == pytest.approx(km, rel=0.01)
 
 
 def test_exchanged_longitude_and_latitude_are_recognised():
-    exchanged = Observations.of(GRID.lonlat()[:5, ::-1].copy(), [PRESENT] * 5)
+    exchanged = Records.of(GRID.lonlat()[:5, ::-1].copy(), [PRESENT] * 5)
     with pytest.raises(ObservationError, match="longitude and latitude exchanged"):
         heard(exchanged)
 
@@ -284,7 +284,7 @@ def test_metres_taken_for_degrees_are_recognised():
     with pytest.raises(
         ObservationError, match="longitude and latitude in degrees, but one is 735000"
     ):
-        heard(Observations.of([[735_000.0, 3_360_000.0], [np.nan, np.nan]], [PRESENT, ABSENT]))
+        heard(Records.of([[735_000.0, 3_360_000.0], [np.nan, np.nan]], [PRESENT, ABSENT]))
 
 
 def test_a_record_just_outside_the_plot_still_speaks_of_the_plants_next_to_it():
@@ -296,4 +296,4 @@ def test_a_record_just_outside_the_plot_still_speaks_of_the_plants_next_to_it():
 def test_one_record_whose_longitude_and_latitude_are_exchanged_is_recognised_among_others():
     exchanged, far = GRID.lonlat()[:1, ::-1], np.array([[-72.0, -41.0]])
     with pytest.raises(ObservationError, match="longitude and latitude exchanged"):
-        heard(Observations.of(np.concatenate([far, exchanged, far]), [PRESENT] * 3))
+        heard(Records.of(np.concatenate([far, exchanged, far]), [PRESENT] * 3))

@@ -10,7 +10,7 @@ import pytest
 from shapely import LineString, MultiPolygon, Point, Polygon, box
 
 from fieldmon.errors import ChoiceNeeded, FileProblem, ObservationError
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.options import PlotOptions, RecordOptions, Upload
 from fieldmon.io.read import list_layers, read_lines, read_plants, read_plots, read_records
 from fieldmon.plot.field import Field

@@ -52,8 +52,8 @@ def place(plot, row, plant):
     return plot.grid.lonlat(np.array([plant_at(plot.grid, row, plant)]))[0]
 
 
-def same(observations, other):
-    for name, values in vars(observations).items():
+def same(records, other):
+    for name, values in vars(records).items():
         np.testing.assert_array_equal(values, getattr(other, name))
 
 

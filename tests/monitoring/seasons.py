@@ -8,8 +8,8 @@ from shapely import MultiPolygon, box
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
-from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import start_infested
+from fieldmon.infestation.records import Records
 from fieldmon.infestation.spread import night
 from fieldmon.monitoring import MonitoringSettings, Season, season_log
 from fieldmon.monitoring.belief_settings import BeliefSettings
@@ -72,7 +72,7 @@ def a_plot_with_named_rows():
 def some_records(plot):
     here = plot.grid.lonlat()[[10, 11, 60]]
     day = np.array(["2026-03-30", "2026-04-02", "NaT"], "datetime64[D]")
-    return Observations.of(here, np.array([1, 1, 0], np.int8), day)
+    return Records.of(here, np.array([1, 1, 0], np.int8), day)
 
 
 def a_season(path, plot=None, **choices):

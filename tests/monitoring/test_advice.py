@@ -13,7 +13,7 @@ from fieldmon.decisions.sequential import INSPECT_MORE, LEAVE, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import SKIPPED, Inspections
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.monitoring.advice import Advice
 from fieldmon.monitoring.advice_settings import AdviceSettings
@@ -119,7 +119,7 @@ def test_a_plot_that_is_left_says_where_nobody_has_inspected(tmp_path):
 
 def test_a_plot_that_is_left_says_that_few_inspections_tell_little(tmp_path):
     settings = MonitoringSettings(BEGINS)
-    made = Season.create(tmp_path / "season.gpkg", a_plot(), Observations.none(), settings)
+    made = Season.create(tmp_path / "season.gpkg", a_plot(), Records.none(), settings)
     made.record(Inspections.of([9], [0], np.datetime64(BEGINS)), "day")
     asked = AdviceSettings(0.1, costs=CHEAP)
     (said,) = (one for one in made.advice(BEGINS, asked).reasons() if "By themselves" in one)
@@ -145,7 +145,7 @@ def test_a_plot_that_is_left_says_that_few_inspections_tell_little(tmp_path):
 
 def test_few_inspections_are_not_all_that_tells_after_finds_or_a_treatment(tmp_path):
     season = Season.create(
-        tmp_path / "season.gpkg", a_plot(), Observations.none(), MonitoringSettings(BEGINS)
+        tmp_path / "season.gpkg", a_plot(), Records.none(), MonitoringSettings(BEGINS)
     )
     asked = AdviceSettings(0.3, costs=CHEAP)
     season.record(Inspections.of([9], [0], np.datetime64(BEGINS)), "day")

@@ -215,13 +215,13 @@ def test_corrections_that_were_undone_count_again_as_they_did(season, correct):
     correct(season)
     batch, after = season.batches()[0].number, all_of(season)
     for _ in range(2):
-        done = season.take_back()
+        done = season.undo_with_batches()
         assert done.batch == batch
         assert all_of(season) != after
         assert f"Batch {batch} counts again: " in season.redo(batch)
         assert all_of(season) == after
         assert Season(season.path).verify() == ()
-        assert season.held_to_log() == ()
+        assert season.check_against_log() == ()
 
 
 def test_a_correction_that_was_corrected_itself_counts_again_below_that(season):

@@ -9,9 +9,9 @@ from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.contradictions import (
     contradicting,
+    contradiction_lines,
     contradictions,
     said_before,
-    said_otherwise,
 )
 from fieldmon.plot.layout import rectangle
 from tests.monitoring.seasons import BEGINS, a_season
@@ -193,7 +193,7 @@ def test_who_says_what_of_a_plant_is_said_plant_by_plant():
         np.array([6, 2, 6]), np.array([1, 0, 0]), np.datetime64("2026-04-06"), who=who
     )
     also = Inspections.of(np.array([2]), np.array([1]), np.datetime64("2026-04-06"))
-    said = said_otherwise(held.and_those(also), rectangle(2, 5), str.upper)
+    said = contradiction_lines(held.and_those(also), rectangle(2, 5), str.upper)
     assert said == ("Row 1, plant 3: clean, found", "Row 2, plant 2: found (ANN), clean (BEN)")
 
 

@@ -43,7 +43,7 @@ def test_a_finding_saved_into_the_season_counts_at_its_next_opening(path):
     last = season.batches()[0]
     assert (last.source, last.rows, last.kind) == (SOURCE, 1, "findings")
     assert season.log()[-1].kind == "seen"
-    assert season.held_to_log() == ()
+    assert season.check_against_log() == ()
     assert state(path) == 13  # the draft's own row, not another one beside it
     with season.store.reading() as db:
         assert outside_changes.waiting(db) == ()

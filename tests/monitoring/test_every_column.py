@@ -54,7 +54,7 @@ def holds(season, *expected):
             told = np.concatenate([getattr(said, column.name) for said in expected])
             np.testing.assert_array_equal(getattr(one.inspections, column.name), told, column.name)
     assert Season(season.path).verify() == ()
-    assert season.held_to_log() == ()
+    assert season.check_against_log() == ()
 
 
 @pytest.fixture(scope="module")

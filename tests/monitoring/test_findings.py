@@ -219,7 +219,7 @@ def test_what_a_phone_says_that_it_finds_holds_and_is_in_the_file_that_it_saves(
     read = dict(zip(history.inspections.plant.tolist(), history.detections.tolist(), strict=True))
     assert (read[3], read[4]) == (0.3, usual)
     assert season.log()[-1].sentence().endswith("told to find 30 % of what is there")
-    assert [one.who for one in season.told_otherwise(BEGINS)] == ["Ann"]
+    assert [one.who for one in season.other_detections(BEGINS)] == ["Ann"]
     again = Finding(**fields_of(json.loads(json.dumps({
         "id": told[0].id, "at": told[0].at.isoformat(), "plant": 3, "result": "found",
         "detects": 0.3,
@@ -236,7 +236,7 @@ def test_a_phone_of_the_team_that_says_its_own_says_nothing_else(season, key):
     take(season, key, [a_finding(3, FOUND, detects=0.6, on=day)], NOW)
     assert season.history.detections[-1] == 0.6
     assert "told to find" not in season.log()[-1].sentence()
-    assert season.told_otherwise(day) == ()
+    assert season.other_detections(day) == ()
 
 
 def test_each_field_of_a_finding_is_read_by_a_gis_as_it_was_told(season, key):

@@ -105,7 +105,7 @@ def test_a_correction_counts_in_every_column_and_is_taken_back_as_a_whole(path, 
     assert season.history.inspections.plant.tolist() == plants.tolist()
     assert season.evening(BEGINS).tolist() == evening.tolist()  # all is as it was before
     assert season.verify() == ()
-    assert season.held_to_log() == ()
+    assert season.check_against_log() == ()
 
 
 def moved_to(lonlat, fid=1):
@@ -194,7 +194,7 @@ def test_undoing_a_correction_brings_back_what_stood_there_in_either_copy(path, 
     there.merge(season)
     for one in (season, there):
         assert one.evening(BEGINS).tolist() == before.evening(BEGINS).tolist()
-        assert one.held_to_log() == ()
+        assert one.check_against_log() == ()
         assert one.batches()[0].undone
 
 

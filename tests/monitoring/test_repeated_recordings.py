@@ -43,7 +43,7 @@ def beside(season, plant=5):
     """Return who and notes of the inspection of a plant that counts, in the file opened anew."""
     told = Season(season.path).inspections
     (k,) = np.flatnonzero(told.plant == plant)
-    assert season.held_to_log() == ()
+    assert season.check_against_log() == ()
     assert season.inspections.notes[k] == told.notes[k]
     return told.who[k], told.notes[k]
 

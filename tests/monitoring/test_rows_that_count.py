@@ -36,7 +36,7 @@ def test_undoing_ones_file_leaves_what_the_other_recorded_too(merged, who, left)
     assert said.endswith("1 of the same results counts still: another recording holds it, too.")
     assert merged.history.on(1).plant.tolist() == left
     assert merged.verify() == ()
-    assert merged.held_to_log() == ()
+    assert merged.check_against_log() == ()
     other = {"Ann": "Ben", "Ben": "Ann"}[who]
     assert "still" not in merged.undo(number(merged, other))
     assert merged.history.on(1).plant.tolist() == []

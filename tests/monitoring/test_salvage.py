@@ -235,7 +235,7 @@ def test_a_log_with_a_hole_is_begun_anew_and_says_why(path, tmp_path):
     rescued = Season(tmp_path / "rescued.gpkg")
     first = rescued.log()[0]
     assert "could not be saved whole" in first.sentence()
-    assert rescued.held_to_log() == ()
+    assert rescued.check_against_log() == ()
 
 
 def test_a_file_of_an_earlier_version_is_salvaged_with_the_columns_that_it_has(tmp_path):

@@ -200,8 +200,8 @@ def test_a_season_begins_with_what_an_earlier_one_learnt_and_keeps_it(tmp_path, 
     season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(earlier=earlier))
     again = Season(season.path)
     assert again.settings.belief.earlier == earlier
-    assert again.taught() == earlier.sentence(earlier.believed)
-    assert alone.taught() is None
+    assert again.earlier_season_note() == earlier.sentence(earlier.believed)
+    assert alone.earlier_season_note() is None
     assert np.array_equal(season.morning(BEGINS), alone.morning(BEGINS))  # the same plants
     told, other = ({each.name: each.value for each in one.learnt(BEGINS)} for one in (again, alone))
     assert told["jumps beyond neighbours"] != other["jumps beyond neighbours"]

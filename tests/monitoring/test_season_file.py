@@ -10,7 +10,7 @@ import pytest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season, settings_log
 from fieldmon.monitoring.transactions import Store
 from fieldmon.pests.pest import Pest
@@ -58,8 +58,8 @@ def test_a_season_comes_back_bit_for_bit(tmp_path):
     assert again.plot.field.boundary == plot.field.boundary
     assert again.plot.field.name == "מטע Paran"
     assert again.plot.field.gate == plot.field.gate
-    assert np.array_equal(again.observations.lonlat, records.lonlat)
-    assert np.array_equal(again.observations.day, records.day, equal_nan=True)
+    assert np.array_equal(again.records.lonlat, records.lonlat)
+    assert np.array_equal(again.records.day, records.day, equal_nan=True)
     assert np.array_equal(again.plot.aisles.travel.between_m, plot.aisles.travel.between_m)
 
 
@@ -146,7 +146,7 @@ def test_a_map_made_otherwise_is_noticed(season):
 def test_who_holds_mornings_to_their_digests_says_how_many_are_done(path):
     season, told = Season(path), []
     season.plan(BEGINS + timedelta(days=2))
-    season.other_maps(tell=lambda *done: told.append(done))
+    season.changed_maps(tell=lambda *done: told.append(done))
     with season.store.reading() as db:
         (n,) = db.execute("SELECT count(*) FROM days").fetchone()
     assert told == [(day, n) for day in range(1, n + 1)]
@@ -166,7 +166,7 @@ def test_who_holds_mornings_to_their_digests_says_how_many_are_done(path):
         lambda season, on: season.kept_route(on),
         lambda season, _: season.last_date(),
         lambda season, on: season.learnt(on),
-        lambda season, _: season.other_maps(),
+        lambda season, _: season.changed_maps(),
         lambda season, on: season.progress(on),
         lambda season, on: season.scene(on),
         lambda season, on: season.status(on),
@@ -184,14 +184,14 @@ def test_what_a_season_answers_is_of_one_moment_others_may_write_between_two(
 
 
 @pytest.mark.parametrize("wrong", [
-    {"plot": "vineyard.kml"}, {"plot": None}, {"observations": [(35.15, 30.36)]},
+    {"plot": "vineyard.kml"}, {"plot": None}, {"records": [(35.15, 30.36)]},
     {"settings": {"begins": BEGINS}}, {"settings": None, "colour": "green"},
     {"settings": None, "begins": "tomorrow"}, {"robot": Robot(hours=7)},
 ])  # fmt: skip
 def test_what_is_no_plot_no_records_or_no_settings_is_refused_and_nothing_is_written(
     tmp_path, wrong
 ):
-    given = {"plot": a_plot(), "observations": None, "settings": MonitoringSettings(BEGINS)}
+    given = {"plot": a_plot(), "records": None, "settings": MonitoringSettings(BEGINS)}
     with pytest.raises(FieldmonError):
         Season.create(tmp_path / "season.gpkg", **(given | wrong))
     assert list(tmp_path.iterdir()) == []
@@ -203,7 +203,7 @@ def test_a_season_begins_today_on_the_plot_without_records_unless_told_otherwise
     season = Season.create(tmp_path / "a.gpkg", plot, sampler="naive")
     assert season.settings.begins in (before, local_clock(plot.field).today())
     assert season.settings.sampler == "naive"
-    other = Season.create(tmp_path / "b.gpkg", plot, Observations.none(), season.settings)
+    other = Season.create(tmp_path / "b.gpkg", plot, Records.none(), season.settings)
     today = season.settings.begins
     assert np.array_equal(season.morning(today), other.morning(today))
     risk = np.full(len(plot.grid), 0.3)

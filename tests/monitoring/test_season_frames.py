@@ -64,7 +64,7 @@ def test_every_plant_has_its_chance_on_the_morning_and_in_the_evening(season):
     np.testing.assert_array_equal(frame.morning, season.morning(BEGINS))
     np.testing.assert_array_equal(frame.evening, season.evening(BEGINS))
     meant = season.to_geopandas("plants")
-    np.testing.assert_array_equal(meant.evening, season.evening(season.day_meant()))
+    np.testing.assert_array_equal(meant.evening, season.evening(season.default_date()))
 
 
 def test_days_are_those_of_which_there_are_figures(season):

@@ -155,7 +155,7 @@ def test_several_files_are_recorded_all_or_none(season):
     done = season.record_all([(good, "a.csv"), (more, "b.csv"), (good, "again.csv")], "Ann")
     assert [(one.new, one.known) for one in done] == [(3, 0), (3, 0), (0, 3)]
     assert [one.source for one in season.batches()] == ["b.csv", "a.csv"]
-    assert season.held_to_log() == ()
+    assert season.check_against_log() == ()
     written = season.evening(BEGINS)
     season.rebuild()
     assert season.evening(BEGINS).tolist() == written.tolist()

@@ -159,14 +159,14 @@ def test_a_season_of_format_6_keeps_its_treatments_and_its_log_begins(tmp_path):
     (effect,) = season.effects(season.last_date())
     assert (effect.before.found, effect.after.found) == (2, 0)
     assert season.undo() != ""
-    assert season.held_to_log() == ()
+    assert season.check_against_log() == ()
 
 
 def test_a_season_of_format_8_keeps_its_treatment_and_can_say_more_of_the_next(tmp_path):
     """Made before active ingredient and weather were asked for: its log still holds."""
     season = Season(shutil.copy(FOLDER / "of_format_8.gpkg", tmp_path))
     assert (tmp_path / "of_format_8.gpkg.format-8").is_file()
-    assert season.held_to_log() == ()
+    assert season.check_against_log() == ()
     (one,) = season.treatments()
     assert one.application.authorised_by == "Ben"
     assert (one.application.active_ingredient, one.application.weather) == ("", "")
@@ -174,7 +174,7 @@ def test_a_season_of_format_8_keeps_its_treatment_and_can_say_more_of_the_next(t
     more = replace(one.application, active_ingredient="fenpyroximate", weather="dry, 2 m/s")
     assert season.treat(LAST, 0.8, one.place.area, application=more).new == 1
     assert season.treatments()[-1].application == more
-    assert season.held_to_log() == ()
+    assert season.check_against_log() == ()
     _only_the_map_differs(season, "2026-04-07")
 
 
@@ -225,7 +225,7 @@ def test_in_a_season_of_format_13_what_was_taken_back_is_a_change_that_can_be_ta
     """Made before a taking back was noted: harvest said, then 4 hours said and taken back."""
     season = Season(shutil.copy(FOLDER / "of_format_13.gpkg", tmp_path))
     assert (tmp_path / "of_format_13.gpkg.format-13").is_file()
-    assert season.held_to_log() == ()
+    assert season.check_against_log() == ()
     seen = season.settings
     assert (seen.robot.hours, seen.harvest) == (1.5, date(2026, 5, 6))
     season.change(replace(seen, robot=seen.robot.with_hours(3.0)), seen)
@@ -235,7 +235,7 @@ def test_in_a_season_of_format_13_what_was_taken_back_is_a_change_that_can_be_ta
     assert season.undo_change() == seen
     assert season.undo_change().harvest is None
     assert season.before_change() is None
-    assert season.held_to_log() == ()
+    assert season.check_against_log() == ()
 
 
 def test_a_season_of_format_14_shows_what_both_noted_of_one_find(tmp_path):

@@ -47,7 +47,6 @@ def test_work_past_midnight_is_of_the_day_on_which_it_began_and_each_has_their_o
     anns, besides = (history.work(from_22, who) for who in ("ann", Besides(("Bob",))))
     for work in (anns, besides):
         assert work.own(0).second.tolist() == [80_000.0, DAY_S + 1800.0]
-        assert work.by_all(0).plant.tolist() == [0, 1, 2]
         assert work.past_midnight(0).tolist() == [2]
         assert len(work.own(1)) == 0
         assert work.trail(1).tolist() == [0, 2]

@@ -18,7 +18,7 @@ from pyproj import Geod
 from shapely import MultiLineString, MultiPolygon, box
 
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.io.import_report import Remedy, guessed, seen
 from fieldmon.monitoring import Season, tables
 from fieldmon.monitoring.tables import KeptMessage
@@ -192,22 +192,22 @@ def test_plants_that_cannot_be_read_are_a_sentence(db):
 
 
 def test_records_come_back_with_what_is_unknown(db):
-    records = Observations.of(
+    records = Records.of(
         [[35.0, 30.0], [35.1, 30.1]],
         [1, -1],
         np.array(["2026-03-30", "NaT"], "datetime64[D]"),
         count=np.array([4.0, np.nan]),
         species=np.array(["Tetranychus urticae", ""]),
     )
-    tables.write_observations(db, records)
-    again = tables.read_observations(db)
+    tables.write_records(db, records)
+    again = tables.read_records(db)
     for name, values in vars(records).items():
         np.testing.assert_array_equal(getattr(again, name), values, err_msg=name)
 
 
 def test_without_records_there_are_none(db):
-    tables.write_observations(db, Observations.none())
-    assert len(tables.read_observations(db)) == 0
+    tables.write_records(db, Records.none())
+    assert len(tables.read_records(db)) == 0
 
 
 def test_what_imports_had_to_say_is_kept_with_its_source_and_its_way_out(db):
@@ -275,13 +275,13 @@ def test_a_record_comes_back_with_whatever_of_it_is_known(db, missing):
         for name in ("count", "accuracy_m", "leaves_sampled")
     }
     days = np.where(rng.random(n) < 0.5, np.datetime64("NaT", "D"), np.datetime64("2026-03-01"))
-    made = Observations.of(
+    made = Records.of(
         rng.random((n, 2)), rng.integers(-1, 2, n).astype(np.int8), days,
         species=np.array(["", "mite", "", "x", "y", "z"]),
         stage=np.array(["egg", "", "", "x", "y", "z"]), **known,
     )  # fmt: skip
-    tables.write_observations(db, made)
-    again = tables.read_observations(db)
+    tables.write_records(db, made)
+    again = tables.read_records(db)
     for each in fields(made):
         np.testing.assert_array_equal(getattr(again, each.name), getattr(made, each.name))
     (extent,) = db.execute(

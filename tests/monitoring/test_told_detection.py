@@ -134,7 +134,7 @@ def test_what_is_said_with_inspections_holds_and_each_robot_keeps_its_own(season
     assert season.evening(BEGINS).tolist() == evening
     assert Season(season.path).evening(BEGINS).tolist() == evening
     assert [(one.who, one.detects, one.own, one.first, one.n)
-            for one in season.told_otherwise(BEGINS)] == [
+            for one in season.other_detections(BEGINS)] == [
         ("Rex", 0.3, SHARP, BEGINS, 2), ("Max", 0.6, SHARP, BEGINS, 2)
     ]  # fmt: skip
 
@@ -154,7 +154,7 @@ def test_the_seasons_own_said_to_six_digits_is_its_own_to_the_bit(season):
     change(season, robot=replace(ROBOT, detection=exact))
     season.record(seen(0, detects=round(exact, 6)))
     assert told(season) == [exact] * 4
-    assert season.told_otherwise(BEGINS) == ()
+    assert season.other_detections(BEGINS) == ()
     assert "told to find" not in season.log()[-1].sentence()
 
 
@@ -177,7 +177,7 @@ def test_what_is_said_stays_through_undoing_correcting_merging_and_saving(season
     season.merge(other)
     assert told(season) == [0.3] * 4 + [0.5] * 4
     assert season.verify() == ()
-    assert [one.detects for one in season.told_otherwise(on(1))] == [0.3, 0.5]
+    assert [one.detects for one in season.other_detections(on(1))] == [0.3, 0.5]
 
 
 def test_a_correction_that_says_another_chance_takes_its_own(season):
@@ -199,7 +199,7 @@ def test_the_log_says_what_was_said_where_the_season_would_read_it_otherwise(sea
     assert said == ["", "told to find 30 % of what is there", "told to find 84 % of what is there"]
     with season.store.writing() as db:
         db.execute("UPDATE inspections SET detects = 0.4 WHERE detects = 0.3")
-    assert any("batch 2" in one for one in season.held_to_log())
+    assert any("batch 2" in one for one in season.check_against_log())
 
 
 @pytest.mark.parametrize("detects", [0.0, -0.1, 1.01, np.inf])
@@ -237,8 +237,8 @@ def test_whoever_asks_is_told_by_what_a_day_will_be_read(season):
     change(season, team=TEAM)
     season.plan_each(BEGINS)
     change(season, team=(), robot=LOOKS_LESS)
-    assert [season.reads(BEGINS, who) for who in ("ben", "Ann", "Zoë")] == [0.3, 0.9, SHARP]
-    assert season.reads(on(1), "ben") == DULL
+    assert [season.detection_of(BEGINS, who) for who in ("ben", "Ann", "Zoë")] == [0.3, 0.9, SHARP]
+    assert season.detection_of(on(1), "ben") == DULL
 
 
 def test_a_pest_that_is_named_later_was_looked_for_from_the_first_day_on(season):
@@ -294,10 +294,10 @@ def test_what_is_learnt_of_an_earlier_season_is_of_the_detection_at_first(season
     earlier = replace(season.as_earlier(), until=on(-1))
     belief = replace(season.settings.belief, earlier=earlier)
     second = a_season(tmp_path / "second.gpkg", belief=belief)
-    before, said = second.learnt(BEGINS), second.taught()
+    before, said = second.learnt(BEGINS), second.earlier_season_note()
     change(second, robot=Robot(hours=1.5, detection=0.4))
     second.record(seen(0))
     change(second, robot=ROBOT)
-    assert second.taught() == said
+    assert second.earlier_season_note() == said
     assert second.history.first_morning.counts.found.any()
     assert second.learnt(BEGINS)[0].value < before[0].value

@@ -9,9 +9,9 @@ import shapely
 from shapely import MultiPolygon, box
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import PRESENT, Records
 from fieldmon.pests.pest import Pest
 from fieldmon.planning.day_bound import found_bound
 from fieldmon.planning.many_plots import Orders, Task, _robot, plan_task
@@ -27,9 +27,7 @@ FIELD = Field("square", FRAME.geometry_lonlat(MultiPolygon([shapely.box(-30, -25
 PLOT = Plot.of(FIELD)
 DAY = np.datetime64("2026-11-02")
 ORDERS = Orders(DAY, "naive")
-RECORDS = Observations.of(
-    FRAME.lonlat(np.array([[5.0, 5.0]])), np.array([PRESENT]), np.array([DAY - 1])
-)
+RECORDS = Records.of(FRAME.lonlat(np.array([[5.0, 5.0]])), np.array([PRESENT]), np.array([DAY - 1]))
 HALF_AN_HOUR = {"hours": 0.5}
 
 
@@ -103,7 +101,7 @@ def test_a_task_is_told_from_any_other_and_known_again():
         (replace(task, orders=replace(ORDERS, rover=True)), RECORDS),
         (replace(task, orders=replace(ORDERS, robot_times="thesis")), RECORDS),
         (replace(task, orders=replace(ORDERS, at=time(8))), RECORDS),
-        (task, Observations.none()),
+        (task, Records.none()),
     ]
     digests = {each.digest(records) for each, records in [(task, RECORDS), *others]}
     assert len(digests) == 1 + len(others)
@@ -120,7 +118,7 @@ def test_another_text_of_an_own_sampler_is_another_task(tmp_path):
 
 def test_a_task_has_the_digest_that_folders_of_routes_hold():
     field = Field("Gate", MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)]), gate=(35.15, 30.36))
-    records = Observations.of(
+    records = Records.of(
         np.array([[35.1501, 30.3601], [35.1502, 30.3602]]),
         np.array([1, 0], np.int8),
         np.array(["2026-04-01", "NaT"], "datetime64[D]"),

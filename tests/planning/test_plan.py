@@ -10,9 +10,9 @@ import shapely
 import shapely.affinity
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.observations import PRESENT, Observations
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import PRESENT, Records
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.plan import (
     PlanSettings,
@@ -75,7 +75,7 @@ def test_no_day_is_today(plot):
 
 def test_a_record_raises_the_chance_about_it_on_its_day_and_less_later(plot):
     at = plot.grid.lonlat(np.array([130]))
-    records = Observations.of(at, np.array([PRESENT], np.int8), np.array(["2026-11-18"], "M8[D]"))
+    records = Records.of(at, np.array([PRESENT], np.int8), np.array(["2026-11-18"], "M8[D]"))
     plain, soon, late = (
         plan_day(plot, given, on, robot=ROBOT).chance[130]
         for given, on in [(None, "2026-11-18"), (records, "2026-11-18"), (records, "2026-12-18")]
@@ -166,7 +166,7 @@ def test_a_plot_is_planned_alike_wherever_it_lies_and_however_it_is_turned(place
 @pytest.mark.parametrize(
     ("asked", "sentence"),
     [
-        ({"records": [[35.1, 30.2]]}, "Records must be Observations"),
+        ({"records": [[35.1, 30.2]]}, "Records must be fm.Records"),
         ({"robot": 4}, "must be"),
         ({"plot": "gate.kml"}, "must be"),
     ],
@@ -186,7 +186,7 @@ def test_a_start_that_names_its_zone_is_the_plot_s_own_time():
     # two hours ahead in winter: by then it is the next day there
     assert starts == [datetime(2026, 11, 18, 1, 30)] * 3
     at = there.grid.lonlat(np.array([20]))
-    records = Observations.of(at, np.array([PRESENT], np.int8), np.array(["2026-11-18"], "M8[D]"))
+    records = Records.of(at, np.array([PRESENT], np.int8), np.array(["2026-11-18"], "M8[D]"))
     late, same = (plan_day(there, records, on, robot=ROBOT).chance for on in (
         "2026-11-17T23:30:00+00:00", "2026-11-18"))  # fmt: skip
     assert late.tolist() == same.tolist()
@@ -203,7 +203,7 @@ def test_a_risk_is_one_more_way_of_being_infested_where_it_says_something(plot, 
 def test_a_day_is_planned_in_a_scene_of_what_is_known_before_anything_was_inspected(plot):
     prior = PriorSettings(background_chance=0.04)
     plans = PlanSettings(Robot(hours=0.5, look_s=25.0), Naive(), prior)
-    records = Observations.of(plot.grid.lonlat(np.array([130])), np.array([PRESENT], np.int8),
+    records = Records.of(plot.grid.lonlat(np.array([130])), np.array([PRESENT], np.int8),
                               np.array(["2026-11-10"], "M8[D]"))  # fmt: skip
     on_day = np.datetime64("2026-11-18")
     chance = prior_chance(plot.grid, plot.field, records, on_day, prior)

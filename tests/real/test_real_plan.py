@@ -85,14 +85,14 @@ def test_the_line_on_a_real_parcel_crosses_no_row(shared, name):
 
 
 def read_records_of_nowhere():
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
 
-    return Observations.none()
+    return Records.none()
 
 
 def test_diseased_bananas_draw_the_route_to_them(shared, plan):
     corners = ["--plot-option", "where=marker=polygon", "--row-spacing", 3, "--plant-spacing", 3]
-    sick = ["--observations", shared / BANANAS, "--record-option", "where=marker=plantas",
+    sick = ["--records", shared / BANANAS, "--record-option", "where=marker=plantas",
             "--record-option", "columns=present="]  # fmt: skip
     (line, *stops), _ = plan(shared / BANANAS, *corners, *sick, "--hours", 3)
     check_times(line, [stop["properties"] for stop in stops])

@@ -13,7 +13,7 @@ from fieldmon.compute.wording import estimate
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import Application, Season
 from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.monitoring.plant_states import finds_apart
@@ -102,7 +102,7 @@ def test_hot_spots_are_said_as_everywhere_and_every_find_stands_by_its_row(worke
 def test_records_treatments_and_what_is_assumed_stand_on_the_last_page(of_season, worked, last):
     rows = table(of_season, "What was recorded").rows
     *rows, brought = rows
-    assert brought == (str(BEGINS), "records brought", "", "", f"{len(worked.observations)}")
+    assert brought == (str(BEGINS), "records brought", "", "", f"{len(worked.records)}")
     assert [row[2] for row in rows] == [batch.source for batch in worked.batches()]
     assert {row[3] for row in rows if row[1] == "inspections"} == {"נועה"}
     # by the clock of the plot, in the chosen way of writing dates

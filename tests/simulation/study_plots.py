@@ -4,7 +4,7 @@ import numpy as np
 import shapely
 from shapely import MultiPolygon
 
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.plot.field import Field
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
@@ -21,4 +21,4 @@ def area(size_m):
 
 
 def plot(size_m=40.0, name="plot"):
-    return StudyPlot(Field(name, area(size_m)), Planting(), Observations.none(), DAY)
+    return StudyPlot(Field(name, area(size_m)), Planting(), Records.none(), DAY)

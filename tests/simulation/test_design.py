@@ -8,7 +8,7 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.infestation.records import PRESENT, Records
 from fieldmon.plot.field import Field
 from fieldmon.plot.planting import Planting
 from fieldmon.simulation.design import Design, study_of
@@ -18,7 +18,7 @@ from tests.simulation.study_plots import DAY, SMALL, plot
 SQUARE = StudyPlot(
     Field("square", MultiPolygon([shapely.box(35.15, 30.36, 35.1506, 30.3606)])),
     Planting(),
-    Observations.none(),
+    Records.none(),
     DAY,
 )
 
@@ -65,7 +65,7 @@ def test_another_plot_setting_or_seed_has_other_keys():
 
     base = keys(plot(), SMALL)
     assert base == keys(plot(), SMALL)
-    record = Observations.of(np.array([(5.0, 45.0)]), np.array([PRESENT]))
+    record = Records.of(np.array([(5.0, 45.0)]), np.array([PRESENT]))
     heard = StudyPlot(plot().field, Planting(), record, DAY)
     for other in (plot(41.0), plot(name="other"), heard):
         assert not base & keys(other, SMALL)

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.prior import prior_chance, start_infested
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import Records
 from fieldmon.infestation.spread import Spread
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.pests.weather import DAY_S, weather_of
@@ -28,7 +28,7 @@ LEVELS = Combination("dynamic", 3.0, 40.0, 0.05, 0.1)
 
 def laid():
     one = Plot.of(plot().field, Planting())
-    chance = prior_chance(one.grid, one.field, Observations.none(), DAY, PriorSettings())
+    chance = prior_chance(one.grid, one.field, Records.none(), DAY, PriorSettings())
     return LaidPlot(one, chance)
 
 

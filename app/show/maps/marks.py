@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.hotspots import HotSpots
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.monitoring.treatments import KeptTreatment
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
@@ -141,7 +141,7 @@ def rows(grid: PlantGrid, name: str, colour: Colour | Translucent, note: str = "
                  get_width=0.25, width_min_pixels=1.2)  # fmt: skip
 
 
-def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
+def records(records: Records, *, dark: bool = False) -> list[Layer]:
     """Return the records: filled where pests were seen, empty where not, grey if nobody knows."""
     colour = HOT_IN_DARK if dark else HOT
     rows = [
@@ -154,9 +154,9 @@ def records(observations: Observations, *, dark: bool = False) -> list[Layer]:
             ),
         }
         for place, seen, day in zip(
-            np.round(observations.lonlat, 7).tolist(),
-            observations.present.tolist(),
-            observations.day.astype(str).tolist(),
+            np.round(records.lonlat, 7).tolist(),
+            records.present.tolist(),
+            records.day.astype(str).tolist(),
             strict=True,
         )
     ]

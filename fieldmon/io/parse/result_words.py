@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import first_few, worded
-from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.infestation.records import ABSENT, PRESENT
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
 from fieldmon.io.parse.columns import is_average, is_confidence, is_score
 

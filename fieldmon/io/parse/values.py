@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.compute.ranges import MOST_COUNTED
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.parse.result_words import meaning
 

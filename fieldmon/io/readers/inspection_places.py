@@ -22,7 +22,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import runs, worded
-from fieldmon.infestation.observations import NEARBY_M
+from fieldmon.infestation.records import NEARBY_M
 from fieldmon.io.import_report import guessed
 from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
 from fieldmon.plot.grid import block_number, plant_numbers, row_in_block

@@ -28,7 +28,7 @@ from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspection_columns import BESIDE
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.nearby_plants import outside_m
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.import_report import (
     Imported,
     ImportMessage,

@@ -12,7 +12,7 @@ import shapely
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, ImportDoubt, ObservationError
-from fieldmon.infestation.observations import NEARBY_M, usable
+from fieldmon.infestation.records import NEARBY_M, usable
 from fieldmon.io.import_report import Imported, ImportMessage, Remedy, doubtful, dropped, seen
 from fieldmon.plot.grid import nearest_plants
 from fieldmon.plot.plants_outside import PlantsOutside, between_m, distance_m
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.io.readers.places import Plants
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
@@ -48,8 +48,8 @@ class RecordsNearPlot:
         ``(len(outside),)`` distance of those to the plot's boundary.
     """
 
-    inside: Observations
-    outside: Observations
+    inside: Records
+    outside: Records
     outside_m: NDArray[np.float64]
 
     def messages(self, plot: str) -> list[ImportMessage]:
@@ -71,21 +71,21 @@ class RecordsNearPlot:
         ]
 
 
-def near_plot(observations: Observations, field: Field) -> RecordsNearPlot:
+def near_plot(records: Records, field: Field) -> RecordsNearPlot:
     """Return records on a plot or close by, and those elsewhere."""
-    away = distance_m(observations.lonlat, field)
-    near = away <= observations.reach_m()
-    return RecordsNearPlot(observations.take(near), observations.take(~near), away[~near])
+    away = distance_m(records.lonlat, field)
+    near = away <= records.reach_m()
+    return RecordsNearPlot(records.take(near), records.take(~near), away[~near])
 
 
-def warn_of_left_out(observations: Observations, on_day: np.datetime64, field: Field) -> None:
+def warn_of_left_out(records: Records, on_day: np.datetime64, field: Field) -> None:
     """Warn the caller of the caller of records that say nothing of a plot on a day."""
-    known = replace(usable(observations, on_day), undated=0, old=0)
-    for one in (*known.messages(), *_elsewhere(known.observations, field)):
+    known = replace(usable(records, on_day), undated=0, old=0)
+    for one in (*known.messages(), *_elsewhere(known.records, field)):
         warnings.warn(one, ImportDoubt, stacklevel=3)
 
 
-def _elsewhere(known: Observations, field: Field) -> list[str]:
+def _elsewhere(known: Records, field: Field) -> list[str]:
     """Return what to say of records that lie elsewhere, or nobody knows where.
 
     Not where all do: `prior_chance` refuses these.
@@ -107,28 +107,28 @@ def _elsewhere(known: Observations, field: Field) -> list[str]:
     return said
 
 
-def records_on_plot(observations: Observations, field: Field) -> Observations:
+def records_on_plot(records: Records, field: Field) -> Records:
     """Return the records on a plot or close by; those far from it are not even measured."""
     west, south, east, north = field.boundary.bounds
-    reach_deg = 1.2 * observations.reach_m() / _DEGREE_M
+    reach_deg = 1.2 * records.reach_m() / _DEGREE_M
     widest_deg = reach_deg / max(np.cos(np.deg2rad(max(abs(south), abs(north)))), 0.01)
-    lon, lat = observations.lonlat.T
+    lon, lat = records.lonlat.T
     middle, half = (west + east) / 2, (east - west) / 2
     off_deg = np.abs((lon - middle + 180.0) % 360.0 - 180.0)
     close = (off_deg <= half + widest_deg) & (lat >= south - reach_deg) & (lat <= north + reach_deg)
-    return near_plot(observations.take(close), field).inside
+    return near_plot(records.take(close), field).inside
 
 
-def of_plot(observations: Observations, field: Field) -> tuple[Observations, list[ImportMessage]]:
+def of_plot(records: Records, field: Field) -> tuple[Records, list[ImportMessage]]:
     """Return the records of one plot; ask or refuse where not one is there."""
-    observations, corners = without_corners(observations, (field,))
-    split = near_plot(observations, field)
+    records, corners = without_corners(records, (field,))
+    split = near_plot(records, field)
     if len(split.inside):
         beyond = split.outside.lonlat
         doubts = doubt_of_order(split.outside_m, distance_m(beyond[:, ::-1], field))
         return split.inside, [*corners, *split.messages(field.name), *doubts]
     nearest = distance_figure(split.outside_m.min())
-    swapped_m = distance_m(observations.lonlat[:, ::-1], field)
+    swapped_m = distance_m(records.lonlat[:, ::-1], field)
     if np.median(swapped_m) < min(10_000.0, 0.01 * float(np.median(split.outside_m))):
         raise ChoiceNeeded(
             worded(
@@ -148,15 +148,15 @@ def of_plot(observations: Observations, field: Field) -> tuple[Observations, lis
             "{nearest} away. Check the choice of plot, the coordinate system and the order "
             "of longitude and latitude.",
             name=field.name,
-            n=len(observations),
+            n=len(records),
             nearest=nearest,
         )
     )
 
 
 def without_corners(
-    observations: Observations, fields: Sequence[Field]
-) -> tuple[Observations, list[ImportMessage]]:
+    records: Records, fields: Sequence[Field]
+) -> tuple[Records, list[ImportMessage]]:
     """Return the records besides the corners of plots, in a file that holds both.
 
     Of each plot all are left out, or none; none at all where they are not fewer than the others.
@@ -165,29 +165,29 @@ def without_corners(
     corners, number = np.unique(xy, axis=0, return_inverse=True)
     from scipy.spatial import cKDTree  # noqa: PLC0415 - half a second to import
 
-    away_deg, nearest = cKDTree(corners).query(observations.lonlat)
+    away_deg, nearest = cKDTree(corners).query(records.lonlat)
     met, number = away_deg < _SAME_DEG, number.ravel()
     missed = ~np.isin(number, nearest[met])
     met &= np.isin(nearest, number[~np.isin(of, of[missed])])
     n = int(np.count_nonzero(met))
     if n == 0 or 2 * n >= len(met):
-        return observations, []
+        return records, []
     said = worded("{n} records are the corners of plots and were left out.", n=n)
     if len(fields) == 1:
         said = worded("{n} records are the corners of the plot and were left out.", n=n)
-    return observations.take(~met), [dropped(said)]
+    return records.take(~met), [dropped(said)]
 
 
 def on_other_plots(
-    observations: Observations, field: Field, others: Iterable[Field]
+    records: Records, field: Field, others: Iterable[Field]
 ) -> ObservationError | None:
     """Return what to say where records lie on other plots of the same file; None: on none."""
     known = [other for other in others if other.name != field.name]
     tree = shapely.STRtree([each.boundary for each in known])
-    record, plot = tree.query(shapely.points(observations.lonlat), predicate="intersects")
+    record, plot = tree.query(shapely.points(records.lonlat), predicate="intersects")
     on = np.bincount(plot, minlength=len(known))
     # what lies on a plot is of none of its neighbours
-    beside = observations.take(~np.isin(np.arange(len(observations)), record))
+    beside = records.take(~np.isin(np.arange(len(records)), record))
     counts = {
         each.name: int(lying) + len(records_on_plot(beside, each))
         for each, lying in zip(known, on, strict=True)
@@ -202,7 +202,7 @@ def on_other_plots(
             "plots of the file, or near them, lie: {some}. Choose one of those, or records of "
             "{name}.",
             name=field.name,
-            n=len(observations),
+            n=len(records),
             some=first_few(named),
         )
     )
@@ -221,13 +221,13 @@ def plants_on(measured: Plants, field: Field, far: str | None = None) -> Importe
     return Imported(measured.take(~split.left_out), tuple(messages))
 
 
-def on_plants(observations: Observations, grid: PlantGrid) -> list[ImportMessage]:
+def on_plants(records: Records, grid: PlantGrid) -> list[ImportMessage]:
     """Return what to say about records that cannot be told a plant of their own.
 
     A record belongs to the nearest plant within half a row and its own accuracy.
     """
-    away = nearest_plants(grid, observations.lonlat, NEARBY_M)[1]
-    own_m = np.nan_to_num(observations.accuracy_m)
+    away = nearest_plants(grid, records.lonlat, NEARBY_M)[1]
+    own_m = np.nan_to_num(records.accuracy_m)
     beside = (away > grid.row_spacing_m / 2 + own_m) & np.isfinite(away)
     rough = np.isfinite(away) & ~beside & (own_m > grid.plant_spacing_m)
     messages = []

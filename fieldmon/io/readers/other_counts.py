@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.infestation.observations import ABSENT
+from fieldmon.infestation.records import ABSENT
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful
 from fieldmon.io.parse.columns import find, is_id, is_position, is_score, is_time, plain, recognised

@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.infestation.observations import PRESENT, UNKNOWN
+from fieldmon.infestation.records import PRESENT, UNKNOWN
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
 from fieldmon.io.parse.columns import is_confidence, is_id, recognised
 from fieldmon.io.parse.result_words import (

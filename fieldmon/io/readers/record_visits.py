@@ -16,7 +16,7 @@ from fieldmon.plot.projection import M_PER_DEGREE
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.io.readers.record_columns import RecordColumns
 
 
@@ -32,20 +32,20 @@ class RecordVisits(NamedTuple):
     at_s: NDArray[np.float64]
 
 
-def places_of(observations: Observations) -> NDArray[np.intp]:
+def places_of(records: Records) -> NDArray[np.intp]:
     """Return a number for the place of each record ``(n,)``; of those with none their own."""
-    place = np.arange(len(observations))
-    there = np.flatnonzero(np.isfinite(observations.lonlat).all(axis=1))
+    place = np.arange(len(records))
+    there = np.flatnonzero(np.isfinite(records.lonlat).all(axis=1))
     if len(there):
-        lonlat = observations.lonlat[there]
+        lonlat = records.lonlat[there]
         east = np.cos(np.radians(np.median(lonlat[:, 1])))
         xy_m = (lonlat - lonlat[0]) * M_PER_DEGREE * [east, 1.0]
-        place[there] = there[same_places(xy_m, observations.accuracy_m[there])]
+        place[there] = there[same_places(xy_m, records.accuracy_m[there])]
     return place
 
 
 def each_visit_once(
-    observations: Observations, table: RecordColumns, visits: RecordVisits
+    records: Records, table: RecordColumns, visits: RecordVisits
 ) -> tuple[NDArray[np.intp], list[ImportMessage]]:
     """Return the first record of each visit, and what there is to say of the others.
 
@@ -53,22 +53,22 @@ def each_visit_once(
     and of positions that tell no plants apart, stay as they are; so do those of which any other
     column tells that they are of something else.
     """
-    some = observations.take(visits.known)
+    some = records.take(visits.known)
     columns = (visits.place[visits.known], some.day.astype(np.int64), some.present, some.count)
     read = [np.nan_to_num(column.astype(np.float64), nan=-1.0).tolist() for column in columns]
     alike = list(zip(*read, some.species.tolist(), some.stage.tolist(), strict=True))
     often = Counter(alike)
     again = np.flatnonzero([often[one] > 1 for one in alike])
     if not len(again):
-        return np.arange(len(observations)), []
-    alike, records = [alike[k] for k in again.tolist()], visits.known[again]
-    at_s = visits.at_s[records]
+        return np.arange(len(records)), []
+    alike, which = [alike[k] for k in again.tolist()], visits.known[again]
+    at_s = visits.at_s[which]
     lies = {name for name in table.layer.columns if is_position(name)}
-    rest = telling(table.layer, records, lies | {table.named(role) for role in _LIES})
+    rest = telling(table.layer, which, lies | {table.named(role) for role in _LIES})
     says = list(zip(alike, *rest.values(), strict=True))
     first = first_of_visits(says, at_s)
     messages: list[ImportMessage] = []
-    if n_again := len(records) - len(first):
+    if n_again := len(which) - len(first):
         said = worded(
             "{n} {n:record repeats|records repeat} what another says of the same place and day, "
             "within {minutes} minutes or with no time: one visit, which counts once.",
@@ -91,8 +91,8 @@ def each_visit_once(
             columns=first_few(_differing(alike, rest), 3),
         )
         messages.append(guessed(said))
-    later = np.delete(records, first)
-    return np.delete(np.arange(len(observations)), later), messages
+    later = np.delete(which, first)
+    return np.delete(np.arange(len(records)), later), messages
 
 
 def _differing(alike: list[tuple[object, ...]], rest: dict[str, list[str]]) -> list[str]:
@@ -103,17 +103,15 @@ def _differing(alike: list[tuple[object, ...]], rest: dict[str, list[str]]) -> l
     ]
 
 
-def disagreeing(observations: Observations, place: NDArray[np.intp]) -> list[ImportMessage]:
+def disagreeing(records: Records, place: NDArray[np.intp]) -> list[ImportMessage]:
     """Return a doubt about records of one place ``(k,)`` and day that disagree."""
-    if len(observations) < 2:
+    if len(records) < 2:
         return []
-    day = observations.day.astype(np.int64).astype(np.float64)
-    kinds = [
-        np.unique(v, return_inverse=True)[1] for v in (observations.species, observations.stage)
-    ]
+    day = records.day.astype(np.int64).astype(np.float64)
+    kinds = [np.unique(v, return_inverse=True)[1] for v in (records.species, records.stage)]
     visit: list[NDArray[np.generic]] = [place, day, *kinds]
-    count = np.nan_to_num(observations.count, nan=-1)
-    n_visits, n_stated = _n_distinct(visit), _n_distinct([*visit, count, observations.present])
+    count = np.nan_to_num(records.count, nan=-1)
+    n_visits, n_stated = _n_distinct(visit), _n_distinct([*visit, count, records.present])
     if n_stated == n_visits:
         return []
     return [

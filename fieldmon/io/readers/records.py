@@ -8,8 +8,8 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError
-from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import Records
 from fieldmon.io.import_report import (
     Imported,
     ImportMessage,
@@ -66,14 +66,14 @@ def records_of(
     options: RecordOptions,
     places: NamedPlaces | None = None,
     apart_m: float | None = None,
-) -> Imported[Observations]:
+) -> Imported[Records]:
     """Return the records of a layer, each with a position; of plants so far apart, if known."""
     return _records_and_plots(layer, options, places, apart_m)[0]
 
 
 def records_by_plot(
     layer: Layer, options: RecordOptions, places: NamedPlaces
-) -> Imported[dict[str, Observations]]:
+) -> Imported[dict[str, Records]]:
     """Return the records of a layer that name their plot, and a row and a plant on it, by plot."""
     read, plot = _records_and_plots(layer, options, places)
     named = [] if plot is None else sorted(set(plot.tolist()))
@@ -85,7 +85,7 @@ def _records_and_plots(
     options: RecordOptions,
     places: NamedPlaces | None,
     apart_m: float | None = None,
-) -> tuple[Imported[Observations], NDArray[np.str_] | None]:
+) -> tuple[Imported[Records], NDArray[np.str_] | None]:
     """Return the records of a layer, and the plot that each names, if they do."""
     if len(layer) == 0:
         raise ObservationError(
@@ -99,7 +99,7 @@ def _records_and_plots(
     species, of_species = _species(table)
     accuracy_m, unread = _accuracy_m(table, found, options)
     twice = placed_twice(found, accuracy_m, options)
-    observations = Observations.of(
+    records = Records.of(
         found.lonlat,
         counts.present,
         day,
@@ -113,13 +113,13 @@ def _records_and_plots(
         *layer.messages, *repeated, *found.messages, *unread, *twice, *day_messages,
         *counts.messages,
     )  # fmt: skip
-    place = places_of(observations)
+    place = places_of(records)
     half_m = (apart_m or Planting().plant_spacing_m) / 2
     known = ~np.isnat(day) & np.isfinite(found.lonlat).all(axis=1)
-    known &= ~(observations.accuracy_m >= half_m) & (found.step_m < half_m)
+    known &= ~(records.accuracy_m >= half_m) & (found.step_m < half_m)
     visits = RecordVisits(np.flatnonzero(known), place, at_s)
-    first, counted_once = each_visit_once(observations, table, visits)
-    once = observations.take(first)
+    first, counted_once = each_visit_once(records, table, visits)
+    once = records.take(first)
     more = (*of_species, *counted_once, *disagreeing(once, place[first]))
     messages += (*about_confidences(layer.columns, table.used()),)
     return Imported(once, (*messages, *more)), None if found.plot is None else found.plot[first]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.infestation.observations import ABSENT
+from fieldmon.infestation.records import ABSENT
 from fieldmon.io.parse.pest_names import about_spellings, is_visit, usual_spellings
 from fieldmon.io.parse.result_words import meaning
 from fieldmon.io.parse.values import is_missing

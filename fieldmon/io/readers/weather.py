@@ -20,7 +20,7 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.records import PRESENT
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.open_layer import open_layer
 from fieldmon.io.import_report import (

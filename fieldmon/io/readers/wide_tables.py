@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import worded
-from fieldmon.infestation.observations import UNKNOWN
+from fieldmon.infestation.records import UNKNOWN
 from fieldmon.io.formats.layer import text
 from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
 from fieldmon.io.parse.columns import find

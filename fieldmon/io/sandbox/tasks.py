@@ -17,7 +17,7 @@ from fieldmon.io.sandbox.workroom import Workroom
 if TYPE_CHECKING:
     from shapely import MultiLineString, MultiPolygon
 
-    from fieldmon.infestation.observations import Observations
+    from fieldmon.infestation.records import Records
     from fieldmon.io.formats.layer import LayerInfo
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions, Source
@@ -70,7 +70,7 @@ def records(
     options: RecordOptions,
     places: NamedPlaces | None,
     apart_m: float | None = None,
-) -> Imported[Observations]:
+) -> Imported[Records]:
     """Return the records of a source."""
     layer = open_layer(source, options, Workroom(Path(folder)))
     return records_of(layer, options, places, apart_m)
@@ -78,7 +78,7 @@ def records(
 
 def plot_records(
     folder: str, source: Source, options: RecordOptions, places: NamedPlaces
-) -> Imported[dict[str, Observations]]:
+) -> Imported[dict[str, Records]]:
     """Return the records of a source that name their plots, by plot."""
     layer = open_layer(source, options, Workroom(Path(folder)))
     return records_by_plot(layer, options, places)

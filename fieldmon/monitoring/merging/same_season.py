@@ -21,7 +21,7 @@ _NAMED_PLOTS = 3
 
 
 #: what makes a season this one, and must be the same in both
-SAME = (schema.ARRAYS, schema.PLOTS, schema.PLACES, schema.ROWS, schema.PLANTS, schema.OBSERVATIONS)
+SAME = (schema.ARRAYS, schema.PLOTS, schema.PLACES, schema.ROWS, schema.PLANTS, schema.RECORDS)
 
 # and a plot this one
 _PLANTING = (schema.ROWS, schema.PLANTS)

@@ -135,7 +135,7 @@ class _Mornings(NamedTuple):
     Parameters
     ----------
     chances, truths
-        A map a morning, ``(n,)`` each: chance of infestation, and who was infested.
+        A map a morning, ``(n,)`` each: chance of infestation, and which plants were infested.
     ahead, half_ahead
         What was believed of the whole plot, with intervals of 90 % and of 50 %.
     told

@@ -155,7 +155,7 @@ class Oracle(Sampler):
     Parameters
     ----------
     truth
-        ``(n,)`` who is infested today; whoever plays the season tells it every morning.
+        ``(n,)`` which plants are infested today; whoever plays the season tells it every morning.
     """
 
     def __init__(self, truth: NDArray[np.bool_]) -> None:

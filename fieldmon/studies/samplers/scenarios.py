@@ -228,7 +228,7 @@ def of_pest(pest_in_weather: PestInWeather) -> str:
 def infested_at_start(
     grid: PlantGrid, start: str, share: float, rng: np.random.Generator
 ) -> NDArray[np.bool_]:
-    """Draw who is infested on a first morning, ``(n,)``: a share of the plants, see `Scenario`."""
+    """Draw which plants are infested on a first morning, ``(n,)``: a share, see `Scenario`."""
     wanted = max(1, round(share * len(grid)))
     if start == "scattered":
         infested = np.zeros(len(grid), np.bool_)

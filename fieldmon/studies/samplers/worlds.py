@@ -91,7 +91,7 @@ class World:
     def night(
         self, grid: PlantGrid, infested: NDArray[np.bool_], key: np.uint64
     ) -> NDArray[np.bool_]:
-        """Return who is infested the next morning, ``(n,)``."""
+        """Return which plants are infested the next morning, ``(n,)``."""
         draws = np.random.default_rng(int(key))
         after = infested.copy()
         senders = np.flatnonzero(infested)

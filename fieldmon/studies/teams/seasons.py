@@ -10,9 +10,9 @@ import numpy as np
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
-from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import Records
 from fieldmon.infestation.spread import Spread
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
@@ -170,7 +170,7 @@ def square_plot(hectares: float) -> Plot:
 def unknown_chance(plot: Plot) -> NDArray[np.float64]:
     """Return what is believed where nothing is recorded ``(n,)``: more at the edge."""
     day = np.datetime64("2026-06-01", "D")  # no record is of any day
-    return prior_chance(plot.grid, plot.field, Observations.none(), day, PriorSettings())
+    return prior_chance(plot.grid, plot.field, Records.none(), day, PriorSettings())
 
 
 def study_of(

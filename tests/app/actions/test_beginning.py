@@ -8,7 +8,7 @@ from shapely import LineString, MultiLineString, MultiPolygon, box, intersection
 
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.plot.block import Block
 from fieldmon.plot.field import Field
@@ -201,7 +201,7 @@ def test_another_season_of_one_opened_by_its_address_is_laid_as_that_one(kind, s
     drawn, planting = PLANTED[kind]
     before = Plot.of(Field("Hill", AREA, **drawn), Planting(**planting))
     settings = MonitoringSettings(date(2026, 11, 16), robot=Robot(hours=1.0))
-    Season.create(seasons_folder / "Hill 2026.gpkg", before, Observations.none(), settings)
+    Season.create(seasons_folder / "Hill 2026.gpkg", before, Records.none(), settings)
     app = go(opened("Hill 2026"), "plot")
     press(app, texts.ANOTHER)
     assert not app.exception

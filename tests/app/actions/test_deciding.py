@@ -79,13 +79,13 @@ def test_zones_noted_as_treated_are_those_on_the_page_whatever_another_session_f
     season_app, season
 ):
     go(season_app, "decide")
-    seen = season().advice(season().day_meant()).sprayed
+    seen = season().advice(season().default_date()).sprayed
     assert 0 < seen.sum() < seen.size
     caption = next(one.value for one in season_app.caption if one.value.startswith("Noted are"))
     assert f"{seen.sum():,} plants" in caption
     far = np.flatnonzero(~seen)[[0, 40, 80]]
     season().record(Inspections.of(far, np.full(3, FOUND), np.datetime64("2026-11-16")))
-    assert (season().advice(season().day_meant()).sprayed != seen).any()
+    assert (season().advice(season().default_date()).sprayed != seen).any()
     boxed(season_app.number_input, "efficacy").set_value(80)
     press(season_app, texts.TREAT_BUTTON)
     (one,) = season().treatments()

@@ -342,7 +342,7 @@ def test_five_days_in_the_app_give_the_digits_of_the_same_days_without_it(
     season_app, season, tmp_path
 ):
     mine = season()
-    twin = Season.create(tmp_path / "twin.gpkg", mine.plot, mine.observations, mine.settings)
+    twin = Season.create(tmp_path / "twin.gpkg", mine.plot, mine.records, mine.settings)
     for day in range(16, 21):
         on = date(2026, 11, day)
         season_app.date_input(key="day Gate 2026").set_value(on).run()

@@ -134,9 +134,9 @@ def test_a_treatment_of_what_is_selected_on_the_map_is_of_those_plants(season_ap
 
 @pytest.mark.parametrize("page", ["record", "decide"])
 def test_a_treatment_of_a_file_is_of_its_area_whatever_the_zones_are_now(season_app, season, page):
-    advice = season().advice(season().day_meant())
+    advice = season().advice(season().default_date())
     data = treatment_map_bytes(advice.treatment_map(season().plot.field), "zones.geojson")
-    season().record(Inspections.of([0], [FOUND], np.datetime64(season().day_meant())))
+    season().record(Inspections.of([0], [FOUND], np.datetime64(season().default_date())))
     go(season_app, page)
     boxed(season_app.file_uploader, "treat file").upload("zones.geojson", data, "text/plain")
     if page == "record":

@@ -5,7 +5,7 @@ import numpy as np
 from app.show import answers_of_records
 from app.show.answers_of_records import PLACES, content
 from app.state.tried_answers import TriedAnswer
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from tests.app.chosen import a_plot
 
 PLOT = a_plot()
@@ -15,7 +15,7 @@ DAYS = np.full(6, np.datetime64("2026-11-01"))
 
 def answer(name, *, off_deg=0.0, finds=2):
     present = (np.arange(6) < finds).astype(np.int8)
-    records = Observations.of(LONLAT + off_deg, present, DAYS)
+    records = Records.of(LONLAT + off_deg, present, DAYS)
     return TriedAnswer(name, zone="Asia/Jerusalem", records=records, near=0 if off_deg else 6)
 
 

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from app.show import field_map
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.plot.robot import Robot
 from tests.app.chosen import DAY, a_plot, chosen, in_season, records_at
@@ -43,7 +43,7 @@ def test_the_view_belongs_to_the_plot_and_holds_all_of_it(tmp_path):
     plot = a_plot()
     first = field_map.of_plot(chosen(plot, records_at(plot, [3], [1])))
     later = field_map.of_plot(chosen(plot, day="2026-11-18", robot=Robot(hours=3.0)))
-    begun = Season.create(tmp_path / "s.gpkg", plot, Observations.none(), MonitoringSettings(DAY))
+    begun = Season.create(tmp_path / "s.gpkg", plot, Records.none(), MonitoringSettings(DAY))
     in_one = field_map.of_plot(in_season(begun))
     assert first["place"] == later["place"] == in_one["place"]
     assert first["bounds"] == later["bounds"]

@@ -11,13 +11,13 @@ from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.learnt import Learnt
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring.told_detection import ToldOtherwise
 from tests.app.driving import apart
 
 DETECTION = Learnt("detection", 0.84, 0.71, 0.94)
 ON = date(2026, 11, 2)
-RECORDS = Observations.of([[35.0, 30.0]], [1], "2024-06-03")
+RECORDS = Records.of([[35.0, 30.0]], [1], "2024-06-03")
 
 
 @pytest.fixture
@@ -31,9 +31,9 @@ def shown(monkeypatch):
         monkeypatch.setattr(learnt.chosen_day, "learnt", lambda _: estimates)
         progress = SimpleNamespace(inspected=inspected)
         monkeypatch.setattr(learnt.chosen_day, "progress", lambda _: progress)
-        monkeypatch.setattr(learnt.chosen_day, "told_otherwise", lambda _: said)
+        monkeypatch.setattr(learnt.chosen_day, "other_detections", lambda _: said)
         monkeypatch.setattr(learnt.chosen_day, "records_known", lambda _: RECORDS)
-        season = SimpleNamespace(taught=lambda: taught)
+        season = SimpleNamespace(earlier_season_note=lambda: taught)
         units, on = UnitsInLanguage(), date(2026, 11, 16)
         learnt.show(SimpleNamespace(open_season=season, units=units, on=on))
         return apart("\n".join(lines[1:])).splitlines()

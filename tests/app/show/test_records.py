@@ -6,7 +6,7 @@ import streamlit as st
 
 from app.show.records import records_until
 from app.state.chosen_units import units
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from tests.app.chosen import a_plot
 
 DAYS = ["2026-11-01", "2026-11-05", "2026-11-09", "NaT"]
@@ -15,7 +15,7 @@ DAYS = ["2026-11-01", "2026-11-05", "2026-11-09", "NaT"]
 @pytest.fixture
 def records():
     here = a_plot().grid.lonlat()[:4]
-    return Observations.of(here, np.array([1, 0, 1, 0], np.int8), np.array(DAYS, "datetime64[D]"))
+    return Records.of(here, np.array([1, 0, 1, 0], np.int8), np.array(DAYS, "datetime64[D]"))
 
 
 @pytest.mark.parametrize(
@@ -41,4 +41,4 @@ def test_records_of_later_days_are_left_out_undated_ones_never(
 def test_records_of_one_day_need_no_slider(records):
     left, said = records_until(records.take(np.array([0])))
     assert (len(left), said) == (1, "1 of 1 records shown (1 with pests, 0 without).")
-    assert records_until(Observations.none())[1] == ""
+    assert records_until(Records.none())[1] == ""

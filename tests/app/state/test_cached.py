@@ -3,8 +3,8 @@
 import numpy as np
 
 from app.state import cached, cached_files, cached_simulations
-from fieldmon.infestation.observations import Observations
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import Records
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.robot import Robot
@@ -12,7 +12,7 @@ from tests.app.chosen import a_plot
 from tests.app.driving import go, metric, opened, tap
 from tests.monitoring.seasons import a_season
 
-PRIOR, NOTHING = PriorSettings(), (Observations.none(), None)
+PRIOR, NOTHING = PriorSettings(), (Records.none(), None)
 
 
 def test_two_windows_on_one_season_see_each_other(season_app):

@@ -10,7 +10,7 @@ from app.show import estate_map
 from app.state import estate, menu, seasons_folder
 from app.state.estate import PlotState
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.monitoring.belief_settings import BeliefSettings
 from fieldmon.plot.local_clock import local_clock
@@ -57,7 +57,7 @@ def test_plants_that_were_only_flagged_are_infested_too(tmp_path, monkeypatch):
     today = local_clock(here.field).today()
     flags = BeliefSettings(treated=False)
     settings = MonitoringSettings(today, belief=flags)
-    kept = Season.create(tmp_path / "s.gpkg", here, Observations.none(), settings)
+    kept = Season.create(tmp_path / "s.gpkg", here, Records.none(), settings)
     kept.record(Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(today)))
     (left,), _ = estate.plots()
     not_found = kept.day_figures(today).expected

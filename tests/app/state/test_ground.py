@@ -7,7 +7,7 @@ import pytest
 
 from app.state import brought_files, ground, kept_ground
 from app.state.kept_ground import Agreement, GroundPicture, GroundTiles
-from fieldmon.infestation.observations import Observations
+from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
 from tests.app.chosen import CORNER, DAY, a_plot, chosen, in_season
 from tests.app.driving import geotiff
@@ -27,7 +27,7 @@ def plot():
 @pytest.fixture
 def season(plot, tmp_path):
     settings = MonitoringSettings(DAY)
-    return in_season(Season.create(tmp_path / "s.gpkg", plot, Observations.none(), settings))
+    return in_season(Season.create(tmp_path / "s.gpkg", plot, Records.none(), settings))
 
 
 def bring(data, name="ground.tif"):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.infestation.records import ABSENT, PRESENT
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.parse.result_words import (
     CLEAN,

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import MultiPolygon, box
 
-from fieldmon.infestation.observations import PRESENT, Observations
+from fieldmon.infestation.records import PRESENT, Records
 from fieldmon.io.import_report import Remedy, Severity, guessed
 from fieldmon.io.readers.nearby import (
     near_plot,
@@ -29,14 +29,14 @@ GRID = rectangle(6, 10, Planting(row_spacing_m=3.0, plant_spacing_m=1.5))
 def records(offset_m, accuracy_m=np.nan):
     lonlat = GRID.frame.lonlat(GRID.xy_m[[7]] + offset_m)
     accuracy = np.full(1, accuracy_m)
-    return Observations.of(lonlat, np.array([PRESENT]), accuracy_m=accuracy)
+    return Records.of(lonlat, np.array([PRESENT]), accuracy_m=accuracy)
 
 
 def test_the_corners_of_the_plot_are_no_records_where_a_file_holds_both():
     field = Field("a", GRID.frame.geometry_lonlat(MultiPolygon([box(-40, -40, 40, 40)])))
     corners = np.array(field.boundary.geoms[0].exterior.coords[:4])
     lonlat = np.concatenate([GRID.lonlat(np.arange(5)), corners])
-    found = Observations.of(lonlat, np.full(9, PRESENT))
+    found = Records.of(lonlat, np.full(9, PRESENT))
     kept, (said,) = of_plot(found, field)
     np.testing.assert_array_equal(kept.lonlat, lonlat[:5])
     assert (said.severity, said.sentence[:9]) == (Severity.DROPPED, "4 records")
@@ -111,6 +111,6 @@ def test_records_on_a_plot_are_those_that_are_measured_to_be(places, lat, lon):
     plot = Field("x", MultiPolygon([box(lon, lat, lon + 0.0005, lat + 0.0005)]))
     lonlat = np.array([(lon + dx, lat + dy) for dx, dy, _ in places])
     accuracy = np.array([a for *_, a in places])
-    records = Observations.of(lonlat, np.full(len(places), PRESENT), accuracy_m=accuracy)
+    records = Records.of(lonlat, np.full(len(places), PRESENT), accuracy_m=accuracy)
     expected = near_plot(records, plot).inside
     np.testing.assert_array_equal(records_on_plot(records, plot).lonlat, expected.lonlat)

@@ -3,7 +3,7 @@
 import pytest
 
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.infestation.observations import ABSENT, PRESENT
+from fieldmon.infestation.records import ABSENT, PRESENT
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.readers.inspection_file.rows import rows_in

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import RecordOptions
 from fieldmon.io.readers.places import NamedPlaces

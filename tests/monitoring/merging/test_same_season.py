@@ -49,7 +49,7 @@ def test_another_season_is_no_copy_of_this_one(path, tmp_path):
         Season(path).merge(Season(other))
     here = Season(path)
     begins = replace(here.settings, begins=BEGINS + timedelta(1))
-    later = Season.create(tmp_path / "later.gpkg", here.plot, here.observations, begins)
+    later = Season.create(tmp_path / "later.gpkg", here.plot, here.records, begins)
     with pytest.raises(FileProblem, match="other on 2026-04-07: they are two seasons") as refused:
         Season(path).merge(later)
     assert str(refused.value).endswith(advice), "what is done about it is the same"

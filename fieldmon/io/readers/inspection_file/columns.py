@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.compute.ranges import DETECTS
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, ObservationError, SettingError
-from fieldmon.infestation.observations import ABSENT, UNKNOWN
+from fieldmon.infestation.records import ABSENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find, is_confidence, is_id, is_of_rows, plain, recognised
 from fieldmon.io.parse.result_words import tells_infestation

@@ -35,7 +35,7 @@ def side_of(hectares: float) -> int:
 
 @dataclass(frozen=True)
 class StartUp:
-    """Who is infested on the first morning, and how much of it is known.
+    """Which plants are infested on the first morning, and how much of it is known.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class OpenChoices:
     Parameters
     ----------
     start
-        Who is infested at first.
+        Which plants are infested at first.
     spread
         Chance a night, and who infects whom: ``each`` neighbour (per pair), ``one`` neighbour or
         ``all`` of them (per plant).

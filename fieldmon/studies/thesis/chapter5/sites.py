@@ -1,4 +1,4 @@
-"""Where chapter 5 is played: squares of the thesis, or any plot, and who is infested there."""
+"""Where chapter 5 is played: squares of the thesis, or any plot; which plants are infested."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def square(hectares: float) -> Site:
 
 
 def first_morning(site: Site, start: StartUp, streams: RandomStreams) -> Start:
-    """Draw who is infested and what is believed; streams ``start`` and ``records``.
+    """Draw which plants are infested and what is believed; streams ``start`` and ``records``.
 
     On a site with a chance map each plant is drawn by its own chance, with the mean that `start`
     names, and the map is what is believed. Elsewhere clusters grow as `start` says; believed is

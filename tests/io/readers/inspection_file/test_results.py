@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.import_report import Severity
 from fieldmon.io.readers.inspection_file.columns import columns_of
 from fieldmon.io.readers.inspection_file.results import results_in

@@ -6,7 +6,7 @@ import pytest
 from shapely import LineString, MultiPoint, Point
 
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.readers.inspection_file.rows import rows_in, rows_of
 from fieldmon.io.readers.inspection_options import InspectionOptions

@@ -6,9 +6,9 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.observations import ABSENT, PRESENT, Observations
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.records import ABSENT, PRESENT, Records
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.travel import Aisles
@@ -86,9 +86,7 @@ def test_a_crowded_margin_does_not_hang():
 def test_where_records_exist_they_seed_the_start():
     grid = rectangle(30, 30)
     field = Field("plot", grid.frame.geometry_lonlat(grid.drivable_m))
-    records = Observations.of(
-        grid.lonlat(np.array([100, 800])), np.array([PRESENT, ABSENT], np.int8)
-    )
+    records = Records.of(grid.lonlat(np.array([100, 800])), np.array([PRESENT, ABSENT], np.int8))
     day = np.datetime64("2026-06-01", "D")
     chance = prior_chance(grid, field, records, day, PriorSettings())
     site = Site("plot", Aisles.of(grid), field, chance)

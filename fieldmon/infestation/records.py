@@ -48,7 +48,7 @@ def _column(name: str, given: object) -> NDArray[np.generic]:
 
 
 @dataclass(frozen=True, eq=False)
-class Observations:
+class Records:
     """Dated pest records at positions, one array entry a record, in the file's order.
 
     Parameters
@@ -73,8 +73,8 @@ class Observations:
     >>> import fieldmon as fm, numpy as np
     >>> lonlat = np.array([[35.1501, 30.3601], [35.1504, 30.3602]])
     >>> day = np.array(["2026-11-16", "NaT"], "datetime64[D]")
-    >>> fm.Observations.of(lonlat, np.array([1, 0]), day, count=np.array([12.0, np.nan]))
-    <Observations: 2 records>
+    >>> fm.Records.of(lonlat, np.array([1, 0]), day, count=np.array([12.0, np.nan]))
+    <Records: 2 records>
     """
 
     lonlat: NDArray[np.float64]
@@ -87,19 +87,19 @@ class Observations:
     leaves_sampled: NDArray[np.float64]
 
     def __post_init__(self) -> None:
-        must_hold_kinds(self, "The observations'")
+        must_hold_kinds(self, "The records'")
         lonlat_of("Positions of records", self.lonlat, _READ, nowhere=True)
         m = len(self.lonlat)
         for name, values in vars(self).items():
             if len(values) != m:
                 raise ObservationError(
-                    f"All columns of the observations must have {m} entries, "
+                    f"All columns of the records must have {m} entries, "
                     f"but {name} has {len(values)}."
                 )
             values.setflags(write=False)
 
     def __repr__(self) -> str:
-        return f"<Observations: {counted(len(self), 'record')}>"
+        return f"<Records: {counted(len(self), 'record')}>"
 
     def __len__(self) -> int:
         """Return the number of records."""
@@ -115,7 +115,7 @@ class Observations:
         >>> import numpy as np
         >>> import fieldmon as fm
         >>> days = np.array(["2024-08-11", "2024-06-03", "NaT"], "datetime64[D]")
-        >>> fm.Observations.of(np.full((3, 2), 30.0), np.ones(3, np.int8), days).in_words()
+        >>> fm.Records.of(np.full((3, 2), 30.0), np.ones(3, np.int8), days).in_words()
         '3 records of 2024-06-03 to 2024-08-11, 1 of them without a date'
         """
         n, days = counted(len(self), "record"), self.day[~np.isnat(self.day)]
@@ -152,8 +152,8 @@ class Observations:
         present: NDArray[np.int8],
         day: NDArray[np.datetime64] | None = None,
         **columns: NDArray[np.generic],
-    ) -> Observations:
-        """Return observations with every column that is not given unknown.
+    ) -> Records:
+        """Return records with every column that is not given unknown.
 
         Parameters
         ----------
@@ -203,16 +203,16 @@ class Observations:
         _must_make_sense(given)
         return cls(points, results.astype(np.int8), days, **(unknown | given))  # type: ignore[arg-type]
 
-    def take(self, which: NDArray[np.generic]) -> Observations:
+    def take(self, which: NDArray[np.generic]) -> Records:
         """Return the records at `which` indices, or of a mask ``(k,)``.
 
         Raise `SettingError` if `which` is neither.
         """
         picked = entries_of("Records", which, len(self))
-        return Observations(**{name: values[picked].copy() for name, values in vars(self).items()})
+        return Records(**{name: values[picked].copy() for name, values in vars(self).items()})
 
     @classmethod
-    def none(cls) -> Observations:
+    def none(cls) -> Records:
         """Return no records at all."""
         return cls.of(np.empty((0, 2)), np.empty(0, np.int8))
 
@@ -223,7 +223,7 @@ class UsableRecords:
 
     Parameters
     ----------
-    observations
+    records
         Records that say infested or clean, not later than the day; undated ones included.
     undecided, future, undated, old
         How many were left out because they say neither, because they are of a later day; and how
@@ -232,7 +232,7 @@ class UsableRecords:
         How old that is, and how old undated ones are taken to be.
     """
 
-    observations: Observations
+    records: Records
     undecided: int
     future: int
     undated: int
@@ -272,7 +272,7 @@ def _must_make_sense(given: dict[str, Any]) -> None:
 
 
 def usable(
-    observations: Observations, on_day: np.datetime64, prior: PriorSettings | None = None
+    records: Records, on_day: np.datetime64, prior: PriorSettings | None = None
 ) -> UsableRecords:
     """Return the records that speak on a day; the caller tells of the others.
 
@@ -281,11 +281,11 @@ def usable(
     """
     prior = prior or PriorSettings()
     today = on_day.astype("datetime64[D]")
-    undecided = observations.present == UNKNOWN
-    future = ~undecided & (observations.day > today)
-    kept = observations.take(~undecided & ~future)
+    undecided = records.present == UNKNOWN
+    future = ~undecided & (records.day > today)
+    kept = records.take(~undecided & ~future)
     return UsableRecords(
-        observations=kept,
+        records=kept,
         undecided=int(np.count_nonzero(undecided)),
         future=int(np.count_nonzero(future)),
         undated=int(np.count_nonzero(np.isnat(kept.day))),
@@ -295,8 +295,8 @@ def usable(
 
 
 def must_be_records(given: object) -> None:
-    """Raise `SettingError` unless this is `Observations`, or None: there are none."""
+    """Raise `SettingError` unless this is `Records`, or None: there are none."""
     must_be(
-        "Records must be Observations", given, (Observations, NoneType),
+        "Records must be fm.Records", given, (Records, NoneType),
         "Read them with read_records(path, near=plot).",
     )  # fmt: skip

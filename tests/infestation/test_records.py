@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import ObservationError
-from fieldmon.infestation.observations import ABSENT, PRESENT, UNKNOWN, Observations, usable
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.record_kernel import record_chance
+from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN, Records, usable
 from tests.infestation.placed_records import GRID, MIDDLE, TODAY, at_middle, together
 
 
 def test_columns_that_are_not_given_are_unknown():
-    records = Observations.of([[35.0, 30.0], [35.1, 30.1]], [PRESENT, ABSENT])
+    records = Records.of([[35.0, 30.0], [35.1, 30.1]], [PRESENT, ABSENT])
     assert records.lonlat.shape == (2, 2)
     assert records.present.dtype == np.int8
     assert np.isnat(records.day).all()
@@ -23,26 +23,26 @@ def test_columns_that_are_not_given_are_unknown():
 
 def test_one_day_is_that_of_all():
     for day in ("2026-11-18", np.datetime64("2026-11-18")):
-        records = Observations.of([[35.0, 30.0]] * 2, [PRESENT, ABSENT], day)
+        records = Records.of([[35.0, 30.0]] * 2, [PRESENT, ABSENT], day)
         assert records.day.astype(str).tolist() == ["2026-11-18"] * 2
 
 
 def test_columns_of_other_lengths_are_refused_by_name():
     with pytest.raises(ObservationError, match="2 entries, but count has 3"):
-        Observations.of([[35.0, 30.0]] * 2, [PRESENT, ABSENT], count=np.zeros(3))
+        Records.of([[35.0, 30.0]] * 2, [PRESENT, ABSENT], count=np.zeros(3))
 
 
 def test_some_of_them_are_taken_by_mask_or_by_number_in_that_order():
-    records = Observations.of(
+    records = Records.of(
         [[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]], [1, 0, -1], count=np.array([7.0, 8.0, 9.0])
     )
     assert records.take(np.array([2, 0])).count.tolist() == [9.0, 7.0]
     assert records.take(records.present == ABSENT).lonlat.tolist() == [[3.0, 4.0]]
-    assert len(Observations.none()) == 0
+    assert len(Records.none()) == 0
 
 
 def test_a_record_is_of_a_plot_within_100_m_or_twice_its_own_accuracy():
-    records = Observations.of(
+    records = Records.of(
         np.zeros((3, 2)), np.zeros(3, np.int8), accuracy_m=np.array([np.nan, 5.0, 80.0])
     )
     assert records.reach_m().tolist() == [100.0, 100.0, 160.0]
@@ -59,15 +59,15 @@ def test_a_record_of_today_is_not_of_the_future_at_any_hour():
 
 
 def test_records_that_say_neither_and_those_of_tomorrow_are_left_out_and_told_of():
-    observations = together(
+    records = together(
         at_middle(PRESENT, 3),
         at_middle(UNKNOWN, 3),
         at_middle(UNKNOWN, -3),
         at_middle(PRESENT, -1),
-        Observations.of(GRID.lonlat()[:2], [PRESENT, ABSENT]),
+        Records.of(GRID.lonlat()[:2], [PRESENT, ABSENT]),
     )
-    kept = usable(observations, TODAY)
-    assert len(kept.observations) == 3
+    kept = usable(records, TODAY)
+    assert len(kept.records) == 3
     assert (kept.undecided, kept.future, kept.undated) == (2, 1, 2)
     assert [sentence.split()[0] for sentence in kept.messages()] == ["2", "1", "2"]
     assert not usable(at_middle(PRESENT), TODAY).messages()
@@ -76,7 +76,7 @@ def test_records_that_say_neither_and_those_of_tomorrow_are_left_out_and_told_of
 @pytest.mark.parametrize(("days", "old"), [(0, 0), (70, 0), (71, 1), (300, 1), (10_000, 1)])
 def test_records_so_old_that_they_hardly_count_are_told_of(days, old):
     kept = usable(at_middle(PRESENT, days), TODAY)
-    assert (kept.old, len(kept.observations)) == (old, 1)
+    assert (kept.old, len(kept.records)) == (old, 1)
     said = "1 of the records are more than 70 days old and hardly count."
     assert kept.messages() == (said,)[:old]
 
@@ -109,7 +109,7 @@ def test_how_old_that_is_follows_from_the_half_life_of_records():
 def test_numbers_that_cannot_be_are_refused(present, columns, said):
     given = {name: np.array([value]) for name, value in columns.items()}
     with pytest.raises(ObservationError, match=said):
-        Observations.of(np.array([[35.15, 30.36]]), np.array([present]), **given)
+        Records.of(np.array([[35.15, 30.36]]), np.array([present]), **given)
 
 
 @pytest.mark.parametrize(
@@ -122,7 +122,7 @@ def test_numbers_that_cannot_be_are_refused(present, columns, said):
     ],
 )
 def test_records_are_said_with_their_days(days, said):
-    records = Observations.of(
+    records = Records.of(
         [[35.0, 30.0]] * len(days), [1] * len(days), np.array(days, "datetime64[D]")
     )
     assert records.in_words() == said

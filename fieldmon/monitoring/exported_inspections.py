@@ -19,7 +19,7 @@ import numpy as np
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem, ObservationError
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT, IDENTIFYING
-from fieldmon.infestation.observations import PRESENT
+from fieldmon.infestation.records import PRESENT
 from fieldmon.io.options import source_name
 from fieldmon.io.readers.inspection_file.inspection_rows import is_mark
 from fieldmon.monitoring import inspection_table, repeated_recordings

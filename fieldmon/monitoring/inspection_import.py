@@ -166,6 +166,7 @@ def _dated_on_plot(
     from fieldmon.io.readers.inspections import dated, on_plot  # noqa: PLC0415 - as above
 
     called = (season.plot.field.name, season.path.stem)
+    called += (f"{called[0]} ({called[1]})",)  # in a table of several seasons, see `called_apart`
     return dated(on_plot(rows, season.plot.grid, options, called))
 
 

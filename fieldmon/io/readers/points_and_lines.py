@@ -146,8 +146,8 @@ def _one_of_each(
     if (column := _tells_faces(found, here, kept)) is not None:
         said = worded(
             "Column {column!r} names both faces of {n} {n:plant|plants}, which stand in one place: "
-            "one of each was kept. To inspect both, say so: *Inspect both faces of each row* in "
-            "the app, --both-faces in a command.",
+            "one of each was kept. To have both, choose: Inspect both faces of each row "
+            "(--both-faces).",
             column=column,
             n=n_doubles,
         )

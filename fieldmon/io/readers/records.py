@@ -147,7 +147,7 @@ def _by_face(
     column, face = named
     said = worded(
         "Column {column!r} names faces of plants: it tells records of one plant apart, but each "
-        "counts for the whole plant. Only inspections are of a face: fieldmon record",
+        "counts for the whole plant. Only inspections are of a face.",
         column=column,
     )
     return 2 * place + (face == 2), [doubtful(said)]

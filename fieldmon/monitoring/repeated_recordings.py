@@ -158,7 +158,7 @@ def _who_saw(
 def _may_add(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
     """Return ``(k,)`` which note anything, say what is left open of any held, or are another's."""
     people = {person_key(str(one)) for one in {*brought.who, *held.who}} - {""}
-    may = np.full(len(brought), len(people) > 1) & (brought.who != "")
+    may: NDArray[np.bool_] = np.full(len(brought), len(people) > 1) & (brought.who != "")
     for one in BESIDE:
         if one.role == "noted" or not one.says(getattr(held, one.name)).all():
             may |= one.says(getattr(brought, one.name)).astype(np.bool_)

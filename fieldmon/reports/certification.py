@@ -147,8 +147,11 @@ def certification_report(
     with ExitStack() as still:
         for season in seasons:
             still.enter_context(season.one_moment())
-        named = zip(seasons, called_apart(seasons), strict=True)
-        records = [_PlotRecord.of(season, called, until, units) for season, called in named]
+        called = called_apart(seasons)
+        records = [
+            _PlotRecord.of(season, name, until, units)
+            for season, name in zip(seasons, called, strict=True)
+        ]
         begins = min(one.season.settings.begins for one in records)
         on = max(one.on for one in records)
         title = worded(words.CERT_TITLE, begins=units.day(begins), day=units.day(on))

@@ -913,6 +913,10 @@ RESULT, COUNT, RESULTS_OF = "Result", "Count", {
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
 NOTED = Plural("{n} note added to what was known.", "{n} notes added to what was known.")
 COMPLETED = Plural("{n} known inspection was completed.", "{n} known inspections were completed.")
+BY_A_SECOND = Plural(
+    "{n} known inspection was made by a second person, too: it counts once.",
+    "{n} known inspections were made by a second person, too: they count once.",
+)
 RECORDED_OF = "Recorded for {days}, not for {day}."
 RECORD_REST = (
     "Say how many stops were done, from the first: they are recorded as clean, unless marked as "

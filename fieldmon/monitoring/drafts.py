@@ -59,6 +59,7 @@ class Draft(NamedTuple):
     why: str = ""
     known: Inspections | None = None
     is_note: bool = False
+    fills: bool = False
 
     @property
     def sentence(self) -> str:
@@ -104,9 +105,9 @@ def read(
                 continue
             inspection_table.rows(one, *plot, settings, (0, ""))  # whether it fits the season
             if said_before(one, held).any():
-                for more in repeated_recordings.additions(one, held):
+                for more in repeated_recordings.additions(db, one, held):
                     known = held.take(np.array([more.held]))
-                    drafts.append(Draft(row, one, "", known, more.is_note))
+                    drafts.append(Draft(row, one, "", known, more.is_note, more.fills))
                 continue
             contradictions(one, held).refuse(plot[0])
         except (FieldmonError, ValueError, TypeError) as error:

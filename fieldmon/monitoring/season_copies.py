@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from functools import cached_property
 from itertools import chain
@@ -177,6 +178,18 @@ def _recorded_twice(counting: Sequence[KeptTreatment], taken: MergedCopy) -> lis
         cautions.same_plants_twice(by_number[one], by_number[other]) for one, other in taken.alike
     )
     return [one for one in said if one]
+
+
+def called_apart(seasons: Sequence[SeasonCopies]) -> tuple[str, ...]:
+    """Return what the plot of each season is called, with its file where two are called alike."""
+    names = [season.plot.field.name for season in seasons]
+    files = [season.path.stem for season in seasons]
+    twice = Counter(zip(names, files, strict=True))
+    often, called = Counter(names), []
+    for season, name, file in zip(seasons, names, files, strict=True):
+        at = f"{season.path.absolute().parent.name}/{file}" if twice[name, file] > 1 else file
+        called.append(f"{name} ({at})" if often[name] > 1 else name)
+    return tuple(called)
 
 
 def of_one_plot(

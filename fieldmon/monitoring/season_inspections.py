@@ -255,17 +255,17 @@ class SeasonInspections(SeasonCorrections):
         new = inspection_table.store(db, inspection_table.rows(told, *how))
         news, told = told.take(new), inspections.take(known).and_those(told.take(~new))
         held = held.and_those(news)
-        more = repeated_recordings.additions(told, held)
+        more = repeated_recordings.additions(db, told, held)
         told = told.take(np.array([one.brought for one in more], np.intp))
         made = inspection_table.rows(told, *how)
         repeated_recordings.keep(db, held, zip([one.held for one in more], made, strict=True))
         by = ", ".join(sorted({*map(str, news.who), *map(str, told.who)} - {""}))
         batches.name(db, batch, by)
         batches.end(db, batch, len(news) + len(more), grows=into is not None)
-        n_notes = sum(one.is_note for one in more)
+        said_more = [(one.is_note, one.fills) for one in more]
         done = Recorded(
             batch if len(news) or more else None, len(news), len(inspections) - len(news),
-            noted=n_notes, filled=len(more) - n_notes,
+            **batches.n_more(said_more),
         )  # fmt: skip
         self._log_seen(db, news, (source, by), done, who)
         return done, news
@@ -453,8 +453,8 @@ class SeasonInspections(SeasonCorrections):
         news = drafts.keep(db, taken, *said)
         batches.end(db, batch, len(taken))
         known = [one for one in taken if one.known is not None]
-        n_notes = sum(one.is_note for one in known)
-        done = Recorded(batch, len(news), len(known), noted=n_notes, filled=len(known) - n_notes)
+        said_more = [(one.is_note, one.fills) for one in known]
+        done = Recorded(batch, len(news), len(known), **batches.n_more(said_more))
         self._log_seen(db, news, (drafts.SOURCE, ""), done)
         # there are as many rows as before: all is read again
         days = [one.inspection.date[0].item() for one in taken if one.inspection is not None]

@@ -13,6 +13,8 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.plot.grid import block_number, plant_numbers, row_in_block
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.field import Field
@@ -29,6 +31,12 @@ _NUMBER = re.compile(r"^(?!-?\d+[.,]\d*[1-9]\d*$)(?:.*\D)??0*(\d{1,6})(?:\.0+)?$
 # a name that is nothing else, and any number in a name
 _PLAIN = re.compile(r"\s*\d+(?:\.0+)?\s*$")
 _DIGITS = re.compile(r"(?<!\d)0*(\d{1,6})(?!\d)")
+
+
+def faces_called(words: Iterable[str]) -> NDArray[np.int8]:
+    """Return which face of its plant each word means ``(n,)``: 1 or 2, and 0 where it is none."""
+    bare = (word.strip().casefold().removesuffix(".0") for word in words)
+    return np.array([FACES.get(word, 0) for word in bare], np.int8)
 
 
 class PlantNames(NamedTuple):

@@ -59,6 +59,8 @@ def test_two_seasons_of_one_plot_begun_on_one_day_are_no_copies(run, season, tmp
         code, _, err, _ = run(words[0], season, flies, *words[1:])
         assert code == 0, err
         assert "season and flies are 2 seasons of one plot: each" in err
+    called = {next(iter(row.values())) for row in table(tmp_path / "all.csv")}
+    assert called == {"Nursery (flies)"}, "their files tell plots of one name apart"
     before = season.read_bytes()
     code, _, err, _ = run("merge", season, flies)
     assert code == 2

@@ -448,8 +448,12 @@ PLAN_ALL_LEAD = Plural(
 )
 PLAN_ALL_ALSO = "Also plots seen in the last 2 days"
 PLAN_ALL_NONE = (
-    "No plot is due today: every one was seen in the last 2 days. Tick the box above to plan them "
-    "all the same."
+    "No plot is due today: below is why. The box above plans those seen in the last 2 days all the "
+    "same."
+)
+PLAN_ALL_WHEN = "{day}, from {start}."
+PLAN_ALL_LATE = (
+    "It is {now} already: the times below are those of a whole day, as on Today."
 )
 PLAN_ALL_RULE = (
     "Plots come in the order of the infested plants expected there. Each goes to whoever then has "

@@ -263,7 +263,8 @@ export class MapPage {
   // not under the finger of who sets corners
   resized() {
     this.boxes = null;
-    if (this.deck && !this.moved && !(this.drawing.outlines && this.drawing.points.length)) this.deck.setProps({ initialViewState: { ...this.fit(), maxZoom: 24 } });
+    if (this.drive.leads()) this.drawLayers(); // who follows a robot stays near it
+    else if (this.deck && !this.moved && !(this.drawing.outlines && this.drawing.points.length)) this.deck.setProps({ initialViewState: { ...this.fit(), maxZoom: 24 } });
   }
 
   // -- drawing

@@ -9,6 +9,14 @@ page();
 globalThis.matchMedia = () => ({ matches: false });
 const { MapPage } = await import("../src/index.js");
 
+test("a window that changes its size shows the robot again, or the whole plot if there is none", () => {
+  const drawn = [], map = Object.assign(Object.create(MapPage.prototype), {
+    deck: { setProps: () => drawn.push("plot") }, drawLayers: () => drawn.push("robot"), fit: () => ({}), drawing: {},
+  });
+  for (const leads of [true, false]) { map.drive = { leads: () => leads }; map.resized(); }
+  assert.deepEqual(drawn, ["robot", "plot"]);
+});
+
 test("once there is no drive the whole plot is shown, north up, at once and until somebody moves it", () => {
   const wished = [], FIT = { longitude: 35, latitude: 30, zoom: 17, bearing: 0, pitch: 0 };
   // the page's own parts are not needed for where it is seen from

@@ -101,9 +101,8 @@ def _crew(usual: EstateCrew) -> EstateCrew:
 
 
 def _say(made: SharedPlots, not_among: Sequence[PlotLeftOut] = ()) -> None:
-    routes = [one.route for one in made.turns]
-    plants = sum(len(route) for route in routes)
-    finds = sum(route.expected_found for route in routes)
+    plants = sum(one.plants for one in made.turns)
+    finds = sum(one.route.expected_found for one in made.turns)
     with st.container(key="lead"):
         lead = texts.PLAN_ALL_LEAD.format(
             plants=number(plants, ","),

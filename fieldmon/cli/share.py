@@ -264,7 +264,7 @@ def _write(
         written = [path for some in paths for path in some]
         files[" ".join(dict.fromkeys(path.name for path in written))] = one
     write_whole(folder / PLAN_TABLE, plan_table(files, made.left_out, made.free))
-    plants = sum(len(one.route) for one in routes)
+    plants = sum(one.plants for one in routes)
     typer.echo(
         f"{counted(len(routes), 'plot')}, {counted(plants, 'plant')}. Routes and {PLAN_TABLE} in "
         f"{folder}"

@@ -73,6 +73,11 @@ class EstateRoute:
         return grid_clock(self.route.aisles.grid).after(self.begins, round(self.route.end_s))
 
     @property
+    def plants(self) -> int:
+        """Return how many plants are inspected: both faces of one are one."""
+        return len(np.unique(self.route.aisles.grid.vine[self.route.plant]))
+
+    @property
     def notes(self) -> RouteNotes:
         """Return what the route's file says beside it."""
         return RouteNotes(self.plot, self.sampler, self.begins, self.who)
@@ -237,7 +242,7 @@ def plan_table(
         hours = (when.isoformat(timespec="seconds") for when in (one.begins, one.ends))
         finds = round(one.route.expected_found, 2)
         names, said = map(safe_cell, (one.plot, one.who)), safe_cell(" ".join(one.closed))
-        table.writerow((file, *names, *hours, len(one.route), finds, said, ""))
+        table.writerow((file, *names, *hours, one.plants, finds, said, ""))
     table.writerows(
         ("", safe_cell(one.plot), *[""] * 5, *map(safe_cell, (" ".join(one.closed), one.why)))
         for one in left_out

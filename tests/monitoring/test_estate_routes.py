@@ -32,7 +32,7 @@ def a_route(plot):
 
 
 class SevenStops:
-    end_s, expected_found, aisles = 3599.7, 1.234, a_plot().aisles
+    end_s, expected_found, aisles, plant = 3599.7, 1.234, a_plot().aisles, np.arange(7)
 
     def __len__(self):
         return 7
@@ -42,6 +42,12 @@ def test_plots_of_one_name_have_files_of_their_own():
     assert [*stems([a_route("a/b"), a_route("a/b"), a_route("מטע")])] == [
         "01-a_b", "02-a_b", "03-מטע",
     ]  # fmt: skip
+
+
+def test_both_faces_of_a_plant_are_one_plant_of_a_round():
+    grid = a_plot(faces=2).grid
+    route = SimpleNamespace(plant=np.arange(len(grid)), aisles=SimpleNamespace(grid=grid))
+    assert 2 * replace(a_route("a"), route=route).plants == len(grid)
 
 
 def test_a_way_to_the_next_plot_that_nobody_drives_in_its_minutes_is_said():

@@ -33,9 +33,7 @@ def show() -> None:
     turns = sharing_plots.show(plots, problems).turns if sharing_plots.is_on() else ()
     # those with work come first, in the order of the day
     planned = {id(turn.state): (turn.begins, turn.number) for turn in turns}
-    plots = sorted(
-        plots, key=lambda one: (id(one) not in planned, planned.get(id(one), ()))
-    )
+    plots = sorted(plots, key=lambda one: (id(one) not in planned, planned.get(id(one), ())))
     field_map.want(estate_map.content(plots, turns), MapAnswers(tapped=partial(_tapped, plots)))
     table, config = estate_table.of(plots, turns)
     st.dataframe(

@@ -453,9 +453,7 @@ PLAN_ALL_NONE = (
     "same."
 )
 PLAN_ALL_WHEN = "{day}, from {start}."
-PLAN_ALL_LATE = (
-    "It is {now} already: the times below are those of a whole day, as on Today."
-)
+PLAN_ALL_LATE = "It is {now} already: the times below are those of a whole day, as on Today."
 PLAN_ALL_RULE = (
     "Plots come in the order of the infested plants expected there. Each goes to whoever then has "
     "most time for it, and everybody shares his hours among his plots by what is expected. A plot "
@@ -1158,8 +1156,8 @@ DRIVE_NO_BROKER = (
     "broker*."
 )
 DRIVE_NOT_LET_IN = (
-    "The MQTT broker at {where} does not let us in. Say it in the box *MQTT broker* as it knows you: "
-    "mqtt://USER:PASSWORD@HOST:PORT."
+    "The MQTT broker at {where} does not let us in. Say it in the box *MQTT broker* as it knows "
+    "you: mqtt://USER:PASSWORD@HOST:PORT."
 )
 DRIVE_NOT_HEARD = "The robot was not heard yet. Is it on, and are its names right?"
 DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago."

@@ -252,8 +252,8 @@ class UsableRecords:
                 "{n} of the records {n:is|are} of a later day and {n:is|are} left out.", n=later
             ),
             worded(
-                "{n} of the records {n:has|have} no date and {n:counts|count} as {days:g} days old, whatever day is "
-                "planned.",
+                "{n} of the records {n:has|have} no date and {n:counts|count} as {days:g} days "
+                "old, whatever day is planned.",
                 n=self.undated,
                 days=self.prior.undated_days,
             ),

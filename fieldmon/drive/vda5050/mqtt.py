@@ -9,8 +9,8 @@ import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
-from fieldmon.drive.vda5050.versions import USUAL_VERSION, VERSIONS
 from fieldmon.compute.wording import worded
+from fieldmon.drive.vda5050.versions import USUAL_VERSION, VERSIONS
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:

@@ -90,15 +90,16 @@ def is_over(choices: Choices, plan: DayPlan) -> bool:
 
 def plan_in_short(plan: DayPlan) -> str:
     """Return how many plants there are to inspect, and how long it takes."""
-    return in_short(len(plan.route), plan.route.end_s / 3600)
+    return in_short(plan.scene.grid, len(plan.route), plan.route.end_s / 3600)
 
 
-def in_short(plants: int, hours_h: float, people: int = 1) -> str:
-    """Return so many plants and hours in words, of several people their hours added up."""
+def in_short(grid: PlantGrid, plants: int, hours_h: float, people: int = 1) -> str:
+    """Return so many plants, or faces, and hours in words, of several people added up."""
     time = hours(hours_h)
     if people > 1:
         time = texts.HOURS_IN_ALL.format(hours=time)
-    return listed([texts.PLANTS_COUNTED.format(n=plants), time])
+    counted = texts.FACES_COUNTED if grid.has_faces else texts.PLANTS_COUNTED
+    return listed([counted.format(n=plants), time])
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:
@@ -107,8 +108,11 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
     taken = assumptions.of(choices)
     rows, speed = ("row_spacing_m", "plant_spacing_m"), "speed_m_s"
     for_finds = (*rows, "background_chance", "edge_chance", "rate_per_day", "detects", "treated")
+    to_inspect = texts.PLANTS_TO_INSPECT
+    if choices.plot.grid.has_faces:
+        to_inspect = texts.FACES_TO_INSPECT
     with st.container(horizontal=True):
-        st.metric(mark(texts.PLANTS_TO_INSPECT, taken, rows),
+        st.metric(mark(to_inspect, taken, rows),
                   f"{number(len(route), ',')} / {number(n, ',')}", width="content")  # fmt: skip
         st.metric(mark(texts.TIME, taken, (*rows, speed, "gate")), hours(route.end_s / 3600),
                   width="content")  # fmt: skip

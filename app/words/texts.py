@@ -129,6 +129,7 @@ PRESSED_BEFORE = (
     "*{button}* was pressed before the plot or the day just chosen was shown, so nothing was done. "
     "Press it again for what is shown now."
 )
+FACES_TO_INSPECT = "Faces to inspect"
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
 ASSUMED = "\\* assumed: {what}."
 ASSUMED_WHAT = {
@@ -448,9 +449,11 @@ PLAN_ALL_LEAD = Plural(
 )
 PLAN_ALL_ALSO = "Also plots seen in the last 2 days"
 PLAN_ALL_NONE = (
-    "No plot is due today: every one was seen in the last 2 days. Tick the box above to plan them "
-    "all the same."
+    "No plot is due today: below is why. The box above plans those seen in the last 2 days all the "
+    "same."
 )
+PLAN_ALL_WHEN = "{day}, from {start}."
+PLAN_ALL_LATE = "It is {now} already: the times below are those of a whole day, as on Today."
 PLAN_ALL_RULE = (
     "Plots come in the order of the infested plants expected there. Each goes to whoever then has "
     "most time for it, and everybody shares his hours among his plots by what is expected. A plot "
@@ -478,6 +481,7 @@ TO_ROUTE = "Show today's route"
 
 # -- today
 PLANTS_COUNTED = Plural("{n:,} plant", "{n:,} plants")
+FACES_COUNTED = Plural("{n:,} face", "{n:,} faces")
 BEGIN_TITLE = "Keep this season"
 BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
@@ -1151,6 +1155,14 @@ DRIVE_BROKER, DRIVE_MANUFACTURER, DRIVE_SERIAL = "MQTT broker", "Manufacturer", 
 DRIVE_VDA = "Version of VDA 5050"
 DRIVE_WATCH, DRIVE_WATCH_STOP = "Watch", "Stop watching"
 DRIVE_LAG = "Heard {seconds} s ago; what the map shows is up to a second older."
+DRIVE_NO_BROKER = (
+    "No MQTT broker answers at {where}. Start one there, or say where it is in the box *MQTT "
+    "broker*."
+)
+DRIVE_NOT_LET_IN = (
+    "The MQTT broker at {where} does not let us in. Say it in the box *MQTT broker* as it knows "
+    "you: mqtt://USER:PASSWORD@HOST:PORT."
+)
 DRIVE_NOT_HEARD = "The robot was not heard yet. Is it on, and are its names right?"
 DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago."
 DRIVE_PAUSED = "The robot is paused, or driven by hand."
@@ -1162,7 +1174,12 @@ DRIVE_MADE_UP = (
     "Once this tab is closed the drive waits, and is given up after two minutes."
 )
 DRIVE_SHARE = "Infested plants (%)"
+DRIVE_BELIEVES = "*Infested plants* begin as the season believes on {day}."
 DRIVE_RUN = "Drive the day"
+DRIVE_DONE = Plural(
+    "Driven: {n:,} stop, {found:,} found, {time}.", "Driven: {n:,} stops, {found:,} found, {time}."
+)
+DRIVE_STOPPED = "The drive was stopped: its day is thrown away, and nothing of it is kept."
 DRIVE_PROGRESS = "{share} % of the day driven"
 DRIVE_FILE = "Bag (.mcap) or stops (.stops.csv) that `fieldmon drive` wrote on this plot"
 DRIVE_BELIEVED = (
@@ -1174,7 +1191,7 @@ RUN, STOP, GO_ON = "Compare", "Stop", "Go on"
 COMPARE_PROGRESS = "{done} of {total} seasons simulated"
 COMPARE_EMPTY = "Choose and press Compare. Results appear as they come."
 TOO_MANY = "Compare 1 to {most} strategies at once, but these are {n}. Choose fewer."
-BEST, NO_DIFFERENCE = "best", "no clear difference"
+BEST, NO_DIFFERENCE, EVEN = "best", "no clear difference", "even"
 WORSE = "{percent:+.0f} % loss ({low:+.0f} to {high:+.0f})"
 ONE_SEASON = "(one season: no interval)"
 INTERVAL_OF = "{value} ({low} to {high})"
@@ -1192,6 +1209,7 @@ VERDICT = (
 VERDICT_ONE = (
     "One season so far: **{best}** is ahead of {second}. That tells little; more would tell."
 )
+VERDICT_EVEN = "**{names}** are even: {loss:,.0f} infested plant-days each."
 VERDICT_TIED = (
     "**{best}** comes out best, but not clearly better than {second}: the 95 % interval of the "
     "difference holds 0. More seasons would tell."

@@ -1249,7 +1249,8 @@ def test_on_a_phone_two_taps_cut_the_plot_into_blocks(page, address):
 
 def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up(page, address):
     page.goto(f"{address}/ahead?part=drive")
-    rest(page)
+    still(page)
+    plan = view(page)
     page.get_by_role("button", name=texts.DRIVE_RUN).click()
     bar = page.locator(f"{MAP} .drive[data-now]")
     bar.wait_for(timeout=120_000)
@@ -1278,6 +1279,10 @@ def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up
     assert len(places) == 1, "it stands while it looks"
     assert [one["found"] for one in standing] == [0, 0, 1]
     becomes(page, lambda image: red(image) > red(before) + 100, "the find")
+    assert view(page)["bearing"] != 0
+    page.get_by_role("radio", name=texts.DRIVE_SOURCES["recorded"]).click()
+    # no robot is shown any more: the whole plot, and north is up
+    until(lambda: view(page) == plan, within_s=30.0, every_s=0.2)
     assert asked_of_the_world(page, address) == []
     assert page.complaints == []
 

@@ -81,9 +81,7 @@ class SeasonInspections(SeasonCorrections):
         """Return a day's inspections of plants that were both clean and found on it."""
         return contradicting(self.history.inspections.on(on))
 
-    def contradiction_lines(
-        self, on: Day, named: Callable[[str], str] = str
-    ) -> tuple[Worded, ...]:
+    def contradiction_lines(self, on: Day, named: Callable[[str], str] = str) -> tuple[Worded, ...]:
         """Return a line for each such plant `on` a day: who says what; `named` writes a name."""
         return contradiction_lines(self.history.inspections.on(on), self.plot.grid, named)
 

@@ -3,7 +3,7 @@
 >>> import fieldmon as fm
 >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
 >>> records = fm.read_records("sample_data/mite_records.csv", near=plot)
->>> day = fm.plan_day(plot, records, "2026-11-18", fm.Robot(hours=4))
+>>> day = fm.plan_day(plot, records, "2026-11-18", robot=fm.Robot(hours=4))
 >>> len(day.route) > 100
 True
 
@@ -16,8 +16,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from fieldmon.compute.units import Units
     from fieldmon.decisions.doses import Dose
     from fieldmon.decisions.labels import ProductLabel
+    from fieldmon.decisions.library import read_labels
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
     from fieldmon.errors import (
@@ -62,9 +64,11 @@ if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan, plan_day
     from fieldmon.planning.route import Route
     from fieldmon.planning.team import TeamPlan, plan_team
+    from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.block import Block
     from fieldmon.plot.block_cutting import cut_blocks
     from fieldmon.plot.field import Field
+    from fieldmon.plot.plant_names import PlantNames
     from fieldmon.plot.planting import Planting
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot, Viewpoints, rover, scout
@@ -89,8 +93,10 @@ _MODULES = {
         "PlotError",
         "SettingError",
     ),
+    "compute.units": ("Units",),
     "decisions.doses": ("Dose",),
     "decisions.labels": ("ProductLabel",),
+    "decisions.library": ("read_labels",),
     "decisions.sprayer": ("Sprayer", "TreatmentCosts"),
     "infestation.belief": ("Learning",),
     "infestation.pest_in_weather": ("PestInWeather",),
@@ -118,6 +124,7 @@ _MODULES = {
     "plot.block": ("Block",),
     "plot.block_cutting": ("cut_blocks",),
     "plot.field": ("Field",),
+    "plot.plant_names": ("PlantNames",),
     "plot.planting": ("Planting",),
     "plot.plot": ("Plot",),
     "plot.robot": ("Robot", "Viewpoints", "rover", "scout"),
@@ -131,6 +138,7 @@ _MODULES = {
     "monitoring.status": ("Status",),
     "planning.members": ("TeamMember", "Teamwork", "team_of"),
     "planning.team": ("TeamPlan", "plan_team"),
+    "planning.wishes": ("Wishes",),
     "simulation.comparison": ("CompareSettings", "Comparison", "compare"),
     "simulation.library": ("draw_start", "simulate", "simulate_days"),
     "simulation.metrics": ("SeasonMetrics",),
@@ -176,6 +184,7 @@ __all__ = [
     "ObservationError",
     "Pest",
     "PestInWeather",
+    "PlantNames",
     "PlantToInspect",
     "Planting",
     "PlantingChoices",
@@ -206,8 +215,10 @@ __all__ = [
     "Teamwork",
     "TreatmentCosts",
     "TreatmentRule",
+    "Units",
     "Viewpoints",
     "Weather",
+    "Wishes",
     "__version__",
     "compare",
     "cut_blocks",
@@ -216,6 +227,7 @@ __all__ = [
     "plan_day",
     "plan_team",
     "read_inspections",
+    "read_labels",
     "read_pest",
     "read_plot",
     "read_plots",

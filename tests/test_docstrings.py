@@ -27,9 +27,9 @@ def sources():
     }
 
 
-def names_in(tree):
+def names_in(nodes):
     """Yield every name that code gives or uses."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Name):
             yield node.id
         elif isinstance(node, ast.Attribute):
@@ -44,16 +44,18 @@ def names_in(tree):
 
 def untrue(code):
     """Return what docstrings name and there is not, by file."""
-    trees = {path: ast.parse(text) for path, text in code.items()}
     files = {path.rpartition("/")[2] for path in code} | OWN_SAMPLERS
     known = {*dir(builtins), *FOREIGN, *(part for path in code for part in path[:-3].split("/"))}
-    known |= {name for tree in trees.values() for name in names_in(tree)}
+    said = {}
+    for path, text in code.items():  # each tree is let go of before the next one comes
+        nodes = [*ast.walk(ast.parse(text))]
+        known.update(names_in(nodes))
+        told = [node for node in nodes if isinstance(node, (ast.Module, *_DEFINED))]
+        said[path] = "\n".join(ast.get_docstring(node) or "" for node in told)
     found = {}
-    for path, tree in trees.items():
-        nodes = [node for node in ast.walk(tree) if isinstance(node, (ast.Module, *_DEFINED))]
-        said = "\n".join(ast.get_docstring(node) or "" for node in nodes)
-        named = {name for name in _NAMED.findall(said) if not known.issuperset(name.split("."))}
-        if gone := named | set(_FILE.findall(said)) - files:
+    for path, words in said.items():
+        named = {name for name in _NAMED.findall(words) if not known.issuperset(name.split("."))}
+        if gone := named | set(_FILE.findall(words)) - files:
             found[path] = gone
     return found
 

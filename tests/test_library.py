@@ -101,6 +101,8 @@ def test_a_public_function_says_what_it_takes_raises_and_shows_an_example(name):
         assert "Parameters\n" in text
         assert "Raises\n" in text
         assert all(parameter.name in text for parameter in takes)
+    in_place = [one.name for one in takes if one.kind is one.POSITIONAL_OR_KEYWORD]
+    assert len(in_place) <= 3 or name.startswith("routes.")
 
 
 @pytest.mark.parametrize("name", CLASSES)
@@ -199,7 +201,8 @@ def test_contenders_of_one_start_meet_the_same_insects():
     start = fm.draw_start(plot, chance, share=0.03, seed=4)
     settings, robot = fm.SimulationSettings(n_days=2), fm.Robot(hours=3)
     naive, adaptive = (
-        fm.simulate(plot, start, name, robot, settings, seed=4) for name in ("naive", "adaptive")
+        fm.simulate(plot, start, name, robot=robot, settings=settings, seed=4)
+        for name in ("naive", "adaptive")
     )
     assert naive.new[0] == adaptive.new[0] == start.infested.sum()
     assert adaptive.found.sum() > naive.found.sum()
@@ -397,7 +400,9 @@ def test_columns_of_records_and_inspections_that_pandas_sorted_apart_are_refused
 @pytest.mark.parametrize(
     "begin",
     [
-        lambda plot, seen: fm.plan_day(plot, seen, "2026-11-18", fm.Robot(hours=0.5), "naive"),
+        lambda plot, seen: fm.plan_day(
+            plot, seen, "2026-11-18", robot=fm.Robot(hours=0.5), sampler="naive"
+        ),
         lambda plot, seen: fm.Season.create("s.gpkg", plot, seen, begins="2026-11-18"),
     ],
 )

@@ -116,22 +116,22 @@ def opened_in_app(records):
     return session
 
 
-def shown_in_app(records):
-    """Return the chances and the route that the app's first page shows."""
+def shown_and_begun_in_app(records):
+    """Return the chances and the route of the app's first page, and what a season begins with.
+
+    That is what the season believes on its first morning, and its route.
+    """
     session = opened_in_app(records)
     # addresses name their content
     plants = driving.layer(session, "plants-chance")
     route, numbers = driving.layer(session, "route")["data"], driving.map_of(session)["labels"]
-    return [plants["places"], plants["values"], route, numbers]
-
-
-def begun_in_app(records):
-    """Return what a season begun in the app believes on its first morning, and its route."""
+    shown = [plants["places"], plants["values"], route, numbers]
     name = Path(records).stem
-    assert not driving.begun(opened_in_app(records), name).error
+    assert not driving.begun(session, name).error
     season = Season(Path("seasons", f"{name}.gpkg"))
     first = season.settings.begins
-    return season.morning(first).tolist(), season.plan(first, keep=False).route.plant.tolist()
+    route = season.plan(first, keep=False).route.plant.tolist()
+    return shown, season.morning(first).tolist(), route
 
 
 SURFACES = {
@@ -141,8 +141,7 @@ SURFACES = {
     "simulate": simulated,
     "study prior": played,
     "study run": studied,
-    "app, today": shown_in_app,
-    "app, a season": begun_in_app,
+    "app": shown_and_begun_in_app,
 }
 
 

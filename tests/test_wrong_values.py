@@ -27,7 +27,7 @@ def test_every_public_name_is_tried(made):
     # SAMPLERS is a dict, errors are raised, and who writes a sampler is handed a scene and answers
     # stops
     answers = {"PlantToInspect", "SimulatedDay", "Status", "PlotEstimate", "Forecast", "MapVerdict",
-               "Comparison", "Ratio", "TeamPlan"}  # fmt: skip
+               "Comparison", "Ratio", "TeamPlan", "PlantNames"}  # fmt: skip
     others = {
         "SAMPLERS",
         "Sampler",

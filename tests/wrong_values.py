@@ -72,11 +72,14 @@ _RIGHT = {
     "int": {"0", "1", "-1", "10^30", "-10^30", "2^63"},
     "float": {*_NUMBERS},
     "date": _DATES,
+    "Day": _DATES,
     "dt.date": _DATES,
     "datetime": {"moment"},
     "time": {"time"},
+    "TimeOfDay": {"time"},
     "tuple[str, ...]": {"empty list", "list of texts", "pair of texts"},
     "Sequence[int]": {"empty list", "list", "tuple"},
+    "tuple[int, ...]": {"empty list", "list", "tuple", "list of 10^30"},
     "dict[str, float]": {"dict"},
     "MultiPolygon": {"empty area"},
     "Floats": {"array", "table", "cube", "array of nan", "array of 1e30", "array of -1"},
@@ -155,7 +158,8 @@ _CALLED = {
     "into": ("number", "batch"), "level": ("share of plants",), "lonlat": ("Positions",),
     "max_uses": ("one use or more",), "missing": ("Missing plants",), "name": ("Times",),
     "near": ("plot",),
-    "numbers": ("number",), "on": ("day", "date", "season"), "others": ("Other routes",),
+    "n": ("team",), "numbers": ("number",), "on": ("day", "date", "season"),
+    "others": ("Other routes",),
     "path": ("season", "file"),
     "plants": ("plant", "must be a file"), "present": ("Results",),
     "product": ("treatment",), "reentry_hours": ("Re-entry",), "reward": ("Rewards",),
@@ -320,7 +324,8 @@ def _of_settings() -> Iterator[Case]:
                  fm.MonitoringSettings(TODAY), fm.PriorSettings(), fm.TeamMember("a"),
                  fm.Teamwork(), fm.AdviceSettings(), fm.Learning(), fm.TreatmentRule(),
                  fm.Sprayer(), fm.TreatmentCosts(), fm.HotSpotSettings(),
-                 fm.CompareSettings(), fm.PestInWeather(pest)):  # fmt: skip
+                 fm.CompareSettings(), fm.PestInWeather(pest), fm.Units(),
+                 fm.Wishes()):  # fmt: skip
         yield Case(type(made).__name__, type(made), _fields_of(made))
     yield Case("Application.by_label", fm.Application().by_label, {"label": None})
     yield Case("Dose.share_of", fm.Dose(0.5, "l/ha").share_of,
@@ -403,6 +408,9 @@ def _of_files(plot: fm.Plot, folder: Path) -> Iterator[Case]:
     yield Case("read_inspections", fm.read_inspections, {"source": findings, "plot": plot})
     yield Case("read_records", fm.read_records, {"source": MITES, "near": plot})
     yield Case("read_pest", fm.read_pest, {"said": "spider-mite"})
+    labels = folder / "labels.csv"
+    labels.write_text("product\nSome oil\n")
+    yield Case("read_labels", fm.read_labels, {"source": labels})
     yield Case("read_plots", fm.read_plots, {"source": ESTATE})
     yield Case("read_plot", fm.read_plot, {"source": ESTATE, "feature": "Gate", "plants": None,
                "planting": None, "gate": None})  # fmt: skip
@@ -438,6 +446,7 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
         "count_never_recorded": {"inspections": seen},
         "effects": on | {"units": None},
         "is_copy": {"file": season.path},
+        "is_on_plot_of": {"other": season},
         "keep_labels": who | {"labels": (), "source": ""},
         "kept_route": on | who,
         "merge": {"other": season},

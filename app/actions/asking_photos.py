@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.io.writers.day_file import with_face
 from fieldmon.monitoring import photos_asked
 
 from ..show import plant_history
 from ..state import notices, wishes
 from ..state.folds import fold
 from ..words import texts
-from ..words.language import in_words
+from ..words.language import plant_in_words
 
 if TYPE_CHECKING:
     from fieldmon.monitoring.photos_asked import AskedPhoto
@@ -52,9 +51,8 @@ def _show_one(choices: Choices, one: AskedPhoto) -> None:
     numbered = choices.open_season.plant_numbers
     said, ends = st.columns([3, 1], vertical_alignment="center")
     row = choices.open_season.plot.grid.line_signs[int(numbered.line[one.plant])]
-    plant = in_words(
-        with_face(choices.open_season.plot.grid, one.plant, int(numbered.number[one.plant]))
-    )
+    number = int(numbered.number[one.plant])
+    plant = plant_in_words(choices.open_season.plot.grid, one.plant, number)
     note = texts.isolated(one.note)
     said.markdown(texts.ASKED_PHOTO.format(row=row, plant=plant, note=note))
     ends.button(texts.ASK_NO_MORE, key=f"no photo {one.id}", on_click=_ask_no_more,

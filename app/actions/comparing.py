@@ -74,7 +74,7 @@ def _season(
     instead of asked for.
     """
     show, (first, apart, second, *third) = widget_memory.show, columns
-    own_share, own_rate = _believed(choices)
+    own_share, own_rate = believed(choices)
     if choices.season is not None:
         said = texts.AS_BELIEVED if pest is None else texts.START_AS_BELIEVED
         st.caption(said.format(day=choices.units.said_day(choices.day)))
@@ -101,7 +101,7 @@ def _say_visits(n_days: int, visit_every: int) -> None:
     st.caption(texts.VISITS_ON.format(visits=len(days), days=n_days, on=listed(few)))
 
 
-def _believed(choices: Choices) -> tuple[float, float]:
+def believed(choices: Choices) -> tuple[float, float]:
     """Return the share infested and the spread a night that a season believes, both in percent."""
     if choices.season is None:
         return 2.0, 10.0

@@ -198,7 +198,8 @@ def treated(choices: Choices, advice: Advice) -> None:
     if not len(advice.zones):
         return
     with st.expander(texts.DECIDE_TREATED):
-        plants = texts.PLANTS_COUNTED.format(n=int(np.count_nonzero(advice.sprayed)))
+        vines = advice.grid.vines_of(advice.sprayed)
+        plants = texts.PLANTS_COUNTED.format(n=int(np.count_nonzero(vines)))
         area = choices.units.square(advice.zones.m2)
         st.caption(texts.DECIDE_TREATED_NOTE.format(plants=plants, area=area))
         treating.show(choices, partial(_zoned, advice, deciding.asked()))

@@ -12,9 +12,11 @@ from fieldmon.drive.simulated_robots import CHARGED, MUJOCO, MadeUp
 from ..state import cached_simulations, widget_memory
 from ..words import texts
 from ..words.language import of_error
-from . import background_work
+from ..words.units import hours
+from . import background_work, comparing
 
 if TYPE_CHECKING:
+    from fieldmon.drive.trace import Trace
     from fieldmon.samplers.base import Scene
 
     from ..state.choices import Choices
@@ -28,9 +30,13 @@ def run(choices: Choices, scene: Scene, key: str) -> DriveRun:
         st.segmented_control, texts.DRIVE_ROBOT, kinds, key="drive_robot", default=CHARGED,
         required=True, format_func=texts.DRIVE_ROBOTS.__getitem__,
     )  # fmt: skip
+    believed, _ = comparing.believed(choices)
     share = widget_memory.show(
-        st.number_input, texts.DRIVE_SHARE, 0.1, 50.0, step=0.5, key="drive_share", default=2.0
-    )
+        st.number_input, texts.DRIVE_SHARE, 0.1, 50.0, step=0.5, key=f"drive_share {believed:g}",
+        default=believed,
+    )  # fmt: skip
+    if choices.season is not None:
+        st.caption(texts.DRIVE_BELIEVES.format(day=choices.units.said_day(choices.day)))
     st.caption(texts.DRIVE_MADE_UP)
     made_up = MadeUp(share / 100)
     made = cached_simulations.drive_run(key, kind, made_up, choices.plot, scene, choices.decides)
@@ -47,5 +53,16 @@ def _progress(run: DriveRun, *, at_work: bool) -> None:
         st.error(of_error(run.problem))
     if run.running:
         st.progress(run.share, texts.DRIVE_PROGRESS.format(share=round(100 * run.share)))
+    if run.thrown_away:
+        st.info(texts.DRIVE_STOPPED)
+    if run.day is not None:
+        st.markdown(_result(run.day.trace))
     if run.said:
         st.warning(run.said)
+
+
+def _result(trace: Trace) -> str:
+    """Return what came of a driven day."""
+    found = sum(stop.found is True for stop in trace.stops)
+    time = hours(trace.end_s / 3600)
+    return texts.DRIVE_DONE.format(n=len(trace.stops), found=found, time=time)

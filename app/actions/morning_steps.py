@@ -85,7 +85,9 @@ def _planned(choices: Choices, plan: DayPlan) -> str:
     if choices.season is None:
         return rest
     kept = chosen_day.planned_and_done(choices)
-    said = "" if kept is None else day.in_short(kept.planned, kept.hours, kept.people)
+    said = ""
+    if kept is not None:
+        said = day.in_short(choices.plot.grid, kept.planned, kept.hours, kept.people)
     if not chosen_day.progress(choices).inspected_today:
         if kept is None or chosen_day.is_given_out(choices, plan):
             return said or rest

@@ -110,7 +110,7 @@ def _show_one(choices: Choices) -> None:
     else:
         show(left.number_input, texts.HISTORY_ROW, 0, None, box="one_row")
     show(right.number_input, texts.HISTORY_PLANT, 0, None, box="one_plant")
-    if (choices.plot.grid.twin >= 0).any():
+    if choices.plot.grid.has_faces:
         show(st.segmented_control, texts.HISTORY_FACE, [1, 2], box="one_face")
     show(
         st.segmented_control, texts.RESULT, [FOUND, CLEAN, SKIPPED, GONE],
@@ -397,7 +397,10 @@ def said_of(choices: Choices, done: Recorded | None, results: Inspections | None
     corrected: list[str] = [texts.CORRECTED.format(n=done.corrected)] if done.corrected else []
     if done.new or done.known or not corrected:
         said = [texts.RECORDED.format(new=done.new, known=done.known)]
-        more = (texts.NOTED, done.noted), (texts.COMPLETED, done.filled)
+        more = (
+            *((texts.NOTED, done.noted), (texts.COMPLETED, done.filled)),
+            (texts.BY_A_SECOND, done.seen_by_another),
+        )
         corrected.append(" ".join([*said, *(text.format(n=n) for text, n in more if n)]))
     if results is not None:
         corrected += _of_days(choices, results)

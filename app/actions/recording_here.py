@@ -8,13 +8,12 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
-from fieldmon.io.writers.day_file import with_face
 from fieldmon.plot.grid import plant_numbers
 
 from ..show import plant_history, recorded_batches
 from ..state import notices
 from ..words import texts
-from ..words.language import in_words
+from ..words.language import plant_in_words
 from . import recording
 
 if TYPE_CHECKING:
@@ -35,8 +34,8 @@ def show(choices: Choices) -> None:
         return
     numbered = plant_numbers(choices.plot.grid, np.array(plants))
     row = choices.plot.grid.line_signs[int(numbered.line[0])]
-    plant = with_face(choices.plot.grid, plants[0], int(numbered.number[0]))
-    st.markdown(texts.HERE.format(row=row, plant=in_words(plant)))
+    plant = plant_in_words(choices.plot.grid, plants[0], int(numbered.number[0]))
+    st.markdown(texts.HERE.format(row=row, plant=plant))
     with st.container(horizontal=True, key="record_here"):
         for result in (FOUND, CLEAN):
             st.button(texts.HERE_RESULTS[result], key=f"here_{result}", on_click=_record,

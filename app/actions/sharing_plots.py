@@ -6,6 +6,7 @@ import io
 import zipfile
 from contextlib import nullcontext
 from dataclasses import replace
+from datetime import timedelta
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +15,10 @@ from streamlit.delta_generator import DeltaGenerator
 
 from fieldmon.io.writers.geojson import route_geojson
 from fieldmon.monitoring.estate_routes import PLAN_TABLE, PlotLeftOut, plan_table, stems
+from fieldmon.plot.local_clock import grid_clock
 
 from ..state import shared_plots, widget_memory
+from ..state.chosen_units import units
 from ..state.shared_plots import EstateCrew, SharedPlots
 from ..words import texts
 from ..words.language import about, in_words, listed, number
@@ -24,10 +27,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from ..state.estate import NotAmong, PlotState
+    from ..state.shared_plots import PlannedTurn
 
 _ON = "plan all"
 # more names than these are a wall of words
 _MOST_NAMED = 5
+# who is less late than that is not told
+_LATE = timedelta(minutes=15)
 #: least, most and step of each number that makes a crew
 _LIMITS = {
     "robots": (0, 20, 1), "robot_hours": (0.5, 16.0, 0.5), "scouts": (0, 20, 1),
@@ -57,13 +63,13 @@ def show(plots: list[PlotState], not_among: Iterable[NotAmong] = ()) -> SharedPl
     """
     crew = _crew(shared_plots.usual_crew(plots))
     also = widget_memory.show(st.checkbox, texts.PLAN_ALL_ALSO, key="crew_also", default=False)
-    wanted = plots if also else shared_plots.due(plots)
-    lately = [] if also else shared_plots.not_due(plots)
+    wanted = shared_plots.due(plots, every=also)
+    others = shared_plots.not_due(plots, wanted)
     for said in shared_plots.of_one_plot([one.source for one in plots if one.number is None]):
         st.warning(in_words(said))
     if not wanted:
         st.info(texts.PLAN_ALL_NONE)
-        _say_left_out(lately)
+        _say_left_out(others)
         return SharedPlots(())
     if not crew.members():
         st.info(texts.PLAN_ALL_NOBODY)
@@ -74,7 +80,7 @@ def show(plots: list[PlotState], not_among: Iterable[NotAmong] = ()) -> SharedPl
             wanted, crew, lambda k, n: bar.progress(k / n, texts.PLAN_ALL_WORKING)
         )
         st.empty()
-    made = replace(made, left_out=(*made.left_out, *lately))
+    made = replace(made, left_out=(*made.left_out, *others))
     _say(made, [PlotLeftOut(one.name, one.said) for one in not_among])
     return made
 
@@ -95,9 +101,8 @@ def _crew(usual: EstateCrew) -> EstateCrew:
 
 
 def _say(made: SharedPlots, not_among: Sequence[PlotLeftOut] = ()) -> None:
-    routes = [one.route for one in made.turns]
-    plants = sum(len(route) for route in routes)
-    finds = sum(route.expected_found for route in routes)
+    plants = sum(one.plants for one in made.turns)
+    finds = sum(one.route.expected_finds for one in made.turns)
     with st.container(key="lead"):
         lead = texts.PLAN_ALL_LEAD.format(
             plants=number(plants, ","),
@@ -105,6 +110,8 @@ def _say(made: SharedPlots, not_among: Sequence[PlotLeftOut] = ()) -> None:
             finds=about(finds),
         )
         st.markdown(lead)
+    for said in _times(made.turns):
+        st.markdown(said)
     st.caption(texts.PLAN_ALL_RULE)
     _say_left_out(made.left_out)
     if made.free:
@@ -117,11 +124,25 @@ def _say(made: SharedPlots, not_among: Sequence[PlotLeftOut] = ()) -> None:
         team = listed(texts.isolated(name) for name in members)
         st.markdown(texts.PLAN_ALL_TEAM.format(plot=texts.isolated(plot), names=team))
     problems = (f"{texts.isolated(one.plot)}: {one.why}" for one in made.problems)
-    for problem in (*made.closed, *problems):
+    for problem in (*made.closed, *made.too_far, *problems):
         st.warning(problem)
     if made.turns:
         st.download_button(texts.PLAN_ALL_DOWNLOAD, partial(packed, made, not_among), "routes.zip",
                            "application/zip", key="plan_all_files", on_click="ignore")  # fmt: skip
+
+
+def _times(turns: Sequence[PlannedTurn]) -> list[str]:
+    """Say of which day the times are, from when on, and that they stand though it is later."""
+    if not turns:
+        return []
+    first = min(turns, key=lambda one: one.begins)
+    days = sorted({one.begins.date() for one in turns})
+    on = listed(units().said_day(day) for day in days)
+    said = [texts.PLAN_ALL_WHEN.format(day=on, start=f"{first.begins:%H:%M}")]
+    now = grid_clock(first.route.aisles.grid).now()
+    if now.date() == first.begins.date() and now - first.begins >= _LATE:
+        said.append(texts.PLAN_ALL_LATE.format(now=f"{now:%H:%M}"))
+    return said
 
 
 def _say_left_out(plots: Sequence[PlotLeftOut]) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.drive.vda5050.mqtt import Broker, RobotName
+from fieldmon.drive.vda5050.mqtt import Broker, BrokerError, RobotName
 from fieldmon.drive.vda5050.versions import USUAL_VERSION, VERSIONS
 from fieldmon.drive.vda5050.watcher import FAILED, LOST, PAUSED, WAITING
 from fieldmon.errors import FieldmonError
@@ -50,12 +50,20 @@ def robot(key: str, scene: Scene) -> LiveDrive | None:
     return live
 
 
+def _said(problem: FieldmonError) -> str:
+    """Return what is wrong: of a broker by the box in which it is said."""
+    if not isinstance(problem, BrokerError):
+        return of_error(problem)
+    said = texts.DRIVE_NOT_LET_IN if problem.answers else texts.DRIVE_NO_BROKER
+    return said.format(where=texts.isolated(problem.where))
+
+
 def _standing(live: LiveDrive, *, at_work: bool) -> None:
     """Say how the robot stands, and how old that is."""
     if at_work and not live.running:
         st.rerun()
     if live.problem is not None:
-        st.error(of_error(live.problem))
+        st.error(_said(live.problem))
     if not live.running:
         return
     heard = live.heard()

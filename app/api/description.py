@@ -186,6 +186,8 @@ PLOT: dict[str, Any] = {
                 "lat": _NUMBERS,
                 "number": _LIST,
                 "face": _LIST | {"description": "1 or 2 where plants have two, inspected apart."},
+                "drawn_lon": _NUMBERS | {"description": "Both have one place: towards its aisle."},
+                "drawn_lat": _NUMBERS,
             },
         },
     },

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.scouts import Scout
     from fieldmon.planning.route import Route
+    from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
 
 # seven digits of a degree are a centimetre
@@ -56,7 +57,6 @@ def plot_document(season: Season) -> tuple[str, bytes]:
     """Return a short name of what the plot is, and its document; it never changes."""
     grid, field = season.plot.grid, season.plot.field
     lonlat, rows = np.round(grid.lonlat(), _DIGITS), grid.unbroken
-    two_faces = bool((grid.twin >= 0).any())
     document = {
         "name": field.name,
         "boundary": _geometry(field.boundary),
@@ -76,11 +76,20 @@ def plot_document(season: Season) -> tuple[str, bytes]:
             "lon": lonlat[:, 0].tolist(),
             "lat": lonlat[:, 1].tolist(),
             "number": season.plant_numbers.number.tolist(),
-            **({"face": faces(grid, np.arange(len(grid))).tolist()} if two_faces else {}),
+            **(_faces(grid) if grid.has_faces else {}),
         },
     }
     made = _json(document)
     return digest(made, length=16), made
+
+
+def _faces(grid: PlantGrid) -> dict[str, list[Any]]:
+    """Return which face each plant is, and where it is drawn, as on the app's maps."""
+    from ..show.maps.plant_layers import drawn_at  # noqa: PLC0415 - heavy
+
+    drawn = np.round(drawn_at(grid), _DIGITS).T
+    face = faces(grid, np.arange(len(grid)))
+    return {"face": face.tolist(), "drawn_lon": drawn[0].tolist(), "drawn_lat": drawn[1].tolist()}
 
 
 def day_document(season: Season, scout: Scout, on: date | None, has: int | None = None) -> bytes:

@@ -67,7 +67,7 @@ def place_columns(grid: PlantGrid, plants: NDArray[np.integer]) -> dict[str, obj
     numbered = plant_numbers(grid, plants)
     line = numbered.line
     row = [grid.line_signs[k] for k in line.tolist()] if grid.row_names else line
-    face = {texts.COLUMN_FACE: faces(grid, plants)} if (grid.twin >= 0).any() else {}
+    face = {texts.COLUMN_FACE: faces(grid, plants)} if grid.has_faces else {}
     return {**({texts.COLUMN_ROW: row} if grid.in_rows else {}),
             texts.COLUMN_PLANT: numbered.number, **face}  # fmt: skip
 
@@ -90,15 +90,16 @@ def is_over(choices: Choices, plan: DayPlan) -> bool:
 
 def plan_in_short(plan: DayPlan) -> str:
     """Return how many plants there are to inspect, and how long it takes."""
-    return in_short(len(plan.route), plan.route.end_s / 3600)
+    return in_short(plan.scene.grid, len(plan.route), plan.route.end_s / 3600)
 
 
-def in_short(plants: int, hours_h: float, people: int = 1) -> str:
-    """Return so many plants and hours in words, of several people their hours added up."""
+def in_short(grid: PlantGrid, plants: int, hours_h: float, people: int = 1) -> str:
+    """Return so many plants, or faces, and hours in words, of several people added up."""
     time = hours(hours_h)
     if people > 1:
         time = texts.HOURS_IN_ALL.format(hours=time)
-    return listed([texts.PLANTS_COUNTED.format(n=plants), time])
+    counted = texts.FACES_COUNTED if grid.has_faces else texts.PLANTS_COUNTED
+    return listed([counted.format(n=plants), time])
 
 
 def route_figures(choices: Choices, plan: DayPlan) -> None:
@@ -107,14 +108,17 @@ def route_figures(choices: Choices, plan: DayPlan) -> None:
     taken = assumptions.of(choices)
     rows, speed = ("row_spacing_m", "plant_spacing_m"), "speed_m_s"
     for_finds = (*rows, "background_chance", "edge_chance", "rate_per_day", "detects", "treated")
+    to_inspect = texts.PLANTS_TO_INSPECT
+    if choices.plot.grid.has_faces:
+        to_inspect = texts.FACES_TO_INSPECT
     with st.container(horizontal=True):
-        st.metric(mark(texts.PLANTS_TO_INSPECT, taken, rows),
+        st.metric(mark(to_inspect, taken, rows),
                   f"{number(len(route), ',')} / {number(n, ',')}", width="content")  # fmt: skip
         st.metric(mark(texts.TIME, taken, (*rows, speed, "gate")), hours(route.end_s / 3600),
                   width="content")  # fmt: skip
         st.metric(mark(texts.DRIVE, taken, (*rows, "gate")), choices.units.metres(route.drive_m),
                   width="content")  # fmt: skip
-        st.metric(mark(texts.FINDS, taken, for_finds), about(route.expected_found),
+        st.metric(mark(texts.FINDS, taken, for_finds), about(route.expected_finds),
                   width="content")  # fmt: skip
     if len(route) and (said := _bound(chosen_day.with_bound(choices, plan).route)):
         st.caption(said, help=texts.BOUND_HELP)
@@ -124,7 +128,7 @@ def _bound(route: Route) -> str:
     """Return what no other route can exceed, against the figures above it; rounded up."""
     if route.found_bound is None:
         return ""
-    above = share_above(route.expected_found, route.found_bound)
+    above = share_above(route.expected_finds, route.found_bound)
     if above <= PROVED:
         return texts.BOUND_BEST
     if math.isinf(above):

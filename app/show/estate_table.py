@@ -60,7 +60,7 @@ def _planned(plots: list[PlotState], turns: tuple[PlannedTurn, ...]) -> Columns:
         names["who"]: [None if one is None else _who(one.who) for one in own],
         names["when"]: [None if one is None else _hours(one) for one in own],
         names["finds"]: [
-            None if one is None else _rounded(one.route.expected_found) for one in own
+            None if one is None else _rounded(one.route.expected_finds) for one in own
         ],
     }
     how = {names[k]: column.TextColumn(width=_PLANNED_PX[k]) for k in ("who", "when")}

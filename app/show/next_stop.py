@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import chance_figure
-from fieldmon.io.writers.day_file import with_face
 from fieldmon.plot.grid import plant_numbers
 
 from ..words import texts
-from ..words.language import in_words
+from ..words.language import in_words, plant_in_words
 
 if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
@@ -50,7 +49,7 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
         lonlat,
         (texts.NEXT_PLACE if grid.in_rows else texts.NEXT_ALONE).format(
             row=grid.line_signs[int(numbered.line[0])],
-            plant=in_words(with_face(grid, plant, int(numbered.number[0]))),
+            plant=plant_in_words(grid, plant, int(numbered.number[0])),
         ),
         texts.NEXT_WAY.format(
             metres=units.metres(drive_m), compass=texts.COMPASS[sector],

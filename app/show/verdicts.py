@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from ..words import texts
-from ..words.language import number
+from ..words.language import listed, number
 from ..words.strategies import strategy_name
 
 if TYPE_CHECKING:
@@ -32,6 +32,8 @@ def sentence(ranked: list[Outcome]) -> str:
     best, second = ranked[0], ranked[1]
     names = {"best": name(best.strategy), "second": name(second.strategy)}
     behind = second.behind  # None: of the best alone
+    if even := [name(one.strategy) for one in ranked[1:] if _is_even(one)]:
+        return texts.VERDICT_EVEN.format(names=listed([names["best"], *even]), loss=best.loss.mean)
     if behind is None or isnan(behind.low):
         return texts.VERDICT_ONE.format(**names)
     if not behind.low > 0:
@@ -40,6 +42,12 @@ def sentence(ranked: list[Outcome]) -> str:
         **names, loss=best.loss.mean, low=behind.low, high=behind.high,
         percent=100 * behind.mean / best.loss.mean,
     )  # fmt: skip
+
+
+def _is_even(outcome: Outcome) -> bool:
+    """Return whether a strategy came to the same as the best in every season."""
+    behind = outcome.behind
+    return behind is not None and behind.mean == 0 and (isnan(behind.low) or not behind.low < 0)
 
 
 def robots_sentence(gains: list[MarginalGain]) -> str:
@@ -77,11 +85,14 @@ def table(ranked: list[Outcome], *, daily: bool = True) -> pd.DataFrame:
 
     `daily`: whether somebody comes on every day.
     """
-    least_loss = ranked[0].loss.mean
+    least_loss, shared = ranked[0].loss.mean, any(map(_is_even, ranked))
     return pd.DataFrame(
         {
             texts.COLUMN_STRATEGY: [name(o.strategy) for o in ranked],
-            texts.COLUMN_VERDICT: [_word(o, least_loss) for o in ranked],
+            texts.COLUMN_VERDICT: [
+                texts.EVEN if shared and (o.behind is None or _is_even(o)) else _word(o, least_loss)
+                for o in ranked
+            ],
             texts.COLUMN_LOSS: [_interval(_none_less(o.loss), ",.0f") for o in ranked],
             texts.COLUMN_FOUND: [_interval(_share(o.detection_pct), ".3g", " %") for o in ranked],
             _visited(daily=daily): [

@@ -220,7 +220,7 @@ def _drawn_on(field: Field) -> tuple[plot_edits.Edit, ...]:
 def _said_of_rows(plot: Plot) -> dict[str, float | bool]:
     """Return how a plot's rows were laid, as far as neither its files say it nor it was assumed."""
     field, grid = plot.field, plot.grid
-    said: dict[str, float | bool] = {"both_faces": bool((grid.twin >= 0).any())}
+    said: dict[str, float | bool] = {"both_faces": grid.has_faces}
     if grid.half_canopy_m is not None:
         said["half_canopy"] = grid.half_canopy_m
     if plot.headland_m not in {None, Planting().headland_m}:

@@ -78,6 +78,7 @@ class DriveRun(BackgroundWork):
         self._sampler, self._made_up = sampler, made_up
         self.day: DayInTime | None = None
         self.gone_s, self.said = 0.0, ""
+        self.thrown_away = False
 
     @property
     def share(self) -> float:
@@ -87,7 +88,7 @@ class DriveRun(BackgroundWork):
     def start(self) -> None:
         """Begin, from the morning."""
         if not self.running and self.day is None:
-            self.problem, self.gone_s = None, 0.0
+            self.problem, self.gone_s, self.thrown_away = None, 0.0, False
             self.begin()
 
     def work(self) -> None:
@@ -95,7 +96,7 @@ class DriveRun(BackgroundWork):
         try:
             self.day = self._driven()
         except _StoppedError:
-            self.gone_s = 0.0
+            self.gone_s, self.thrown_away = 0.0, True
 
     def _driven(self) -> DayInTime:
         scene = self._scene

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.errors import FieldmonError
 from fieldmon.io.options import PlotOptions
-from fieldmon.monitoring.estate_day import days_since
+from fieldmon.monitoring.estate_day import days_since, not_begun
 from fieldmon.plot.local_clock import local_clock
 
 from ..words.language import of_error
@@ -25,6 +25,7 @@ from .brought_files import settled
 if TYPE_CHECKING:
     from shapely import MultiPolygon
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring import Season
 
 # the other plots do not wait for one that another program holds
@@ -54,6 +55,8 @@ class PlotState:
         yet.
     is_begun
         Whether a plant of it was inspected.
+    waits
+        Why it has no part in today: its season begins on another day; None: it has.
     """
 
     name: str
@@ -63,6 +66,7 @@ class PlotState:
     days_since: int | None = None
     expected: float | None = None
     is_begun: bool = False
+    waits: Worded | None = None
 
 
 @dataclass(frozen=True)
@@ -133,7 +137,8 @@ def _of_season(name: str, season: Season) -> PlotState:
     expected = cached.still_infested(*of).expected
     seen = days_since(season, today)
     begun = bool(len(season.inspections))
-    return PlotState(name, name, season.plot.field.boundary, None, seen, expected, begun)
+    waits = not_begun(season.settings.begins, today)
+    return PlotState(name, name, season.plot.field.boundary, None, seen, expected, begun, waits)
 
 
 def open_plot(plot: PlotState) -> None:

@@ -67,7 +67,7 @@ class FreshBoxes:
 
     def hold_anything(self) -> bool:
         """Return whether something is said in a box that is shown."""
-        return any(of == self._times for _, of, _ in _said())
+        return any(of == self._times for (_, of, _), stayed in _said() if not stayed)
 
     def show(
         self, widget: Callable[..., T], *arguments: object, box: str, stays: bool = False,
@@ -177,9 +177,10 @@ def unfinished() -> dict[str, Any]:
 
     What stayed in a box counts beside what was said since alone: of itself it is this tab's.
     """
-    said = [*_said()]
-    stayed = [*_said(stayed=True)]
-    said += [one for one in stayed if any(of == one[1] for _, of, _ in said)]
+    held = [*_said()]
+    said = [one for one, stayed in held if not stayed]
+    of_forms = {of for _, of, _ in said}
+    said += [one for one, stayed in held if stayed and one[1] in of_forms]
     boxes = {key: [of, str(one) if isinstance(one, date | time) else one] for key, of, one in said}
     if not boxes:
         return {}
@@ -196,13 +197,13 @@ def take(said: dict[str, Any]) -> None:
         widget_memory.first(key, read(value) if read and isinstance(value, str) else value)
 
 
-def _said(*, stayed: bool = False) -> Iterator[tuple[str, str, Any]]:
-    """Yield of each box in which something was said its key, its count and that; or what stayed."""
+def _said() -> Iterator[tuple[tuple[str, str, Any], bool]]:
+    """Yield of each box that holds something its key, its count and that; and whether it stayed."""
     before = st.session_state.get(_STAYED, {})
     for key, of in [*_shown().items()]:
         value = widget_memory.value(key)
-        if value not in (None, "", []) and (value == before.get(key)) == stayed:
-            yield key, of, value
+        if value not in (None, "", []):
+            yield (key, of, value), value == before.get(key)
 
 
 def _shown() -> dict[str, str]:

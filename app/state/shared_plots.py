@@ -12,7 +12,13 @@ from fieldmon.errors import FieldmonError
 from fieldmon.monitoring import estate_day, season_copies
 from fieldmon.monitoring.closures import closed_plants
 from fieldmon.monitoring.estate_day import EstatePlot
-from fieldmon.monitoring.estate_routes import EstateRoute, NamedPlot, PlotLeftOut, walked
+from fieldmon.monitoring.estate_routes import (
+    EstateRoute,
+    NamedPlot,
+    PlotLeftOut,
+    too_far,
+    walked,
+)
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.plot.local_clock import local_clock
@@ -79,8 +85,9 @@ class SharedPlots:
     """The plan: its turns, plots to which nobody goes, and plots that cannot be planned.
 
     And what is left off as people may not be there yet, who has no plot, of how many, whether the
-    plots have robots of several kinds, so that the usual one is taken, and who works in plots with
-    teams of their own, which are not asked.
+    plots have robots of several kinds, so that the usual one is taken, who works in plots with
+    teams of their own, which are not asked, and ways from plot to plot that are too far for their
+    minutes.
     """
 
     turns: tuple[PlannedTurn, ...]
@@ -91,6 +98,7 @@ class SharedPlots:
     n_members: int = 0
     several_kinds: bool = False
     teams: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    too_far: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,32 +137,31 @@ def usual_crew(plots: Iterable[PlotState]) -> EstateCrew:
     return EstateCrew()
 
 
-def due(plots: Iterable[PlotState]) -> list[PlotState]:
-    """Return the plots to be planned."""
-    some = [*plots]
-    return [some[k] for k in estate_day.due([one.days_since for one in some])]
+def due(plots: Iterable[PlotState], *, every: bool = False) -> list[PlotState]:
+    """Return the plots to be planned: of those that have begun the due ones, or `every` one."""
+    some = [one for one in plots if one.waits is None]
+    return some if every else [some[k] for k in estate_day.due([one.days_since for one in some])]
 
 
-def not_due(plots: Iterable[PlotState]) -> list[PlotLeftOut]:
-    """Return the plots that are seen too lately to be planned."""
-    some = [*plots]
-    wanted = {id(one) for one in due(some)}
+def not_due(plots: Iterable[PlotState], wanted: Iterable[PlotState]) -> list[PlotLeftOut]:
+    """Return the plots that are not among those `wanted`, and why."""
+    planned = {id(one) for one in wanted}
     return [
-        PlotLeftOut(one.name, in_words(estate_day.not_due(one.days_since or 0)))
-        for one in some
-        if id(one) not in wanted
+        PlotLeftOut(one.name, in_words(one.waits or estate_day.not_due(one.days_since or 0)))
+        for one in plots
+        if id(one) not in planned
     ]
 
 
 def of_one_plot(names: Iterable[str]) -> tuple[Worded, ...]:
     """Return a sentence on each plot of several seasons here, if one of these is among them."""
-    seasons, wanted, own = [], {*names}, set[str]()
+    seasons, wanted, own = [], {*names}, []
     for name in seasons_folder.names() if wanted else ():
         with suppress(FieldmonError):  # what cannot be opened is said where it is to be
             season = cached.season(seasons_folder.path_of(name))
             seasons.append(season)
-            own |= {season.planting} if name in wanted else set()
-    among = [one for one in seasons if one.planting in own]
+            own += [season] if name in wanted else []
+    among = [one for one in seasons if any(map(one.is_on_plot_of, own))]
     return season_copies.of_one_plot(among, texts.isolated)
 
 
@@ -200,6 +207,12 @@ def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> Sha
             for one in ready
             if one.known.season is not None and one.known.season.settings.team
         ),
+        too_far=tuple(
+            in_words(one)
+            for one in too_far(
+                [route for _, route in made.turns], 60.0 * crew.move_min, chosen_units.units()
+            )
+        ),
     )
 
 
@@ -216,7 +229,7 @@ def _ready(plot: PlotState) -> _Ready:
 def _of_season(plot: PlotState) -> _Ready:
     season = cached.season(seasons_folder.path_of(plot.source))
     settings = season.settings
-    on = max(local_clock(season.plot.field).today(), settings.begins)
+    on = local_clock(season.plot.field).today()
     now = cached.revision_on(season, on)
     key = f"{season.key} {now} {on}"
     known = cached.estate_plot(season.key, now, str(on), season)

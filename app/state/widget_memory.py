@@ -19,6 +19,7 @@ T = TypeVar("T")
 # how a box writes a number that may have a fraction: 2, not 2.00
 _SHORTEST = "%.8g"
 _VALUES, _PAGE, _BEGINS = "widget values", "page", "widget begins"
+_NO_WIDGET = object()
 
 
 def turn(page: str) -> None:
@@ -50,11 +51,13 @@ def first(key: str, value: object) -> None:
 
 def value(key: str, default: object = None) -> Any:  # noqa: ANN401 - whatever the widget holds
     """Return what was chosen last, on whichever page, though its widget may come further down."""
-    page, kept = _values().get(key, ("", default))
-    if key in st.session_state:
-        kept = st.session_state[key]
+    values = _values()
+    page, kept = values.get(key, ("", default))
+    now = st.session_state.get(key, _NO_WIDGET)  # each look at the session's state takes a while
+    if now is not _NO_WIDGET:
+        kept = now
         # what it changes may be that its widget is not shown any more
-        _values()[key] = (page, kept)
+        values[key] = (page, kept)
     return kept
 
 
@@ -112,9 +115,10 @@ def show(
 ) -> T:  # fmt: skip
     """Show a widget with what was chosen before, on this page or another."""
     state, page = st.session_state, st.session_state.get(_PAGE, "")
-    shown_on, kept = _values().get(key, ("", default))
+    values = _values()
+    shown_on, kept = values.get(key, ("", default))
     begins = state.setdefault(_BEGINS, {})
-    if key not in state or shown_on != page:
+    if shown_on != page or key not in state:
         # the last page's widget, if it was just left, knows better than what its last run saw
         begins[key] = state[key] = state.get(key, kept)
     own = _own_default(widget, arguments, begins.get(key, kept))

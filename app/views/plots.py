@@ -31,9 +31,9 @@ def show() -> None:
     if held:
         st.fragment(_watch, run_every=estate.LOOK_AGAIN_S)(held)
     turns = sharing_plots.show(plots, problems).turns if sharing_plots.is_on() else ()
-    # those with work come first
-    planned = {id(turn.state) for turn in turns}
-    plots = sorted(plots, key=lambda one: id(one) not in planned) if planned else plots
+    # those with work come first, in the order of the day
+    planned = {id(turn.state): (turn.begins, turn.number) for turn in turns}
+    plots = sorted(plots, key=lambda one: (id(one) not in planned, planned.get(id(one), ())))
     field_map.want(estate_map.content(plots, turns), MapAnswers(tapped=partial(_tapped, plots)))
     table, config = estate_table.of(plots, turns)
     st.dataframe(

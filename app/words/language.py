@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from fieldmon.compute import wording
 from fieldmon.compute.wording import KeptText, Worded, counted, estimate, joined, worded, written
+from fieldmon.io.writers.day_file import with_face
 from fieldmon.reports.language import ENGLISH as ENGLISH_REPORTS
 from fieldmon.reports.language import ReportLanguage
 
@@ -28,6 +29,8 @@ from .kept_sentences import KnownSentences, sentences
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
+
+    from fieldmon.plot.grid import PlantGrid
 
 ENGLISH = "en"
 #: each by its own name
@@ -248,6 +251,11 @@ class _Unknown(gettext.NullTranslations):
 
 
 # -- the library's sentences
+
+
+def plant_in_words(grid: PlantGrid, plant: int, number: int) -> str:
+    """Return a plant's number in its row, with the face where it has two."""
+    return in_words(with_face(grid, plant, number))
 
 
 def in_words(sentence: str) -> str:

@@ -129,6 +129,7 @@ PRESSED_BEFORE = (
     "*{button}* was pressed before the plot or the day just chosen was shown, so nothing was done. "
     "Press it again for what is shown now."
 )
+FACES_TO_INSPECT = "Faces to inspect"
 PLANTS_TO_INSPECT, TIME, DRIVE, FINDS = "Plants to inspect", "Hours", "Drive", "Expected finds"
 ASSUMED = "\\* assumed: {what}."
 ASSUMED_WHAT = {
@@ -448,9 +449,11 @@ PLAN_ALL_LEAD = Plural(
 )
 PLAN_ALL_ALSO = "Also plots seen in the last 2 days"
 PLAN_ALL_NONE = (
-    "No plot is due today: every one was seen in the last 2 days. Tick the box above to plan them "
-    "all the same."
+    "No plot is due today: below is why. The box above plans those seen in the last 2 days all the "
+    "same."
 )
+PLAN_ALL_WHEN = "{day}, from {start}."
+PLAN_ALL_LATE = "It is {now} already: the times below are those of a whole day, as on Today."
 PLAN_ALL_RULE = (
     "Plots come in the order of the infested plants expected there. Each goes to whoever then has "
     "most time for it, and everybody shares his hours among his plots by what is expected. A plot "
@@ -478,6 +481,7 @@ TO_ROUTE = "Show today's route"
 
 # -- today
 PLANTS_COUNTED = Plural("{n:,} plant", "{n:,} plants")
+FACES_COUNTED = Plural("{n:,} face", "{n:,} faces")
 BEGIN_TITLE = "Keep this season"
 BEGIN_NOTE = (
     "Begin a season, and everything is kept from here on: routes, what was found, and what that "
@@ -765,9 +769,9 @@ DECIDE_ZONE, DECIDE_ROWS, DECIDE_PLANTS = "zone", "rows", "plants of the row"
 DECIDE_INFESTED, DECIDE_ITSELF, DECIDE_WRONG = "infested", "by itself", "may be wrong"
 DECIDE_WRONG_HELP = (
     "By itself: whether this zone alone needs treating. May be wrong: the chance that this answer "
-    "is wrong; where it is not clear, that treating would be needless."
+    "is wrong; where it says inspect more, that treating would be needless."
 )
-DECIDE_VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
+DECIDE_VERDICTS = {"treat": "treat", "do not treat": "do not treat", "inspect more": "inspect more"}
 DECIDE_NUMBERS = "numbers of the zones"
 DECIDE_ON_MAP = "zones to treat"
 DECIDE_TIP = Text("Zone {zone}: {share:.0%} infested; {verdict}")
@@ -913,6 +917,10 @@ RESULT, COUNT, RESULTS_OF = "Result", "Count", {
 RECORD_BUTTON, RECORDED = "Record", "{new} recorded, {known} known before."
 NOTED = Plural("{n} note added to what was known.", "{n} notes added to what was known.")
 COMPLETED = Plural("{n} known inspection was completed.", "{n} known inspections were completed.")
+BY_A_SECOND = Plural(
+    "{n} known inspection was made by a second person, too: it counts once.",
+    "{n} known inspections were made by a second person, too: they count once.",
+)
 RECORDED_OF = "Recorded for {days}, not for {day}."
 RECORD_REST = (
     "Say how many stops were done, from the first: they are recorded as clean, unless marked as "
@@ -1147,6 +1155,14 @@ DRIVE_BROKER, DRIVE_MANUFACTURER, DRIVE_SERIAL = "MQTT broker", "Manufacturer", 
 DRIVE_VDA = "Version of VDA 5050"
 DRIVE_WATCH, DRIVE_WATCH_STOP = "Watch", "Stop watching"
 DRIVE_LAG = "Heard {seconds} s ago; what the map shows is up to a second older."
+DRIVE_NO_BROKER = (
+    "No MQTT broker answers at {where}. Start one there, or say where it is in the box *MQTT "
+    "broker*."
+)
+DRIVE_NOT_LET_IN = (
+    "The MQTT broker at {where} does not let us in. Say it in the box *MQTT broker* as it knows "
+    "you: mqtt://USER:PASSWORD@HOST:PORT."
+)
 DRIVE_NOT_HEARD = "The robot was not heard yet. Is it on, and are its names right?"
 DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago."
 DRIVE_PAUSED = "The robot is paused, or driven by hand."
@@ -1158,7 +1174,12 @@ DRIVE_MADE_UP = (
     "Once this tab is closed the drive waits, and is given up after two minutes."
 )
 DRIVE_SHARE = "Infested plants (%)"
+DRIVE_BELIEVES = "*Infested plants* begin as the season believes on {day}."
 DRIVE_RUN = "Drive the day"
+DRIVE_DONE = Plural(
+    "Driven: {n:,} stop, {found:,} found, {time}.", "Driven: {n:,} stops, {found:,} found, {time}."
+)
+DRIVE_STOPPED = "The drive was stopped: its day is thrown away, and nothing of it is kept."
 DRIVE_PROGRESS = "{share} % of the day driven"
 DRIVE_FILE = "Bag (.mcap) or stops (.stops.csv) that `fieldmon drive` wrote on this plot"
 DRIVE_BELIEVED = (
@@ -1170,7 +1191,7 @@ RUN, STOP, GO_ON = "Compare", "Stop", "Go on"
 COMPARE_PROGRESS = "{done} of {total} seasons simulated"
 COMPARE_EMPTY = "Choose and press Compare. Results appear as they come."
 TOO_MANY = "Compare 1 to {most} strategies at once, but these are {n}. Choose fewer."
-BEST, NO_DIFFERENCE = "best", "no clear difference"
+BEST, NO_DIFFERENCE, EVEN = "best", "no clear difference", "even"
 WORSE = "{percent:+.0f} % loss ({low:+.0f} to {high:+.0f})"
 ONE_SEASON = "(one season: no interval)"
 INTERVAL_OF = "{value} ({low} to {high})"
@@ -1188,6 +1209,7 @@ VERDICT = (
 VERDICT_ONE = (
     "One season so far: **{best}** is ahead of {second}. That tells little; more would tell."
 )
+VERDICT_EVEN = "**{names}** are even: {loss:,.0f} infested plant-days each."
 VERDICT_TIED = (
     "**{best}** comes out best, but not clearly better than {second}: the 95 % interval of the "
     "difference holds 0. More seasons would tell."
@@ -1280,6 +1302,7 @@ SCOUT_PAGE = {
     "photo": "Photo", "note_button": "Note", "undo": "Undo", "here": "I am at another plant",
     "other_plant": "Another plant", "back_to_route": "Back to the route",
     "photos": "Photos: {n}", "drop_photos": "Throw these photos away?",
+    "which_face": "Which face?", "as_on_map": "Each arrow points to it as on the map.",
     "row": "Row", "plant": "Plant", "no_such_plant": "There is no such plant.",
     "several_rows": "Several rows are called {row}: tap the plant on the map.",
     "no_picture": "This is no picture that the phone can read.",

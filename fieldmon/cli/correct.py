@@ -139,4 +139,11 @@ def _of_export(season: Season, file: Path, who: str, *, confirmed: bool) -> int:
     if edited.n_notes:
         s = "s" if edited.n_notes > 1 else ""
         typer.echo(f"{edited.n_notes} note{s} changed there can be joined with: fieldmon record")
+    if edited.n_seconds:
+        s, is_ = ("s", "are") if edited.n_seconds > 1 else ("", "is")
+        typer.echo(
+            f"{edited.n_seconds} time{s} there {is_} in whole minutes and otherwise the season's: "
+            "taken as written without seconds, not as corrected. To correct one: --inspection and "
+            "--time"
+        )
     return n

@@ -64,8 +64,13 @@ def export(
 
 def _table(kept: list[Season], of: str) -> bytes:
     from fieldmon.monitoring.certifier_tables import TABLES, csv_bytes
+    from fieldmon.monitoring.season_copies import called_apart
 
-    data = csv_bytes(TABLES[of](season) for season in kept)
+    tables = (
+        (TABLES[of](season), called)
+        for season, called in zip(kept, called_apart(kept), strict=True)
+    )
+    data = csv_bytes({**table, "plot": [called] * len(table["plot"])} for table, called in tables)
     if not data:
         raise SettingError(f"There must be {of} to write, but there are none. No file is written.")
     return data

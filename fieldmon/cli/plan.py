@@ -130,7 +130,7 @@ def _plan_one(options: PlanOptions) -> None:
         today = with_bound(today)
     typer.echo(f"{day_in_words(today.route)}\nPlanned by {name}.")
     route = today.route
-    if route.found_bound and share_above(route.expected_found, route.found_bound) > _FAR_BELOW:
+    if route.found_bound and share_above(route.expected_finds, route.found_bound) > _FAR_BELOW:
         typer.echo(
             "If nobody plans again after a find, a fixed route may find more: add --robots 1."
         )

@@ -182,15 +182,15 @@ def _due(
     seasons: Sequence[Season], told: date | None, *, every: bool
 ) -> tuple[list[tuple[Season, EstatePlot]], list[PlotLeftOut]]:
     """Return the seasons that share the day, with their plots; and those that are left out."""
-    from fieldmon.monitoring.estate_day import EstatePlot, days_since, due, not_due
+    from fieldmon.monitoring.estate_day import EstatePlot, days_since, due, not_begun, not_due
     from fieldmon.monitoring.estate_routes import PlotLeftOut
 
     begun, left_out = [], list[PlotLeftOut]()
     for season in seasons:
         tell_drafts(season.drafts)
         on = day_on(season.plot.field, told)
-        if on < season.settings.begins:
-            left_out.append(PlotLeftOut(_name(season), f"begins on {season.settings.begins}"))
+        if (why := not_begun(season.settings.begins, on)) is not None:
+            left_out.append(PlotLeftOut(_name(season), why))
         else:
             begun.append((season, on))
     since = [days_since(season, on) for season, on in begun]
@@ -223,7 +223,7 @@ def _planned(
 ) -> EstateRoutes:
     """Return what comes of the day; say the routes, what is left off, and who is free."""
     from fieldmon.monitoring.estate_day import share_estate
-    from fieldmon.monitoring.estate_routes import walked
+    from fieldmon.monitoring.estate_routes import too_far, walked
 
     shared = share_estate([one.known for one in plots], members, starts, move_s)
     with progress("Routes", len(shared.turns)) as bar:
@@ -239,6 +239,8 @@ def _planned(
     for plot, sentences in zip(plots, made.closed, strict=True):
         for sentence in sentences:
             typer.echo(f"seen: {plot.name}: {sentence}", err=True)
+    for sentence in too_far([one for _, one in made.turns], move_s):
+        typer.echo(f"seen: {sentence}", err=True)
     if made.free:
         typer.echo(f"Without a plot: {', '.join(made.free)}.")
     return made
@@ -262,7 +264,7 @@ def _write(
         written = [path for some in paths for path in some]
         files[" ".join(dict.fromkeys(path.name for path in written))] = one
     write_whole(folder / PLAN_TABLE, plan_table(files, made.left_out, made.free))
-    plants = sum(len(one.route) for one in routes)
+    plants = sum(one.plants for one in routes)
     typer.echo(
         f"{counted(len(routes), 'plot')}, {counted(plants, 'plant')}. Routes and {PLAN_TABLE} in "
         f"{folder}"

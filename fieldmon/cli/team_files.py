@@ -128,7 +128,7 @@ def tell_member(name: str, start: datetime, route: Route) -> None:
     plants = counted(len(route), "plant")
     typer.echo(
         f"{name}: from {start:%H:%M}, {plants} in {route.end_s / 3600:.1f} h, "
-        f"{route.drive_m / 1000:.2f} km; about {estimate(route.expected_found)} finds."
+        f"{route.drive_m / 1000:.2f} km; about {estimate(route.expected_finds)} finds."
     )
     for said in route.ways_said:
         typer.echo(f"{name}: {said}")

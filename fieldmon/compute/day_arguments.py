@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
-from datetime import date, datetime
-from typing import TYPE_CHECKING, Any
+from datetime import date, datetime, time
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from fieldmon.errors import ObservationError, SettingError
 
@@ -19,6 +19,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+
+#: a day that a public method takes: a date, a text as "2026-11-18", a moment, or numpy's day. What
+#: `checked` hands to the method is a date: Any lets callers give what `day_in` reads
+Day: TypeAlias = date | Any
+#: a time of day, likewise: a time, or a text as "07:00"
+TimeOfDay: TypeAlias = time | Any
 
 # a time of day, and then a zone: numpy would turn it into UTC
 _OF_ZONE = re.compile(r"[T ]\d\d.*(?:Z|[+-]\d\d(?::?\d\d)?)\s*$", re.IGNORECASE)
@@ -123,6 +129,21 @@ def day_in(
     elif type(given).__name__ == "datetime64":
         day = given.astype("datetime64[D]").item()
     return day if isinstance(day, date) else given
+
+
+def time_in(given: Any) -> Any:  # noqa: ANN401 - as above
+    """Return the time of day of a text; anything else, and a time of a zone, as it is.
+
+    Examples
+    --------
+    >>> time_in("07:00"), time_in("at seven")
+    (datetime.time(7, 0), 'at seven')
+    """
+    if isinstance(given, str):
+        with suppress(ValueError):
+            read = time.fromisoformat(given)
+            return given if read.tzinfo else read
+    return given
 
 
 def day_of(

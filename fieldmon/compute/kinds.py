@@ -16,7 +16,7 @@ from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from fieldmon.compute.arguments import shown, with_article
-from fieldmon.compute.day_arguments import day_in
+from fieldmon.compute.day_arguments import day_in, time_in
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ _INSTEAD = {
     "AdviceSettings": "Give AdviceSettings(level=0.05).",
     "GeoDataFrame": "Read a file with geopandas, or make one of a table and its geometry.",
     "date": "Give date(2026, 11, 18).",
-    "time": "Give time(6).",
+    "time": 'Give "06:00", or datetime.time(6).',
     "MonitoringSettings": "Begin with season.settings.",
     "Robot": "Give Robot(hours=4), or scout() for a person on foot.",
     "PestInWeather": "Give PestInWeather(pest, weather, date(2026, 11, 18)).",
@@ -47,7 +47,9 @@ _INSTEAD = {
     "str": "Put it in quotes.",
 }
 #: annotations of arguments that may be a day as `day_in` reads it
-_DAYS = frozenset({"date", "date | None"})
+_DAYS = frozenset({"date", "date | None", "Day", "Day | None"})
+#: and of those that may be a time as `time_in` reads it
+_TIMES = frozenset({"time", "time | None", "TimeOfDay", "TimeOfDay | None"})
 #: names of protocols, and of what a function looks at itself
 _LEFT = frozenset(
     {
@@ -65,6 +67,8 @@ _LEFT = frozenset(
 )
 _ANYTHING = "something else"
 _ALIASES = {
+    "Day": "date",
+    "TimeOfDay": "time",
     "Float": "NDArray[float64]",
     "Floats": "NDArray[float64]",
     "Times": "NDArray[datetime64]",
@@ -161,7 +165,8 @@ def checked(public: F) -> F:
     """Let a function refuse arguments that are not what it is annotated with; for decorators.
 
     Of a class: all its public methods. A day may be a text, ``"2026-11-18"``, a time, or numpy's;
-    what has the method `plot_time` turns a time of another zone into its plot's.
+    a time of day may be a text, ``"07:00"``. What has the method `plot_time` turns a time of
+    another zone into its plot's.
 
     Examples
     --------
@@ -195,9 +200,15 @@ def _checked(function: Any) -> Any:  # noqa: ANN401 - any function, with its own
             named[name] = str(one.annotation)
     in_order = list(named)
     days = {name for name, annotation in named.items() if annotation in _DAYS}
+    times = {name for name, annotation in named.items() if annotation in _TIMES}
 
     @wraps(function)
     def wrapper(*args: Any, **keywords: Any) -> Any:  # noqa: ANN401 - as above
+        if times:
+            told = zip(in_order, args, strict=False)
+            in_place = [time_in(given) if name in times else given for name, given in told]
+            args = (*in_place, *args[len(in_place) :])
+            keywords = {k: time_in(v) if k in times else v for k, v in keywords.items()}
         if days:
             asked = args[0] if args and not isinstance(args[0], type) else None
             local = getattr(asked, "plot_time", None)

@@ -7,6 +7,7 @@ from datetime import date
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import figure, worded
+from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
     from fieldmon.compute.wording import Worded
@@ -52,14 +53,28 @@ class Units:
         ``"ha"``, ``"dunam"`` or ``"acre"``.
     date_like
         An example of a date, a key of `DATES`.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> fm.Units(length="ft").metres(3.0)
+    '10 ft'
     """
 
     length: str = "m"
     area: str = "ha"
     date_like: str = "2026-11-16"
 
+    def __post_init__(self) -> None:
+        known = {"length": [*LENGTHS], "area": [*AREAS_M2], "date_like": [*DATES]}
+        for name, those in known.items():
+            if not isinstance(said := getattr(self, name), str) or said not in those:
+                raise SettingError(
+                    f"The {name} of units must be one of {', '.join(those)}, but it is {said!r}."
+                )
+
     def metres(self, value_m: float, decimals: int = 0) -> str:
-        """Return a length; long ones in kilometres or miles."""
+        """Return `value_m` as text with `decimals`; long ones in kilometres or miles."""
         if self.length == "ft" and value_m >= 1609.344:
             return in_unit(value_m / 1609.344, ".2f", "mi")
         if self.length == "m" and value_m >= 1000.0:
@@ -67,7 +82,7 @@ class Units:
         return in_unit(value_m / LENGTHS[self.length], f".{decimals}f", self.length)
 
     def shown(self, value_m: float) -> float:
-        """Return a length as a number in the chosen unit, precise to less than a millimetre."""
+        """Return `value_m` as a number in the chosen unit, precise to less than a millimetre."""
         return round(value_m / LENGTHS[self.length], 4)
 
     def in_metres(self, shown: float) -> float:
@@ -75,14 +90,15 @@ class Units:
         return round(shown * LENGTHS[self.length], 3)
 
     def limits(self, *values_m: float) -> tuple[float, ...]:
-        """Return lengths as limits of a box in the chosen unit."""
+        """Return lengths `values_m` as limits of a box in the chosen unit."""
         return tuple(round(value_m / LENGTHS[self.length], 1) for value_m in values_m)
 
     def square(self, value_m2: float) -> str:
-        """Return an area in three digits at least, so that parts add up.
+        """Return `value_m2` in three digits at least, so that parts add up.
 
-        >>> Units().square(150.0), Units().square(2884.0), Units().square(123456.0)
-        ('0.015 ha', '0.288 ha', '12.35 ha')
+        >>> import fieldmon as fm
+        >>> [fm.Units().square(value_m2) for value_m2 in (150.0, 2884.0, 123456.0)]
+        ['0.015 ha', '0.288 ha', '12.35 ha']
         """
         value = value_m2 / AREAS_M2[self.area]
         return in_unit(value, ",.2f" if value >= 0.9995 or value <= 0 else ".3g", self.area)
@@ -93,17 +109,20 @@ class Units:
         return in_unit(1.0, "g", self.area)
 
     def by_area(self, per_ha: float) -> float:
-        """Return a cost or a rate of a hectare as that of the chosen unit of area.
+        """Return a cost or a rate `per_ha` as that of the chosen unit of area.
 
-        >>> Units(area="dunam").by_area(300.0)
+        >>> import fieldmon as fm
+        >>> fm.Units(area="dunam").by_area(300.0)
         30.0
         """
         return float(f"{per_ha * AREAS_M2[self.area] / AREAS_M2['ha']:.8g}")
 
     def by_hectare(self, shown: float) -> float:
-        """Return what `by_area` returned as that of a hectare.
+        """Return what `by_area` returned, as it is `shown`, as that of a hectare.
 
-        >>> Units(area="acre").by_hectare(Units(area="acre").by_area(300.0))
+        >>> import fieldmon as fm
+        >>> acres = fm.Units(area="acre")
+        >>> acres.by_hectare(acres.by_area(300.0))
         300.0
         """
         return float(f"{shown * AREAS_M2['ha'] / AREAS_M2[self.area]:.7g}")
@@ -115,7 +134,7 @@ class Units:
         return form.replace("%Y", "YYYY").replace("%m", "MM").replace("%d", "DD")
 
     def day(self, on: date | str) -> str:
-        """Return a date."""
+        """Return the day `on` as a date is written."""
         day = date.fromisoformat(on) if isinstance(on, str) else on
         return day.strftime(DATES[self.date_like])
 

@@ -10,7 +10,7 @@ import numpy as np
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import loop
 from fieldmon.compute.wording import worded
-from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
+from fieldmon.decisions.sequential import INSPECT_MORE, LEAVE, TREAT
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.infestation.prior import scaled
@@ -149,7 +149,7 @@ class MapPlan:
         so_far = evidence.log_ratio
         clear = np.flatnonzero((so_far <= below) | (so_far >= above - evidence.overstep))
         if not clear.size:
-            return LOOK_ON, len(so_far)
+            return INSPECT_MORE, len(so_far)
         first = int(clear[0])
         return (TREAT if so_far[first] > 0.0 else LEAVE), first + 1
 

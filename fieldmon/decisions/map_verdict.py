@@ -11,7 +11,7 @@ from scipy.sparse import csc_array
 from fieldmon.compute.array_arguments import plants_marked
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.wording import chance_figure, counted, joined, worded
-from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, Verdict
+from fieldmon.decisions.sequential import INSPECT_MORE, LEAVE, TREAT, Verdict
 from fieldmon.errors import SettingError
 from fieldmon.infestation.pairs import pairs_of
 from fieldmon.infestation.plot_estimate import doubted, draw_fields, known_infested
@@ -39,7 +39,7 @@ class MapVerdict:
     Parameters
     ----------
     verdict
-        ``"treat"``, ``"do not treat"`` or ``"look on"``.
+        ``"treat"``, ``"do not treat"`` or ``"inspect more"``.
     level
         Share of plants infested from which on treating pays.
     chance_above
@@ -49,14 +49,14 @@ class MapVerdict:
     sure
         How sure a verdict must be.
     inspected
-        Whether anybody has inspected; else the verdict is to look on, whatever was told before.
+        Whether anybody has inspected; else the verdict is to inspect more, whatever was told.
 
     Examples
     --------
     >>> import fieldmon as fm
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> fm.Monitor(plot).verdict(level=0.05).verdict
-    'look on'
+    'inspect more'
     """
 
     verdict: Verdict
@@ -70,11 +70,11 @@ class MapVerdict:
 
     def where(self, *, inspected: bool) -> MapVerdict:
         """Return it where anybody has inspected, or nobody: then there is no verdict yet."""
-        return self if inspected else replace(self, verdict=LOOK_ON, inspected=False)
+        return self if inspected else replace(self, verdict=INSPECT_MORE, inspected=False)
 
     @property
     def wrong(self) -> float:
-        """Return the chance that the verdict is wrong; of "look on", that "treat" would be."""
+        """Return the chance that the verdict is wrong; of "inspect more", that "treat" would be."""
         return self.chance_above if self.verdict == LEAVE else 1.0 - self.chance_above
 
     def sentence(self) -> str:
@@ -162,7 +162,7 @@ class AskedVerdict:
         """Return the verdict on drawn shares ``(draws,)`` of plants, `share` of them expected."""
         above = float(np.mean(shares >= self.level * (1.0 - _ROUNDED)))
         verdict: Verdict = (
-            TREAT if above >= self.sure else LEAVE if above <= 1 - self.sure else LOOK_ON
+            TREAT if above >= self.sure else LEAVE if above <= 1 - self.sure else INSPECT_MORE
         )
         low, high = np.quantile(shares, [0.5 - self.sure / 2, 0.5 + self.sure / 2])
         return MapVerdict(verdict, self.level, above, share, float(low), float(high), self.sure)

@@ -1,8 +1,8 @@
 """Sequential plans: look at leaves or plants one by one, and stop as soon as it is clear.
 
 After n of them the cumulative count is held against two lines: below the lower one treating does
-not pay, above the upper one it does, and in between one looks on. When a plan stops, and what it
-does on simulated counts, is in `stopping`.
+not pay, above the upper one it does, and in between one inspects more. When a plan stops, and what
+it does on simulated counts, is in `stopping`.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 TREAT: Final = "treat"
 LEAVE: Final = "do not treat"
-LOOK_ON: Final = "look on"
-Verdict = Literal["treat", "do not treat", "look on"]
+INSPECT_MORE: Final = "inspect more"
+Verdict = Literal["treat", "do not treat", "inspect more"]
 Counts = Literal["presence", "poisson", "negative binomial"]
 
 _STEPS = 200

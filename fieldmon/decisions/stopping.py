@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.compute.arrays import read_only
 from fieldmon.compute.wording import worded
-from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT, OperatingCurve
+from fieldmon.decisions.sequential import INSPECT_MORE, LEAVE, TREAT, OperatingCurve
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-_CODES: tuple[Verdict, ...] = (LOOK_ON, LEAVE, TREAT)
+_CODES: tuple[Verdict, ...] = (INSPECT_MORE, LEAVE, TREAT)
 # how far one looks ahead for the next moment at which a verdict is possible
 _MOST_AHEAD = 100_000
 
@@ -49,7 +49,7 @@ def after(plan: Plan, looks: int, total: float) -> Verdict:
     'treat'
     """
     lines = plan.lines(looks)
-    return LEAVE if total <= lines.low[-1] else TREAT if total >= lines.high[-1] else LOOK_ON
+    return LEAVE if total <= lines.low[-1] else TREAT if total >= lines.high[-1] else INSPECT_MORE
 
 
 def least_more(plan: Plan, looks: int, total: float) -> int:

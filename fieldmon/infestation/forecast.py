@@ -87,7 +87,7 @@ class Forecast:
         return pd.DataFrame({"night": night, **columns})
 
     def sentence(self) -> str:
-        """Return it in words."""
+        """Return in words how many are infested at the end, and now."""
         nights = counted(self.nights, "night")
         return (
             f"{self.expected[-1]:,.0f} plants infested after {nights} without inspections "

@@ -149,7 +149,7 @@ class PestInWeather:
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance)
     >>> robot = mite.pest.seen_by(fm.Robot())
-    >>> fm.simulate(plot, start, "naive", robot, settings).left.shape
+    >>> fm.simulate(plot, start, "naive", robot=robot, settings=settings).left.shape
     (5,)
     """
 

@@ -244,17 +244,22 @@ class UsableRecords:
         neither, later = self.undecided, self.future
         said = (
             worded(
-                "{n} of the records say neither infested nor clean and are left out.", n=neither
+                "{n} of the records {n:says|say} neither infested nor clean and {n:is|are} left "
+                "out.",
+                n=neither,
             ),
-            worded("{n} of the records are of a later day and are left out.", n=later),
             worded(
-                "{n} of the records have no date and count as {days:g} days old, whatever day is "
-                "planned.",
+                "{n} of the records {n:is|are} of a later day and {n:is|are} left out.", n=later
+            ),
+            worded(
+                "{n} of the records {n:has|have} no date and {n:counts|count} as {days:g} days "
+                "old, whatever day is planned.",
                 n=self.undated,
                 days=self.prior.undated_days,
             ),
             worded(
-                "{n} of the records are more than {days} days old and hardly count.",
+                "{n} of the records {n:is|are} more than {days} days old and hardly "
+                "{n:counts|count}.",
                 n=self.old,
                 days=round(self.prior.hardly_days),
             ),

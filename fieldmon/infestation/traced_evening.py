@@ -19,7 +19,7 @@ from fieldmon.infestation.origins import JUMPED, N_ORIGINS
 from fieldmon.infestation.pair_changes import pairs_scaled
 from fieldmon.infestation.pairs import Neighbourhood
 from fieldmon.infestation.traced_day import KernelRoom, TracedDay, learn_day
-from fieldmon.infestation.traced_map import PROBABLE, Map, TracedMap
+from fieldmon.infestation.traced_map import PROBABLE, Map, TracedMap, from_afar
 from fieldmon.infestation.tracing import Raised, rescale_traced
 
 if TYPE_CHECKING:
@@ -130,8 +130,7 @@ def _jumping(
 ) -> NDArray[np.float32]:
     """Believe in what jumps have brought `ratio` times as much, in place; return the shares."""
     shares = before.shares.copy()
-    afar = shares[:, JUMPED:].sum(axis=1, dtype=np.float64)
-    rescale_traced(believed, before.grid.linked, afar, ratio)
+    rescale_traced(believed, before.grid.linked, from_afar(shares), ratio)
     shares[:, JUMPED:] *= np.float32(ratio)
     shares /= shares.sum(axis=1, keepdims=True)
     return shares

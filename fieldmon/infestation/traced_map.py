@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Self, TypeVar
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_compiled
+from fieldmon.compute.jit import loop
 from fieldmon.infestation.ancestry import MOST_PLANTS, Ancestry
 from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.chance_bounds import KNOWN, LEAST_CHANCE, MOST_CHANCE
@@ -152,7 +154,7 @@ class TracedMap:
         )  # fmt: skip
 
     def of_pest(self, pest: Pest) -> Self:
-        """Return the same, of a plot on which this pest lives."""
+        """Return the map of a plot on which this pest lives; how long one hides is not learnt."""
         cohorts = Cohorts.none(pest, len(self.chance))
         # an ancestry knows no infestation that ends of itself
         lives = pest.mortality_per_day == 0.0
@@ -210,8 +212,7 @@ class TracedMap:
     def traces(self) -> Traces:
         """What a day needs to trace a find."""
         kernel = np.einsum("k,kij->ij", self.beyond, self.reach.kernels)
-        afar = self.shares[:, JUMPED:].sum(axis=1, dtype=np.float64)
-        so_far = self.unseen, afar, self.evidence, self.slope_sums
+        so_far = self.unseen, from_afar(self.shares), self.evidence, self.slope_sums
         return Traces(self.reach.cells, kernel, *so_far)
 
     def hidden(self, plants: NDArray[np.int32] | None = None) -> Floats | None:
@@ -281,3 +282,19 @@ class TracedMap:
 
 #: a map and what becomes of it, be it one with others beside it
 Map = TypeVar("Map", bound=TracedMap)
+
+
+def from_afar(shares: NDArray[np.float32]) -> Floats:
+    """Return the share of each plant's chance that jumps brought, ``(n,)``."""
+    afar = np.empty(len(shares))
+    _sum_jumps(as_compiled(shares), afar)
+    return afar
+
+
+# numpy takes nine times as long to add up six numbers of each plant
+@loop
+def _sum_jumps(shares: NDArray[np.float32], afar: Floats) -> None:
+    for i in range(afar.size):
+        afar[i] = 0.0
+        for o in range(JUMPED, N_ORIGINS):
+            afar[i] += shares[i, o]

@@ -7,8 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.arrays import as_compiled
+from fieldmon.compute.jit import loop
 from fieldmon.infestation.ancestry_night import ToldNight, overnight
-from fieldmon.infestation.chance_bounds import AS_GOOD_AS_CLEAN, LEAST_CHANCE, MOST_CHANCE
+from fieldmon.infestation.chance_bounds import (
+    AS_GOOD_AS_CLEAN,
+    LEAST_CHANCE,
+    MOST_CHANCE,
+    greater,
+)
 from fieldmon.infestation.clustering import leaning
 from fieldmon.infestation.origins import ANYWHERE, BY_ADJACENT, BY_EDGE, JUMPED, N_ORIGINS
 from fieldmon.infestation.pair_changes import pairs_after_arrivals
@@ -163,11 +170,31 @@ def _shares_after(
     evening: TracedMap, beside: Floats, gain: Floats, brought: Floats
 ) -> NDArray[np.float32]:
     """Return the shares of the origins after a night that brought so much."""
-    parts = evening.shares * evening.chance[:, None].astype(np.float32)
-    parts[:, BY_ADJACENT] += np.maximum(beside, 0.0).astype(np.float32)
-    parts += (brought * (gain / np.maximum(brought.sum(axis=0), 1e-12))).T.astype(np.float32)
-    shares: NDArray[np.float32] = parts / parts.sum(axis=1, keepdims=True)
+    shares = np.empty_like(evening.shares)
+    _add_brought(as_compiled(evening.shares), evening.chance, (beside, gain, brought), shares)
+    shares /= shares.sum(axis=1, keepdims=True)
     return shares
+
+
+@loop
+def _add_brought(
+    before: NDArray[np.float32],
+    chance: Floats,
+    came: tuple[Floats, Floats, Floats],
+    parts: NDArray[np.float32],
+) -> None:
+    """Find how much of each chance each origin brought, ``(n, o)``; plant by plant, in one walk."""
+    beside, gain, brought = came
+    for i in range(chance.size):
+        total = 0.0
+        for o in range(N_ORIGINS):
+            total += brought[o, i]
+        share = gain[i] / greater(total, 1e-12)
+        for o in range(N_ORIGINS):
+            parts[i, o] = before[i, o] * np.float32(chance[i])
+            if o == BY_ADJACENT:
+                parts[i, o] += np.float32(greater(beside[i], 0.0))
+            parts[i, o] += np.float32(brought[o, i] * share)
 
 
 def _odds(chance: Floats) -> Floats:

@@ -66,6 +66,7 @@ def read_plot(
     source: Source | None = None,
     feature: str | int | None = None,
     plants: Source | None = None,
+    *,
     planting: PlantingChoices | None = None,
     gate: tuple[float, float] | None = None,
     **options: object,
@@ -126,22 +127,22 @@ def read_plot(
     <Plot vines: 30 plants in 3 rows>
     """
     if source is not None:
-        _must_be_file(source)
+        must_be_file(source)
     if plants is not None:
-        _must_be_file(plants, "A file of plants")
+        must_be_file(plants, "A file of plants")
     must_be_of("A plot's name or number", "str | int | None", feature)
     must_be_of("A plot's planting", "PlantingChoices | None", planting)
     must_be_of("A plot's gate", "tuple[float, float] | None", gate)
     drawn: dict[str, Any] = {name: options.pop(name) for name in _DRAWN if name in options}
     for name, file in drawn.items():
         if file is not None:
-            _must_be_file(file, f"A file of {name}")
+            must_be_file(file, f"A file of {name}")
     drawn["guess_blocks"] = yes_or_no("guess_blocks", options.pop("guess_blocks", False))
     sources = PlotSources(source, plants=plants, gate=gate, **drawn)
     sources = replace(sources, **_how_read(sources, feature, options))
     with _answered(sources.first):
         ready = prepare(PlotRequest(sources, planting or PlantingChoices()))
-    _warn(said.message for said in ready.messages)
+    warn_of(said.message for said in ready.messages)
     for assumed in ready.assumed:
         warnings.warn(f"{assumed} (planting=PlantingChoices(...))", ImportDoubt, stacklevel=2)
     return ready.plot
@@ -183,11 +184,11 @@ def read_plots(source: Source, **options: object) -> tuple[Field, ...]:
     >>> fm.Plot.of(fields[0]).n_plants
     3825
     """
-    _must_be_file(source)
+    must_be_file(source)
     chosen = _chosen(PlotOptions(), options)
     with _answered():
         read = read_fields(source, chosen)
-    _warn(read.messages)
+    warn_of(read.messages)
     return read.value
 
 
@@ -230,12 +231,12 @@ def read_records(source: Source, near: Plot, **options: object) -> Records:
     >>> len(records), int((records.present == 1).sum())
     (329, 86)
     """
-    _must_be_file(source)
+    must_be_file(source)
     must_be_plot(near)
     asked = RecordSource(source, _chosen(RecordOptions(), options))
     with _answered():
         read = records_on(near, asked)
-    _warn(read.messages)
+    warn_of(read.messages)
     return read.value
 
 
@@ -281,12 +282,12 @@ def read_inspections(source: Source, plot: Plot, **options: object) -> Inspectio
     >>> seen.plant.tolist(), seen.result.tolist()
     ([17, 18], [1, 0])
     """
-    _must_be_file(source)
+    must_be_file(source)
     must_be_plot(plot)
     wanted = _chosen(InspectionOptions(), options).on(plot.field)
     with _answered():
         read = read_on_grid(source, plot.grid, wanted, (plot.field.name,))
-    _warn(read.messages)
+    warn_of(read.messages)
     return read.value
 
 
@@ -297,6 +298,11 @@ def read_pest(said: str | PathLike[str]) -> Pest:
     ----------
     said
         ``"spider-mite"``, ``"western-flower-thrips"``, ... or ``"mite.toml"``, a path too.
+
+    Returns
+    -------
+    Pest
+        Its stages, how it grows and moves, with who says so.
 
     Raises
     ------
@@ -356,12 +362,12 @@ def read_weather(source: Source, plot: Plot, **options: object) -> Weather:
     >>> fm.read_weather("station.csv", plot).high_c.round(1).tolist()
     [20.0, 21.1]
     """
-    _must_be_file(source)
+    must_be_file(source)
     must_be_plot(plot)
     wanted = _chosen(WeatherOptions(now=utc_now()), options).on(plot.field)
     with _answered():
         read = read_weather_file(source, wanted)
-    _warn(read.messages)
+    warn_of(read.messages)
     return read.value
 
 
@@ -387,7 +393,7 @@ def _how_read(
     return {"plot_options": chosen, "plants_options": measured}
 
 
-def _must_be_file(source: Any, what: str = "A file") -> None:  # noqa: ANN401 - anything
+def must_be_file(source: Any, what: str = "A file") -> None:  # noqa: ANN401 - anything
     """Raise `SettingError` unless this is a file: its path, or what was uploaded."""
     uploads = isinstance(source, tuple) and len(source)
     for one in source if uploads else (source,):
@@ -432,7 +438,7 @@ def _chosen(options: Any, more: dict[str, object]) -> Any:  # noqa: ANN401 - opt
     return options
 
 
-def _warn(messages: Iterable[ImportMessage]) -> None:
+def warn_of(messages: Iterable[ImportMessage]) -> None:
     """Warn the caller of the caller of every doubt."""
     for message in messages:
         if message.severity in _DOUBTS:

@@ -1,4 +1,4 @@
-"""What a season advises on a day: treat, do not, or look on; where; and how many looks more."""
+"""What a season advises on a day: treat, do not, or inspect more; where; and how many looks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import chance_figure, counted, figure, joined, share_figure, worded
 from fieldmon.decisions.map_verdict import AskedVerdict, verdict_of, zone_verdicts
-from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
+from fieldmon.decisions.sequential import INSPECT_MORE, LEAVE, TREAT
 from fieldmon.decisions.zones import best_zones, outlines
 from fieldmon.io.spray_rate import litres_figure
 from fieldmon.io.writers.treatment_map import TreatmentMap
@@ -135,8 +135,8 @@ class Advice:
 
     def headline(self, units: Units | None = None) -> str:
         """Return the daily question's answer in one sentence; `units` writes its area."""
-        if self.verdict == LOOK_ON:
-            return self._look_on()
+        if self.verdict == INSPECT_MORE:
+            return self._inspect_more()
         written = units or Units()
         area = {
             "area": written.square(self.zones.m2),
@@ -184,7 +184,7 @@ class Advice:
         plot = self.plot.where(inspected=False)
         return replace(self, plot=plot, said=replace(self.said, zones=zones), more=None)
 
-    def _look_on(self) -> str:
+    def _inspect_more(self) -> str:
         if not self.plot.inspected:
             return worded("Keep inspecting before you decide: nobody has inspected yet.")
         more = self.more or MoreInspections(None, None)
@@ -261,9 +261,8 @@ class Advice:
             "Each face counts as a plant: in the threshold, among the infested, and in what one "
             "loses a day. Where it is treated, its two faces are one plant."
         )
-        has_faces = bool((self.grid.twin >= 0).any())
         asked = self.asked.assumed(units, finds_treated=self.finds_treated)
-        return joined(" ", [*[faces] * has_faces, asked])
+        return joined(" ", [*[faces] * self.grid.has_faces, asked])
 
     def though(self, *, above: bool = True) -> list[str]:
         """Return why there are zones, where what is said of the plot does not ask for them."""
@@ -278,7 +277,7 @@ class Advice:
                     "still save more than it costs."
                 )
             ]
-        if above and self.verdict == LOOK_ON:
+        if above and self.verdict == INSPECT_MORE:
             return [
                 worded(
                     "If you cannot inspect any more today and the costs are yours, spray the "
@@ -304,7 +303,7 @@ class Advice:
             "Of the zones {treat} are above the threshold by themselves, {leave} are not, and of "
             "{open} it is not clear.",
             treat=verdicts.count(TREAT), leave=verdicts.count(LEAVE),
-            open=verdicts.count(LOOK_ON),
+            open=verdicts.count(INSPECT_MORE),
         )  # fmt: skip
 
     def _worth_said(self) -> str:
@@ -362,6 +361,6 @@ def advice(
         grid, (evening.chance, evening.pair_chance), zones.zone, question, asked.costs.works
     )
     more = None
-    if scene is not None and plot.verdict == LOOK_ON:
+    if scene is not None and plot.verdict == INSPECT_MORE:
         more = inspections_to_verdict(evening, scene, asked, found)
     return Advice(grid, asked, plot, zones, said, more, done)

@@ -41,7 +41,7 @@ class AdviceSettings:
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
     >>> season = fm.Season.create("of_advice.gpkg", plot, begins="2026-11-18")
     >>> season.advice("2026-11-18", asked).verdict  # nobody has inspected yet
-    'look on'
+    'inspect more'
     """
 
     level: float = 0.05

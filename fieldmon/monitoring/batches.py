@@ -155,6 +155,9 @@ class Recorded:
     noted, filled
         Of those known, how many got a note, and how many others got what was left open: a name, a
         chance to see what is there.
+    seen_by_another
+        How many others of those known somebody else recorded before: they count once, and still
+        when one of the two batches is undone.
     """
 
     batch: int | None
@@ -163,19 +166,35 @@ class Recorded:
     corrected: int = 0
     noted: int = 0
     filled: int = 0
+    seen_by_another: int = 0
 
     @property
     def more(self) -> str:
         """What was added to those known, in words; empty: nothing."""
-        return more_in_words(self.noted, self.filled)
+        return more_in_words(self.noted, self.filled, self.seen_by_another)
 
 
-def more_in_words(noted: int, filled: int = 0) -> str:
-    """Return in words how many notes were added to what was known, and how many gaps filled."""
+def more_in_words(noted: int, filled: int = 0, seen_by_another: int = 0) -> str:
+    """Return in words how many notes were added to what was known, and how many gaps filled.
+
+    And how many others somebody else recorded before.
+    """
     said = [worded("{n} {n:note|notes} added", n=noted)] if noted else []
     if filled:
         said.append(worded("{n} completed", n=filled))
+    if seen_by_another:
+        said.append(worded("{n} by a second person added", n=seen_by_another))
     return joined(", ", said)
+
+
+def n_more(more: Sequence[tuple[bool, bool]]) -> dict[str, int]:
+    """Return what `Recorded` counts of those known that say more.
+
+    Given of each whether it is a note, and whether it fills what was left open.
+    """
+    noted = sum(is_note for is_note, _ in more)
+    filled = sum(fills and not is_note for is_note, fills in more)
+    return {"noted": noted, "filled": filled, "seen_by_another": len(more) - noted - filled}
 
 
 def begin(db: sqlite3.Connection, kind: str, source: str, who: str) -> int:

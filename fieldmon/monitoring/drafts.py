@@ -59,13 +59,14 @@ class Draft(NamedTuple):
     why: str = ""
     known: Inspections | None = None
     is_note: bool = False
+    fills: bool = False
 
     @property
     def sentence(self) -> str:
         """Return for people why it does not count."""
         return worded(
             "Finding {row} (fid, in the layer Findings), which another program added, does not "
-            "count: {why} Mend it there, or delete it.",
+            "count: {why} Correct it there, or delete it.",
             row=self.row,
             why=self.why if self.why.endswith(".") else worded("{why}.", why=self.why),
         )
@@ -104,9 +105,9 @@ def read(
                 continue
             inspection_table.rows(one, *plot, settings, (0, ""))  # whether it fits the season
             if said_before(one, held).any():
-                for more in repeated_recordings.additions(one, held):
+                for more in repeated_recordings.additions(db, one, held):
                     known = held.take(np.array([more.held]))
-                    drafts.append(Draft(row, one, "", known, more.is_note))
+                    drafts.append(Draft(row, one, "", known, more.is_note, more.fills))
                 continue
             contradictions(one, held).refuse(plot[0])
         except (FieldmonError, ValueError, TypeError) as error:

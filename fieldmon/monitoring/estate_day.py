@@ -171,6 +171,21 @@ def one_robot(seasons: Iterable[Season]) -> Robot | None:
     return robots[0] if len(kinds) == 1 else None
 
 
+def not_begun(begins: date, on: date) -> Worded | None:
+    """Return why a season that begins after a day is left out of it; None: it has begun.
+
+    Examples
+    --------
+    >>> from datetime import date
+    >>> from fieldmon.monitoring.estate_day import not_begun
+    >>> not_begun(date(2026, 12, 1), date(2026, 11, 30))
+    'begins on 2026-12-01'
+    >>> not_begun(date(2026, 12, 1), date(2026, 12, 1)) is None
+    True
+    """
+    return worded("begins on {day}", day=begins) if on < begins else None
+
+
 def due(days_since: Sequence[int | None]) -> list[int]:
     """Return the numbers of the plots that are due, from how long ago each was seen; None: never.
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import worded
@@ -15,10 +18,13 @@ from fieldmon.io.writers.file_names import plain_name
 from fieldmon.monitoring.closures import closed_in_words
 from fieldmon.monitoring.estate_day import EstateTurn
 from fieldmon.plot.local_clock import grid_clock
+from fieldmon.plot.projection import GEOD
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
     from datetime import datetime
+
+    from numpy.typing import NDArray
 
     from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.estate_day import EstatePlot, SharedEstate
@@ -27,8 +33,12 @@ if TYPE_CHECKING:
     from fieldmon.planning.route import Route
     from fieldmon.samplers.base import Scene
 
+    Float = NDArray[np.float64]
+
 #: the table's file, beside the routes
 PLAN_TABLE = "plan.csv"
+#: faster than this nobody goes from plot to plot
+MOST_KM_H = 60.0
 _COLUMNS = ("file", "plot", "who", "from", "to", "plants", "finds_expected", "closed", "left_out")
 
 
@@ -61,6 +71,11 @@ class EstateRoute:
     def ends(self) -> datetime:
         """Return when the route ends, to the second that its file says."""
         return grid_clock(self.route.aisles.grid).after(self.begins, round(self.route.end_s))
+
+    @property
+    def plants(self) -> int:
+        """Return how many plants are inspected: both faces of one are one."""
+        return len(np.unique(self.route.aisles.grid.vine[self.route.plant]))
 
     @property
     def notes(self) -> RouteNotes:
@@ -150,6 +165,46 @@ def walked(
     )  # fmt: skip
 
 
+def too_far(
+    routes: Iterable[EstateRoute], move_s: float, units: Units | None = None
+) -> list[Worded]:
+    """Return a sentence for each way to the next plot that is too far for the time it is given.
+
+    Parameters
+    ----------
+    routes
+        Of a day, of whoever works.
+    move_s
+        What going from one plot to the next takes.
+    units
+        Write the distance, which is from gate to gate in a straight line.
+    """
+    written, own, said = units or Units(), dict[str, list[EstateRoute]](), []
+    for one in routes:
+        own.setdefault(one.who, []).append(one)
+    for some in own.values():
+        for first, then in pairwise(sorted(some, key=lambda one: one.begins)):
+            (lon, to_lon), (lat, to_lat) = np.concatenate([_gate(first), _gate(then)]).T.tolist()
+            away_m = GEOD.inv(lon, lat, to_lon, to_lat)[2]
+            if away_m > MOST_KM_H / 3.6 * move_s:
+                said.append(
+                    worded(
+                        "From {first} to {then} it is {away} in a straight line, more than "
+                        "{minutes:g} minutes allow at {most:g} km/h: give more time from plot to "
+                        "plot.",
+                        first=first.plot, then=then.plot, away=written.metres(away_m),
+                        minutes=move_s / 60.0, most=MOST_KM_H,
+                    )
+                )  # fmt: skip
+    return said
+
+
+def _gate(one: EstateRoute) -> Float:
+    """Return the gate of a route's plot as lon/lat ``(1, 2)``."""
+    aisles = one.route.aisles
+    return aisles.grid.frame.lonlat(aisles.gate_m)
+
+
 def _why(scene: Scene, closed: Sequence[str]) -> Worded:
     """Return why nobody goes to a plot that shares a day."""
     if closed:
@@ -185,9 +240,9 @@ def plan_table(
     table.writerow(_COLUMNS)
     for file, one in files.items():
         hours = (when.isoformat(timespec="seconds") for when in (one.begins, one.ends))
-        finds = round(one.route.expected_found, 2)
+        finds = round(one.route.expected_finds, 2)
         names, said = map(safe_cell, (one.plot, one.who)), safe_cell(" ".join(one.closed))
-        table.writerow((file, *names, *hours, len(one.route), finds, said, ""))
+        table.writerow((file, *names, *hours, one.plants, finds, said, ""))
     table.writerows(
         ("", safe_cell(one.plot), *[""] * 5, *map(safe_cell, (" ".join(one.closed), one.why)))
         for one in left_out

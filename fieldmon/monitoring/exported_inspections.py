@@ -18,8 +18,10 @@ import numpy as np
 
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem, ObservationError
-from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, IDENTIFYING
+from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT, IDENTIFYING
+from fieldmon.infestation.records import PRESENT
 from fieldmon.io.options import source_name
+from fieldmon.io.readers.inspection_file.inspection_rows import is_mark
 from fieldmon.monitoring import inspection_table, repeated_recordings
 from fieldmon.monitoring.rows_that_count import COUNTS
 from fieldmon.monitoring.transactions import connect, copy_season
@@ -81,6 +83,8 @@ class Edits(NamedTuple):
         Why records cannot be told, by their number in the file.
     n_notes
         How many have other notes, which are no corrections.
+    n_seconds
+        How many are of another second in a file that may not show seconds: no corrections.
     n_alike
         How many say now what another inspection that counts says.
     """
@@ -90,6 +94,7 @@ class Edits(NamedTuple):
     twice: set[str]
     unsure: dict[int, str]
     n_notes: int
+    n_seconds: int
     n_alike: int
 
 
@@ -111,7 +116,7 @@ def _read_by_days(
 
     read = read_inspection_rows(source, options)
     rows = read.value
-    if options.date_order is not None or not _n_exported(rows):
+    if options.date_order is not None or not rows.exported.any():
         return read, False
     with season.store.reading() as db:
         days = dict(db.execute("SELECT digest, date FROM inspections WHERE digest NOTNULL"))
@@ -138,13 +143,13 @@ def edits_in(season: Season, rows: InspectionRows, options: InspectionOptions) -
     """
     from fieldmon.io.readers.inspections import exported  # noqa: PLC0415 - half a second to import
 
-    edits = Edits([], [], set(), {}, 0, 0)
-    if rows.mark is None or not _n_exported(rows):
+    edits = Edits([], [], set(), {}, 0, 0, 0)
+    if rows.mark is None or not rows.exported.any():
         return edits
     lacked = _lacked(rows)
     with season.store.reading() as db:
         held = _held(db)
-    strange = (rows.mark != "") & ~np.isin(rows.mark, np.array([*held], np.str_))
+    strange = rows.exported & ~np.isin(rows.mark, np.array([*held], np.str_))
     edits.unknown.extend(rows.mark[strange].tolist())
     told, marks, why = exported(rows.take(~strange), season.plot.grid, options)
     edits.unsure.update(why)
@@ -153,13 +158,21 @@ def edits_in(season: Season, rows: InspectionRows, options: InspectionOptions) -
     now_said = inspection_table.kept_columns(told)
     now_said[_PLANT.kept] = _of_held_faces(season.plot.grid, rows, told, marks, held, edits.unsure)
     in_minutes = all(at is None or at.endswith(_WHOLE_MINUTE) for at in now_said[_SECOND.kept])
+    none_found = _none_found(rows)
     said_of: dict[str, tuple[Any, ...]] = {}
-    n_notes = 0
+    n_notes = n_seconds = 0
     for mark, notes, *now in zip(
         marks, now_said[_NOTES.kept], *(now_said[one.kept] for one in _WATCHED), strict=True
     ):
         one = held[mark]
         n_notes += bool(notes) and all(not _is_same(was, notes) for was in one.notes)
+        was_at, is_at = (said[_WATCHED.index(_SECOND)] for said in (one.says, now))
+        n_seconds += in_minutes and was_at != is_at and _is_same(was_at, is_at, in_minutes=True)
+        if mark in none_found and one.says[_WATCHED.index(COUNT)]:
+            edits.unsure[none_found[mark]] = worded(
+                "its result is found, but its count is 0 (write clean, or empty the count if "
+                "nobody counted)"
+            )
         says = {
             column.kept: new
             for column, was, with_others, new in zip(
@@ -183,12 +196,20 @@ def edits_in(season: Season, rows: InspectionRows, options: InspectionOptions) -
             edits.unknown.append(mark)
     said_by = Counter(says_now.values())
     n_alike = sum(said_by[says_now[one.row]] > 1 for one in edits.changed)
-    return edits._replace(n_notes=n_notes, n_alike=n_alike)
+    return edits._replace(n_notes=n_notes, n_seconds=n_seconds, n_alike=n_alike)
 
 
 def _visit(says: Sequence[Any]) -> tuple[Any, ...]:
     """Return of what watched columns say that by which the season tells inspections apart."""
     return _key(said for one, said in zip(_WATCHED, says, strict=True) if one in IDENTIFYING)
+
+
+def _none_found(rows: InspectionRows) -> dict[str, int]:
+    """Return the numbers in the file of finds that count 0, by digests."""
+    if rows.mark is None:
+        return {}
+    none = (rows.result == PRESENT) & (rows.count == 0)
+    return dict(zip(rows.mark[none].tolist(), rows.source_row[none].tolist(), strict=True))
 
 
 def _of_held_faces(
@@ -204,7 +225,7 @@ def _of_held_faces(
     Of another plant with two faces nobody knows which: that is added to what is `unsure`.
     """
     plants: list[int] = told.plant.tolist()
-    if rows.mark is None or not (grid.twin >= 0).any():
+    if rows.mark is None or not grid.has_faces:
         return plants
     bare = (rows.face == 0) & (rows.plant < 0)
     record = dict(zip(rows.mark[bare].tolist(), rows.source_row[bare].tolist(), strict=True))
@@ -272,12 +293,14 @@ def _is_same(was: Any, now: Any, *, in_minutes: bool = False) -> bool:  # noqa: 
 class EditedCopy(NamedTuple):
     """A copy of a season, changed as a file exported from it; and how many the file has more.
 
-    Inspections and notes that were added or changed there, which `record` takes.
+    Inspections and notes that were added or changed there, which `record` takes, and times that
+    differ in seconds that the file may not show.
     """
 
     path: Path
     n_added: int
     n_notes: int
+    n_seconds: int
 
 
 def edited_copy(
@@ -306,14 +329,14 @@ def edited_copy(
             sets = ", ".join(f"{column} = ?" for column in says)
             db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", (*says.values(), row))  # noqa: S608 - ours
         db.execute("COMMIT")
-    return EditedCopy(copy, len(rows) - _n_exported(rows), edits.n_notes)
+    return EditedCopy(copy, int((~rows.exported).sum()), edits.n_notes, edits.n_seconds)
 
 
 def _exported_rows(season: Season, source: Source, options: InspectionOptions) -> InspectionRows:
     """Return the rows of a file that holds inspections exported from a season; refuse others."""
     (read, is_open), name = _read_by_days(season, source, options), source_name(source)
     rows = read.value
-    n_exported = _n_exported(rows)
+    is_exported = rows.exported.any()
     if is_open:
         raise ObservationError(
             worded(
@@ -322,16 +345,17 @@ def _exported_rows(season: Season, source: Source, options: InspectionOptions) -
                 name=name,
             )
         )
+    _refuse_wrong_digests(rows, name)
     doubts = [one.sentence for one in read.messages if one.severity.is_loss]
-    if doubts and (n_exported or not len(rows)):
+    if doubts and (is_exported or not len(rows)):
         raise ObservationError(
             worded(
                 "What was corrected in an export must be read for certain, but of {name}: {doubts} "
-                "Mend it there, or change it in the season's own file; nothing was taken.",
+                "Correct it there or in the season's own file; nothing was taken.",
                 name=name, doubts=joined(" ", doubts),
             )
         )  # fmt: skip
-    if not n_exported or "result" in _lacked(rows):
+    if not is_exported or "result" in _lacked(rows):
         raise ObservationError(
             worded(
                 "A file of corrections must hold inspections exported from the season, with their "
@@ -344,9 +368,20 @@ def _exported_rows(season: Season, source: Source, options: InspectionOptions) -
     return rows
 
 
-def _n_exported(rows: InspectionRows) -> int:
-    """Return how many rows of a file a season has exported."""
-    return 0 if rows.mark is None else int((rows.mark != "").sum())
+def _refuse_wrong_digests(rows: InspectionRows, name: str) -> None:
+    """Refuse a file with something for a digest that no season wrote."""
+    called = [] if rows.mark_called is None else rows.mark_called.tolist()
+    for record, digest in zip(rows.source_row.tolist(), called, strict=True) if called else ():
+        if digest and not is_mark(digest):
+            raise ObservationError(
+                worded(
+                    "The digest of an exported inspection must be as the season wrote it, 24 small "
+                    "letters and digits of 0-9 and a-f, in a table with i before, but of record "
+                    "{record} of {name} it is {digest!r}. Put it there as it was exported; of what "
+                    "is new leave it empty. Nothing was taken.",
+                    record=record, name=name, digest=digest,
+                )
+            )  # fmt: skip
 
 
 def _refuse_uncertain(edits: Edits, name: str) -> None:
@@ -366,8 +401,8 @@ def _refuse_uncertain(edits: Edits, name: str) -> None:
         raise ObservationError(
             worded(
                 "An exported inspection must say plant, date and result as the season does, but "
-                "of record {record} of {name}: {doubt}. Mend it there, or change it in the "
-                "season's own file; nothing was taken.",
+                "of record {record} of {name}: {doubt}. Correct it there or in the season's own "
+                "file; nothing was taken.",
                 record=record, name=name, doubt=doubt,
             )
         )  # fmt: skip
@@ -375,8 +410,8 @@ def _refuse_uncertain(edits: Edits, name: str) -> None:
         raise ObservationError(
             worded(
                 "No inspection may stand there twice, but {n} of {name} {n:says|say} now what "
-                "another inspection of the season says. Mend {n:it|them}, or delete one of both in "
-                "the season's own file; nothing was taken.",
+                "another inspection of the season says. Correct {n:it|them}, or delete one of both "
+                "in the season's own file; nothing was taken.",
                 n=edits.n_alike, name=name,
             )
         )  # fmt: skip

@@ -42,7 +42,7 @@ class FoundAgain:
     inspected: int
 
     def sentence(self, how: str = "") -> Worded:
-        """Return it in words; `how` says on a page or a command that finds are only flagged."""
+        """Return how many were found again; `how` says how one says that finds are only flagged."""
         return worded(
             "{n} of {total} {total:plant|plants} found before {n:was|were} infested again when "
             "inspected again, although finds are taken as treated at once; if nobody treats them, "

@@ -165,7 +165,8 @@ def _dated_on_plot(
 ) -> Imported[Inspections]:
     from fieldmon.io.readers.inspections import dated, on_plot  # noqa: PLC0415 - as above
 
-    called = (season.plot.field.name, season.path.stem)
+    name, file = season.plot.field.name, season.path.stem
+    called = (name, file, f"{name} ({file})")  # the last in tables of several, see `called_apart`
     return dated(on_plot(rows, season.plot.grid, options, called))
 
 

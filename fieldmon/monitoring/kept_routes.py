@@ -79,7 +79,7 @@ def _row(
         "seconds": route.end_s,
         "drive_m": route.drive_m,
         "stops": len(route),
-        "expected": route.expected_finds,
+        "expected": route.expected_visible,
         "at_plant": today.scene.at,
         "seconds_left": today.scene.seconds_left,
         "digest": _digest(today),
@@ -117,7 +117,7 @@ def in_words(settings: MonitoringSettings, today: DayPlan) -> dict[str, Any]:
         "date": str(settings.date(today.scene.day)),
         "stops": len(today.route),
         "sampler": settings.sampler,
-        "expected": today.route.expected_finds,
+        "expected": today.route.expected_visible,
         "digest": _digest(today),
     }
 

@@ -52,6 +52,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.compute.day_arguments import Day, TimeOfDay
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring.closures import Closure, EntryWait
@@ -195,7 +196,7 @@ class OpenSeason:
         outside_changes.refuse(db)
         return settings_of(db) if (known := self._known(db)) is None else known.settings
 
-    def settings_on(self, on: date) -> MonitoringSettings:
+    def settings_on(self, on: Day) -> MonitoringSettings:
         """Return what counts, with who worked on a day, from when, and who chose, as it was then.
 
         As when the day was planned before its work or, if it never was, first recorded: whatever is
@@ -228,7 +229,7 @@ class OpenSeason:
         with self.store.reading() as db:
             return len(settings_log.all_moments(db)) > 1
 
-    def planned_by(self, on: date) -> MonitoringSettings:
+    def planned_by(self, on: Day) -> MonitoringSettings:
         """Return what a day is planned by: an earlier one by what counted then, see `settings_on`.
 
         A day is an earlier one once something was recorded of a later one or, if anything was of
@@ -253,7 +254,7 @@ class OpenSeason:
         return self._chosen_on(db, on, *_recorded_before(contents, on))
 
     @contextmanager
-    def as_now(self, on: date) -> Iterator[None]:
+    def as_now(self, on: Day) -> Iterator[None]:
         """Let the day `on` be planned by what counts now, though it is an earlier one.
 
         If nothing is recorded of it yet, it goes on by the plan that is kept of it.
@@ -265,7 +266,7 @@ class OpenSeason:
             finally:
                 self._planned_as_now = None
 
-    def is_earlier(self, on: date) -> bool:
+    def is_earlier(self, on: Day) -> bool:
         """Return whether the day `on` goes by what counted then, see `planned_by`."""
         return self._is_earlier(self._now(), on)
 
@@ -345,30 +346,42 @@ class OpenSeason:
         """Row and number of every plant, as people count."""
         return plant_numbers(self.plot.grid)
 
-    def scene(self, on: date, now: time | None = None, who: str | Besides = "") -> Scene:
+    def scene(self, on: Day, now: TimeOfDay | None = None, who: str | Besides = "") -> Scene:
         """Return the day `on` as it stands after what was recorded of it; `now` as in `plan`.
 
         Plants where people may not be yet seem inspected today, see `closed`.
-        Of a team it is that of `who` is named, or of the first. Whoever else is named has the
-        season's robot and stands where they inspected last, or at the gate. The season's robot
-        may also be `Besides` others, see `plan`.
+
+        Parameters
+        ----------
+        on, now
+            The day and the time, as `plan` takes them.
+        who
+            One of a team; empty: the first of it. Whoever else is named has the season's robot and
+            stands where they inspected last, or at the gate. The season's robot may also be
+            `Besides` others, see `plan`.
         """
         with self._lock, self.store.reading() as db:  # all of one moment
             return self._scene(self._read(db), on, now, who, db)
 
     def closed(
-        self, on: date, who: str | Besides = "", seconds_left: float | None = None
+        self, on: Day, who: str | Besides = "", seconds_left: float | None = None
     ) -> tuple[Closure, ...]:
         """Return the plants where people may not be yet when work, or what is left of it, begins.
 
         That is by its own times, and by the clock where that is later. They are those of all rows
-        in which any was treated. `on` and `who` as in `scene`; `seconds_left` of the day; None:
-        what its scene says.
+        in which any was treated.
+
+        Parameters
+        ----------
+        on, who
+            As `scene` takes them.
+        seconds_left
+            Of the day; None: what its scene says.
         """
         with self._lock, self.store.reading() as db:  # all of one moment
             return self._closed(self._read(db), on, who, seconds_left)
 
-    def closed_between(self, on: date, begins_s: float, ends_s: float) -> tuple[Closure, ...]:
+    def closed_between(self, on: Day, begins_s: float, ends_s: float) -> tuple[Closure, ...]:
         """Return what `closed` does, of work from `begins_s` to `ends_s` of the day `on`."""
         now = local_clock(self.plot.field).now()
         waits = self._entry_waits()
@@ -412,7 +425,7 @@ class OpenSeason:
         closed = () if self._enters else self._closed(contents, on, who, scene.seconds_left)
         return open_to_people(scene, closed)
 
-    def begun_s(self, on: date, who: str | Besides = "") -> float:
+    def begun_s(self, on: Day, who: str | Besides = "") -> float:
         """Return the second of the day `on` at which work began, or will; `who` as in `plan`.
 
         That is as the settings say, unless the first inspection was made minutes before or after.
@@ -423,7 +436,7 @@ class OpenSeason:
     def _begun_s(self, contents: SeasonContents, on: date, who: str | Besides) -> float:
         return self._work(contents, on, who).begun_s(contents.settings.day(on))
 
-    def until_s(self, on: date, who: str | Besides = "") -> float:
+    def until_s(self, on: Day, who: str | Besides = "") -> float:
         """Return until which second of the day `on` results are of its work; `who` as in `plan`.
 
         Past midnight it is 86 400 and more.
@@ -432,7 +445,7 @@ class OpenSeason:
             contents = self._now()
             return self._work(contents, on, who).until_s(contents.settings.day(on))
 
-    def left_s(self, on: date, now: time | None = None, who: str | Besides = "") -> float:
+    def left_s(self, on: Day, now: TimeOfDay | None = None, who: str | Besides = "") -> float:
         """Return the seconds left of the working day `on`; `now` and `who` as in `scene`."""
         with self._lock:
             contents = self._now()
@@ -440,7 +453,7 @@ class OpenSeason:
             gone_s = work.gone_s(day, None if now is None else seconds(now))
             return max(0.0, work.shift.robot.day_s - gone_s)
 
-    def worked(self, on: date, who: str | Besides = "") -> Inspections:
+    def worked(self, on: Day, who: str | Besides = "") -> Inspections:
         """Return what somebody inspected in the work of the day `on`; `who` as in `plan`.
 
         Also past midnight, where inspections are dated the next day: seconds go on from 86 400.

@@ -257,7 +257,8 @@ def _inspection_of(db: sqlite3.Connection, told: set[tuple[str, ...]]) -> int | 
 def undo_as_told(db: sqlite3.Connection) -> list[tuple[int, int]]:
     """Mark as undone what a finding of the same person takes back, whichever came first.
 
-    A finding that came to two copies of a season is taken back in both.
+    A finding that came to two copies of a season is taken back in both. What somebody else recorded
+    of the same counts again.
     Return the batch and the day of each.
     """
     rows = db.execute(
@@ -272,7 +273,13 @@ def undo_as_told(db: sqlite3.Connection) -> list[tuple[int, int]]:
         for inspection, _, day in rows
         for batch in rows_that_count.undo_same(db, inspection)
     ]
-    return others + [(batch, day) for _, batch, day in rows]
+    again = rows_that_count.count_again(db) if rows else []
+    first = min((day for *_, day in rows), default=0)
+    return [
+        *others,
+        *((batch, first) for batch in again),
+        *((batch, day) for _, batch, day in rows),
+    ]
 
 
 def _rows(db: sqlite3.Connection, table: GeoPackageTable) -> Rows:

@@ -1,9 +1,10 @@
 """What several recordings of the same inspection say beside it: kept together, each part once.
 
 Of recordings that say the same one counts; the others stand back (`rows_that_count`), and keep
-their own notes and names. What counts is read with what those say: what it leaves open is taken
-from them, and notes that differ are joined. So it does not matter which of them counts, and a
-recording that is taken back takes its notes with it.
+their own notes and names. What somebody else recorded is kept so whatever it says beside it, once a
+person: it counts once that of the first is undone. What counts is read with what those say: what it
+leaves open is taken from them, and notes that differ are joined. So it does not matter which of
+them counts, and a recording that is taken back takes its notes with it.
 """
 
 from __future__ import annotations
@@ -103,33 +104,61 @@ class Addition(NamedTuple):
     brought, held
         Their numbers among those.
     is_note
-        Whether it is a note; else it is only what was left open: a name, a chance.
+        Whether it is a note.
+    fills
+        Whether it is what was left open: a name, a chance. Neither: somebody else saw the same.
     """
 
     brought: int
     held: int
     is_note: bool
+    fills: bool = True
 
 
-def additions(brought: Inspections, held: Inspections) -> list[Addition]:
-    """Return what inspections that are known say beside what is held of them."""
+def additions(db: sqlite3.Connection, brought: Inspections, held: Inspections) -> list[Addition]:
+    """Return what inspections that are known say beside what is held of them.
+
+    That somebody else saw the same is more, too, unless it is kept already or brought before.
+    """
     near = np.flatnonzero(np.isin(held.plant, brought.plant) & np.isin(held.date, brought.date))
     may = np.flatnonzero(_may_add(brought, held.take(near)))
     brought, held = brought.take(may), held.take(near)
     same, told = _same(brought, held), _beside(brought)
     which = sorted({j for candidates in same for j in candidates})
     known = dict(zip(which, _beside(held.take(np.array(which, np.intp))), strict=True))
+    saw = _who_saw(db, held, known) if any(one["who"] for one in told) else {}
     found = []
     for k, candidates in enumerate(same):
         more = [_adds(told[k], known[j]) for j in candidates]
-        if more and (False, False) not in more:
-            found.append(Addition(int(may[k]), int(near[candidates[0]]), more[0][0]))
+        if not more:
+            continue
+        who = person_key(told[k]["who"] or "")
+        others = bool(who) and not any(who in saw[j] or not known[j]["who"] for j in candidates)
+        if others or (False, False) not in more:
+            found.append(Addition(int(may[k]), int(near[candidates[0]]), *more[0]))
+            if who and saw:
+                saw[candidates[0]].add(who)
     return found
 
 
+def _who_saw(
+    db: sqlite3.Connection, held: Inspections, known: dict[int, Beside]
+) -> dict[int, set[str]]:
+    """Return by `person_key` who recorded each inspection that is held, given by its number."""
+    others = of_others(db)
+    return {
+        j: {
+            person_key(one["who"] or "")
+            for one in (beside, *others.get(mark_of(identity(held, j)), ()))
+        }
+        for j, beside in known.items()
+    }
+
+
 def _may_add(brought: Inspections, held: Inspections) -> NDArray[np.bool_]:
-    """Return ``(k,)`` which note anything, or say what is left open of any of those held."""
-    may = np.zeros(len(brought), np.bool_)
+    """Return ``(k,)`` which note anything, say what is left open of any held, or are another's."""
+    people = {person_key(str(one)) for one in {*brought.who, *held.who}} - {""}
+    may: NDArray[np.bool_] = np.full(len(brought), len(people) > 1) & (brought.who != "")
     for one in BESIDE:
         if one.role == "noted" or not one.says(getattr(held, one.name)).all():
             may |= one.says(getattr(brought, one.name)).astype(np.bool_)

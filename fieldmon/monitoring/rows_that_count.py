@@ -11,6 +11,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.planning.members import person_key
+
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Sequence
@@ -195,12 +197,21 @@ def _exchange(db: sqlite3.Connection, one: int, other: int) -> None:
 
 
 def undo_same(db: sqlite3.Connection, inspection: int) -> list[int]:
-    """Mark as undone all that say the same as an inspection that is; return their batches."""
-    found = db.execute(
-        "SELECT fid, batch FROM inspections WHERE undone <> ? AND digest = "
-        "(SELECT digest FROM inspections WHERE fid = ?)",
-        (TAKEN_BACK, inspection),
-    ).fetchall()
+    """Mark as undone all that say the same as an inspection that is, and name nobody else.
+
+    Return their batches.
+    """
+    (who,) = db.execute("SELECT who FROM inspections WHERE fid = ?", (inspection,)).fetchone()
+    same = (
+        "SELECT fid, batch, who FROM inspections WHERE undone <> ? AND digest = "
+        "(SELECT digest FROM inspections WHERE fid = ?)"
+    )
+    key = person_key(who or "")
+    found = [
+        (fid, batch)
+        for fid, batch, other in db.execute(same, (TAKEN_BACK, inspection)).fetchall()
+        if not key or person_key(other or "") in {"", key}
+    ]
     taken = [(TAKEN_BACK, fid) for fid, _ in found]
     db.executemany("UPDATE inspections SET undone = ? WHERE fid = ?", taken)
     return sorted({batch for _, batch in found})

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import replace
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.kinds import checked
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.merging.merge import Merged, MergedCopy
     from fieldmon.monitoring.treatments import KeptTreatment
 
+# of the smaller of two boundaries, in the other: they are of one plot
+_MOST_OF_PLOT = 0.5
 #: why treatments do not count any more after merging, as `MergedCopy` has them
 _GONE = (
     "counted here, but was undone there",
@@ -59,6 +63,17 @@ class SeasonCopies(OpenSeason):
         """What stands for the rows and plants: other seasons of the plot have the same."""
         with self.store.reading() as db:
             return same_season.planting(db)
+
+    def is_on_plot_of(self, other: SeasonCopies) -> bool:
+        """Return whether another season has the same plants, or stands on the same ground.
+
+        Then more than half of the smaller boundary lies in the other, however rows were laid.
+        """
+        if self.planting == other.planting:
+            return True
+        one, another = (season.plot.field.boundary for season in (self, other))
+        smaller = min(one.area, another.area)
+        return bool(one.intersection(another).area > _MOST_OF_PLOT * smaller)
 
     def is_of_another_pest(self, file: Path) -> bool:
         """Return whether this and the season in a file name pests that differ."""
@@ -165,20 +180,34 @@ def _recorded_twice(counting: Sequence[KeptTreatment], taken: MergedCopy) -> lis
     return [one for one in said if one]
 
 
+def called_apart(seasons: Sequence[SeasonCopies]) -> tuple[str, ...]:
+    """Return what the plot of each season is called, with its file where two are called alike."""
+    names = [season.plot.field.name for season in seasons]
+    files = [season.path.stem for season in seasons]
+    twice = Counter(zip(names, files, strict=True))
+    often, called = Counter(names), []
+    for season, name, file in zip(seasons, names, files, strict=True):
+        at = f"{season.path.absolute().parent.name}/{file}" if twice[name, file] > 1 else file
+        called.append(f"{name} ({at})" if often[name] > 1 else name)
+    return tuple(called)
+
+
 def of_one_plot(
     seasons: Iterable[SeasonCopies], named: Callable[[str], str] = str
 ) -> tuple[Worded, ...]:
     """Return a sentence on each plot of which there are several seasons; `named` writes a name."""
-    plots: dict[str, list[SeasonCopies]] = {}
+    plots: list[list[SeasonCopies]] = []
     for season in seasons:
-        plots.setdefault(season.planting, []).append(season)
+        same = [plot for plot in plots if any(map(season.is_on_plot_of, plot))]
+        plots = [plot for plot in plots if plot not in same]
+        plots.append([*chain.from_iterable(same), season])
     return tuple(
         worded(
             "{names} and {last} are {n} seasons of one plot: each counts. If somebody began one of "
             "them a second time, leave it away.",
             names=joined(", ", names), last=last, n=len(same),
         )
-        for same in plots.values()
+        for same in plots
         if len(same) > 1
         for *names, last in [[_with_pest(season, named) for season in same]]
     )  # fmt: skip

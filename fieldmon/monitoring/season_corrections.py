@@ -17,8 +17,9 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from datetime import date, time
     from pathlib import Path
+
+    from fieldmon.compute.day_arguments import Day, TimeOfDay
 
 
 @checked
@@ -29,9 +30,21 @@ class SeasonCorrections(SeasonCopies):
         """Take what another program changed of inspections as corrections; return how many.
 
         They are a batch of their own, of `who` corrects; undoing it brings back what was before.
-        What says nothing else than before is put back as it was, and is none. Raise `FileProblem`
-        if more than inspections was changed, or what makes no sense, as a day to come;
-        `ContradictionError` if they contradict what else is recorded and are not `confirmed`.
+        What says nothing else than before is put back as it was, and is none.
+
+        Parameters
+        ----------
+        who
+            Who corrects, for the log.
+        confirmed
+            Whether they count where they contradict what else is recorded.
+
+        Raises
+        ------
+        FileProblem
+            If more than inspections was changed, or what makes no sense, as a day to come.
+        ContradictionError
+            If they contradict what else is recorded and are not confirmed.
         """
         with self._lock, self.store.writing() as db:
             outside_changes.refuse_more(db)
@@ -46,9 +59,9 @@ class SeasonCorrections(SeasonCopies):
     def correct_time(
         self,
         inspection: int,
-        at: time | None,
+        at: TimeOfDay | None,
         who: str,
-        on: date | None = None,
+        on: Day | None = None,
         *,
         confirmed: bool = False,
     ) -> str:
@@ -112,10 +125,27 @@ class SeasonCorrections(SeasonCopies):
     def take_corrections(self, copy: Path, name: str, who: str, *, confirmed: bool = False) -> int:
         """Take what was corrected or deleted in a `copy` of this season; return how many were new.
 
-        They are a batch of their own, of `who`; `name` is what the copy is called.
-        Raise `FileProblem` if a changed row makes no sense or is not here, `SettingError` if
-        nobody is named, and `ContradictionError` if they contradict what else is recorded and are
-        not `confirmed`.
+        They are a batch of their own.
+
+        Parameters
+        ----------
+        copy
+            The file.
+        name
+            What the copy is called.
+        who
+            Who takes them over.
+        confirmed
+            Whether they count where they contradict what else is recorded.
+
+        Raises
+        ------
+        FileProblem
+            If a changed row makes no sense or is not here.
+        SettingError
+            If nobody is named.
+        ContradictionError
+            If they contradict what else is recorded and are not confirmed.
         """
         with self._writing() as db:
             return self._take_corrections(db, copy, (name, who), confirmed=confirmed)

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.compute.day_arguments import Day
     from fieldmon.compute.wording import Worded
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
@@ -63,17 +64,17 @@ class _MorningAsked(NamedTuple):
 class SeasonEstimates(OpenSeason):
     """What follows on each day from all that was recorded before."""
 
-    def morning(self, on: date) -> Floats:
+    def morning(self, on: Day) -> Floats:
         """Return the chance map ``(n,)`` of the morning of `on`; it is yours to change."""
         with self._asked(on) as (_, morning, _):
             return morning.chance.copy()
 
-    def morning_in_sight(self, on: date) -> Floats:
+    def morning_in_sight(self, on: Day) -> Floats:
         """Return the chances ``(n,)`` by which `on` is planned: of what inspections can see."""
         with self._asked(on) as (_, morning, _):
             return in_sight(morning).chance.copy()
 
-    def evening(self, on: date) -> Floats:
+    def evening(self, on: Day) -> Floats:
         """Return the chance map ``(n,)`` of `on`, after what was recorded of it so far.
 
         What is left of the day is planned by it, as far as it can be seen.
@@ -81,13 +82,13 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             return contents.history.in_hindsight(morning, day).chance.copy()
 
-    def level_range(self, on: date) -> LevelRange:
+    def level_range(self, on: Day) -> LevelRange:
         """Return how far the chances of `evening` may be off together: 90 %, on the odds."""
         with self._asked(on) as (contents, morning, day):
             return contents.history.level_range(morning, day)
 
     def verdict(
-        self, on: date, level: float, sure: float = 0.9, plants: NDArray[np.bool_] | None = None
+        self, on: Day, level: float, sure: float = 0.9, plants: NDArray[np.bool_] | None = None
     ) -> MapVerdict:
         """Return whether treating pays after a day's work; see `fieldmon.decisions`.
 
@@ -110,7 +111,7 @@ class SeasonEstimates(OpenSeason):
         said = verdict_of(contents.history.grid, evening, level, sure, found, plants=plants)
         return said.where(inspected=len(contents.history.inspected(day)) > 0)
 
-    def advice(self, on: date, asked: AdviceSettings | None = None) -> Advice:
+    def advice(self, on: Day, asked: AdviceSettings | None = None) -> Advice:
         """Return whether to treat after a day's work, where, and how many looks decide.
 
         Parameters
@@ -163,13 +164,13 @@ class SeasonEstimates(OpenSeason):
         detects = history.mean_detection(day)
         return FewInspected.of(plants, asked, detects, background if assumed else None)
 
-    def status(self, on: date) -> Status:
+    def status(self, on: Day) -> Status:
         """Return where the season stands on a day."""
         with self._asked(on) as (contents, morning, day):
             now = Status.of(contents.history, morning, day)
         return replace(now, development=_development(contents, on))
 
-    def development(self, on: date) -> Development | None:
+    def development(self, on: Day) -> Development | None:
         """Return how far the pest has come on a day, counted from its first find.
 
         Until there is one, from the season's first day. None: no pest or weather was given, or
@@ -177,13 +178,13 @@ class SeasonEstimates(OpenSeason):
         """
         return _development(self._now(), on)
 
-    def forecast(self, on: date) -> Forecast:
+    def forecast(self, on: Day) -> Forecast:
         """Return how many plants are infested on the mornings after a day, nobody inspecting."""
         with self._asked(on) as (contents, morning, day):
             history = contents.history
         return history.forecast(morning, day)  # others may plan meanwhile
 
-    def still_infested(self, on: date) -> PlotEstimate:
+    def still_infested(self, on: Day) -> PlotEstimate:
         """Return how many plants are still infested after a day: not found yet, and flagged.
 
         Parameters
@@ -196,14 +197,14 @@ class SeasonEstimates(OpenSeason):
         with self._asked(on) as (contents, morning, day):
             return contents.history.infested(morning, day)
 
-    def flagged(self, on: date) -> float:
+    def flagged(self, on: Day) -> float:
         """Return how many of the plants found up to `on` are only flagged and still infested."""
         if self._now().settings.belief.treated:
             return 0.0  # no morning is needed for it
         with self._asked(on) as (contents, morning, day):
             return contents.history.flagged(morning, day)
 
-    def found_again(self, on: date) -> FoundAgain | None:
+    def found_again(self, on: Day) -> FoundAgain | None:
         """Return how many plants that are taken as treated were found again up to `on`.
 
         None: none, or no more than may be chance.
@@ -211,26 +212,37 @@ class SeasonEstimates(OpenSeason):
         now = self._now()
         return found_again(now.history, now.settings.day(on))
 
-    def learnt(self, on: date, detection: float | None = None) -> tuple[Learnt, ...]:
+    def learnt(self, on: Day, detection: float | None = None) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of `on` tell of the insects.
 
-        And of inspections that are told to have a `detection`; None: of those made until then.
+        Parameters
+        ----------
+        on
+            The day.
+        detection
+            What inspections are told to detect; None: as those made until then.
         """
         with self._asked(on) as (contents, morning, day):
             return contents.history.learnt(morning, day, detection)
 
-    def other_detections(self, on: date) -> tuple[ToldOtherwise, ...]:
+    def other_detections(self, on: Day) -> tuple[ToldOtherwise, ...]:
         """Return with which inspections up to `on` another detection was said than the season's."""
         with self._lock, self.store.reading() as db:
             now = self._read(db)
             done = now.history.until(now.settings.day(on))
             return other_detections(db, done, now.settings.begins)
 
-    def detection_of(self, on: date, who: str = "") -> float:
+    def detection_of(self, on: Day, who: str = "") -> float:
         """Return what inspections of `who` on `on` find, where nothing else is said with them.
 
-        Nobody named: whoever is in no team. That is by the day's last plan, or else by what counts
-        when it is recorded first.
+        That is by the day's last plan, or else by what counts when it is recorded first.
+
+        Parameters
+        ----------
+        on
+            The day.
+        who
+            Who inspected; empty: whoever is in no team.
         """
         with self.store.reading() as db:
             return read_now(db, on, who)
@@ -270,12 +282,12 @@ class SeasonEstimates(OpenSeason):
         believed = settings.belief.believed(plot.grid, settings.pest, told)
         return EarlierSeason.of(evening, believed, plot.field.name, on)
 
-    def progress(self, on: date) -> Progress:
+    def progress(self, on: Day) -> Progress:
         """Return how far the inspections are after the work of `on`; nothing is estimated."""
         now = self._now()
         return Progress.of(now.history, now.settings.day(on))
 
-    def day_figures(self, on: date) -> DayFigures:
+    def day_figures(self, on: Day) -> DayFigures:
         """Return the day `on` in figures: those kept with it, or worked out in seconds.
 
         What another version of fieldmon kept is worked out anew.

@@ -52,6 +52,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.compute.day_arguments import Day
     from fieldmon.monitoring.tables import KeptMessage
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
@@ -283,7 +284,7 @@ class Season(SeasonPlans, SeasonFrames):
             if change.since is not None:
                 self._refresh(db, change.since)
 
-    def advise(self, on: date, said: str, who: str = "") -> None:
+    def advise(self, on: Day, said: str, who: str = "") -> None:
         """Write into the log what was advised for a day, unless that was written last of it.
 
         Parameters

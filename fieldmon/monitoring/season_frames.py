@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from geopandas import GeoDataFrame
     from pandas import DataFrame
 
+    from fieldmon.compute.day_arguments import Day
+
 
 _DEGREES = "EPSG:4326"
 # of the table of inspections: where each was, its plant says
@@ -32,7 +34,7 @@ class SeasonFrames(SeasonInspections, SeasonTreatments, SeasonEstimates):
     """What a season holds, as frames."""
 
     def to_geopandas(
-        self, of: Literal["inspections", "treatments", "plants"], on: date | None = None
+        self, of: Literal["inspections", "treatments", "plants"], on: Day | None = None
     ) -> GeoDataFrame:
         """Return what the season holds with its places, EPSG:4326; changing it changes no season.
 

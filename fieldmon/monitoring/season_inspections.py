@@ -45,9 +45,9 @@ from fieldmon.plot.local_clock import local_clock
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Callable, Sequence
-    from datetime import date
     from pathlib import Path
 
+    from fieldmon.compute.day_arguments import Day
     from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.batches import Batch, BatchContents
     from fieldmon.monitoring.settings import MonitoringSettings
@@ -77,13 +77,11 @@ class SeasonInspections(SeasonCorrections):
         told = zip(inspections.plant.tolist(), dates, inspections.result.tolist(), strict=True)
         return sum(one not in known for one in told)
 
-    def contradicting(self, on: date) -> Inspections:
+    def contradicting(self, on: Day) -> Inspections:
         """Return a day's inspections of plants that were both clean and found on it."""
         return contradicting(self.history.inspections.on(on))
 
-    def contradiction_lines(
-        self, on: date, named: Callable[[str], str] = str
-    ) -> tuple[Worded, ...]:
+    def contradiction_lines(self, on: Day, named: Callable[[str], str] = str) -> tuple[Worded, ...]:
         """Return a line for each such plant `on` a day: who says what; `named` writes a name."""
         return contradiction_lines(self.history.inspections.on(on), self.plot.grid, named)
 
@@ -255,17 +253,17 @@ class SeasonInspections(SeasonCorrections):
         new = inspection_table.store(db, inspection_table.rows(told, *how))
         news, told = told.take(new), inspections.take(known).and_those(told.take(~new))
         held = held.and_those(news)
-        more = repeated_recordings.additions(told, held)
+        more = repeated_recordings.additions(db, told, held)
         told = told.take(np.array([one.brought for one in more], np.intp))
         made = inspection_table.rows(told, *how)
         repeated_recordings.keep(db, held, zip([one.held for one in more], made, strict=True))
         by = ", ".join(sorted({*map(str, news.who), *map(str, told.who)} - {""}))
         batches.name(db, batch, by)
         batches.end(db, batch, len(news) + len(more), grows=into is not None)
-        n_notes = sum(one.is_note for one in more)
+        said_more = [(one.is_note, one.fills) for one in more]
         done = Recorded(
             batch if len(news) or more else None, len(news), len(inspections) - len(news),
-            noted=n_notes, filled=len(more) - n_notes,
+            **batches.n_more(said_more),
         )  # fmt: skip
         self._log_seen(db, news, (source, by), done, who)
         return done, news
@@ -289,9 +287,24 @@ class SeasonInspections(SeasonCorrections):
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
         """Take a `batch` back (None: the last one), or one `inspection`; nothing is deleted.
 
-        Both are numbers; `who` takes it back, for the log. `redo` lets a batch count again, but no
-        inspection alone: that is recorded anew. Return a sentence that says what was undone. Raise
-        `SettingError` if there is nothing, or both are given.
+        `redo` lets a batch count again, but no inspection alone: that is recorded anew.
+
+        Parameters
+        ----------
+        batch, inspection
+            Number of the one or of the other.
+        who
+            Who takes it back, for the log.
+
+        Returns
+        -------
+        str
+            A sentence that says what was undone.
+
+        Raises
+        ------
+        SettingError
+            If there is nothing to take back, or both are given.
         """
         return self.undo_with_batches(batch, inspection, who).said
 
@@ -338,9 +351,24 @@ class SeasonInspections(SeasonCorrections):
     def redo(self, batch: int, who: str = "") -> str:
         """Let a `batch` that was undone count again; `who` does so, for the log.
 
-        What was taken back of it before, one by one or on a phone, stays so. Return a sentence that
-        says what counts again. Raise `SettingError` if the batch was not undone, or what it
-        corrected is not as it was before.
+        What was taken back of it before, one by one or on a phone, stays so.
+
+        Parameters
+        ----------
+        batch
+            Its number.
+        who
+            Who lets it count, for the log.
+
+        Returns
+        -------
+        str
+            A sentence that says what counts again.
+
+        Raises
+        ------
+        SettingError
+            If the batch was not undone, or what it corrected is not as it was before.
         """
         with self._lock, self.store.writing() as db:
             but = season_log.left_out_of(db, batch)
@@ -373,7 +401,7 @@ class SeasonInspections(SeasonCorrections):
         with self.store.reading() as db:
             return numbered_inspections.of_plant(db, plant)
 
-    def inspections_on(self, on: date) -> tuple[int, ...]:
+    def inspections_on(self, on: Day) -> tuple[int, ...]:
         """Return the numbers (fid) of the inspections `on` a day that count, in order."""
         with self.store.reading() as db:
             return numbered_inspections.of_day(db, on)
@@ -423,8 +451,8 @@ class SeasonInspections(SeasonCorrections):
         news = drafts.keep(db, taken, *said)
         batches.end(db, batch, len(taken))
         known = [one for one in taken if one.known is not None]
-        n_notes = sum(one.is_note for one in known)
-        done = Recorded(batch, len(news), len(known), noted=n_notes, filled=len(known) - n_notes)
+        said_more = [(one.is_note, one.fills) for one in known]
+        done = Recorded(batch, len(news), len(known), **batches.n_more(said_more))
         self._log_seen(db, news, (drafts.SOURCE, ""), done)
         # there are as many rows as before: all is read again
         days = [one.inspection.date[0].item() for one in taken if one.inspection is not None]
@@ -440,7 +468,7 @@ class SeasonInspections(SeasonCorrections):
         grid = self.plot.grid
         with self.store.reading() as db:
             said = batches.contents(db, numbers)
-            if (grid.twin < 0).all():
+            if not grid.has_faces:
                 return said
             vines = treatments.n_vines(db, numbers, self._inside, grid)
         return {number: replace(one, n=vines.get(number, one.n)) for number, one in said.items()}

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.compute.day_arguments import Day, TimeOfDay
     from fieldmon.monitoring.closures import Closure
     from fieldmon.monitoring.kept_routes import KeptPlans, KeptRoute
     from fieldmon.monitoring.open_season import SeasonContents
@@ -45,7 +46,7 @@ class SeasonPlans(OpenSeason):
     """The days of a season as they are planned, and the routes that are kept of them."""
 
     def plan(
-        self, on: date, now: time | None = None, *, keep: bool = True,
+        self, on: Day, now: TimeOfDay | None = None, *, keep: bool = True,
         wishes: Wishes | None = None, who: str | Besides | None = None,
     ) -> DayPlan:  # fmt: skip
         """Plan what is left of a day from all that is known; see `planned_by`.
@@ -76,15 +77,23 @@ class SeasonPlans(OpenSeason):
         return days[settings.team.index(settings.member(who)) if who and settings.team else 0]
 
     def plan_each(
-        self, on: date, now: time | None = None, *, keep: bool = True,
+        self, on: Day, now: TimeOfDay | None = None, *, keep: bool = True,
         wishes: Wishes | None = None,
     ) -> tuple[DayPlan, ...]:  # fmt: skip
         """Plan what is left of a day for each of the team, or for the one who works.
 
-        `on`, `now`, `keep` and `wishes` are those of `plan`.
-        In the order of the team. Aisles that the routes kept of this day gave to one stay its own
-        unless another way to give them out gains enough, see `Teamwork`, or who joined since would
-        have none.
+        Aisles that the routes kept of this day gave to one stay its own unless another way to give
+        them out gains enough, see `Teamwork`, or who joined since would have none.
+
+        Parameters
+        ----------
+        on, now, keep, wishes
+            As `plan` takes them.
+
+        Returns
+        -------
+        tuple of DayPlan
+            In the order of the team.
         """
         with self._lock:
             contents = self._now()
@@ -101,7 +110,7 @@ class SeasonPlans(OpenSeason):
             return self._given(contents, on, days, _names(settings), keep=keep)
 
     def plan_crew(
-        self, on: date, crew: tuple[str, ...], left_s: dict[str, float] | None = None, *,
+        self, on: Day, crew: tuple[str, ...], left_s: dict[str, float] | None = None, *,
         wishes: Wishes | None = None, kept_as: tuple[str, ...] | None = None,
     ) -> tuple[DayPlan, ...]:  # fmt: skip
         """Plan what is left of a day for scouts who are no team's, and share the same plants.
@@ -158,10 +167,15 @@ class SeasonPlans(OpenSeason):
             self._keep(contents, on, noted, names)
         return noted
 
-    def kept_route(self, on: date, who: str = "") -> NDArray[np.int32]:
+    def kept_route(self, on: Day, who: str = "") -> NDArray[np.int32]:
         """Return the plants ``(k,)`` of the latest route kept for the day `on`; empty without one.
 
-        Of a team it is that of `who` is named, or of the first; a scout beside it has one, too.
+        Parameters
+        ----------
+        on
+            The day.
+        who
+            Name of one of a team, or of a scout beside it; empty: the first of the team.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             settings = self._planned_by(self._read(db), on, db)
@@ -171,7 +185,7 @@ class SeasonPlans(OpenSeason):
                 db, last.get(person_key(who if named is None else named.name))
             )
 
-    def holds_still(self, on: date, plan: str) -> bool:
+    def holds_still(self, on: Day, plan: str) -> bool:
         """Return whether nothing was found or changed since a `plan` of the day `on` was kept.
 
         It is named by its digest.
@@ -180,7 +194,7 @@ class SeasonPlans(OpenSeason):
             return logged_days.holds_still(db, on, plan)
 
     def closed_to_kept(
-        self, on: date, who: str = "", kept_as: str | None = None
+        self, on: Day, who: str = "", kept_as: str | None = None
     ) -> tuple[Closure, ...]:
         """Return what is `closed` to the route kept of a day: by its own begin, if that is later.
 
@@ -206,7 +220,7 @@ class SeasonPlans(OpenSeason):
             day_s = shift.robot.day_s
             return self._closed(contents, on, who, min(max(day_s - late_s, 0.0), day_s))
 
-    def planned_only(self, until: date) -> tuple[date, ...]:
+    def planned_only(self, until: Day) -> tuple[date, ...]:
         """Return the planned days `until` a date of which nothing is recorded, in order.
 
         Each is over on the plot, and was planned to be worked, see `logged_days.to_be_worked`.
@@ -222,7 +236,7 @@ class SeasonPlans(OpenSeason):
             over = [day for day in dates if day <= last]
             return logged_days.to_be_worked(db, over, clock) if over else ()
 
-    def codes_on(self, on: date) -> dict[str, tuple[int, int] | None]:
+    def codes_on(self, on: Day) -> dict[str, tuple[int, int] | None]:
         """Return who has a code for work on the day `on` now, by name, and of which rows."""
         with self.store.reading() as db:
             return self._codes(db, on, is_over=False)
@@ -274,12 +288,18 @@ class SeasonPlans(OpenSeason):
             self._unused_then[day] = gone
         return gone
 
-    def planned_and_done(self, on: date, who: str | None = None) -> PlannedAndDone | None:
+    def planned_and_done(self, on: Day, who: str | None = None) -> PlannedAndDone | None:
         """Return the plan kept of the day `on`, held to what was done; None: none was kept.
 
-        `who`: of one of a team alone; None: of all who are out, and of the season's own route
-        where nobody who is out has a code for the rows. Of a plan that nobody goes by any more
-        only what was done of it is part.
+        Of a plan that nobody goes by any more only what was done of it is part.
+
+        Parameters
+        ----------
+        on
+            The day.
+        who
+            One of a team alone; None: all who are out, and the season's own route where nobody
+            who is out has a code for the rows.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             contents = self._read(db)

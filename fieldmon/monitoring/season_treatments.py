@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from shapely import MultiPolygon
 
+    from fieldmon.compute.day_arguments import Day
     from fieldmon.compute.units import Units
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.monitoring.cautions import Caution
@@ -57,7 +58,7 @@ class SeasonTreatments(OpenSeason):
     """The treatments of a season, and the labels of what was used."""
 
     def treat(
-        self, on: date, efficacy: float | None = None, area: MultiPolygon | None = None,
+        self, on: Day, efficacy: float | None = None, area: MultiPolygon | None = None,
         product: str = "", *, application: Application | None = None,
         plants: NDArray[np.generic] | Sequence[Any] | None = None,
     ) -> Recorded:  # fmt: skip
@@ -170,10 +171,17 @@ class SeasonTreatments(OpenSeason):
             )
         return known.efficacy
 
-    def learnt_efficacy(self, on: date, product: str = "") -> TreatmentEffect | None:
+    def learnt_efficacy(self, on: Day, product: str = "") -> TreatmentEffect | None:
         """Return what inspections up to the evening of `on` tell of how well a product works.
 
-        Where none is named, it is the last one of which they tell. None: they tell of none.
+        None: they tell of none.
+
+        Parameters
+        ----------
+        on
+            The day.
+        product
+            Its trade name; empty: the last one of which they tell.
         """
         found = self.effects(on)
         told = [one.product for one in found if one.cured_of and one.product]
@@ -191,7 +199,12 @@ class SeasonTreatments(OpenSeason):
     def keep_labels(self, labels: Iterable[ProductLabel], source: str = "", who: str = "") -> int:
         """Let these be what labels allow, instead of those before; return how many there are.
 
-        `source` is where they come from, and `who` brings them, for the log.
+        Parameters
+        ----------
+        labels
+            One for each line of a table, as `read_labels` returns them.
+        source, who
+            Where they come from and who brings them, for the log.
         """
         kept = tuple(labels)
         with self._lock, self.store.writing() as db:
@@ -230,11 +243,17 @@ class SeasonTreatments(OpenSeason):
         with self.store.reading() as db:
             return label_table.read(db)
 
-    def cautions(self, on: date, units: Units | None = None) -> tuple[Caution, ...]:
+    def cautions(self, on: Day, units: Units | None = None) -> tuple[Caution, ...]:
         """Return what to beware of on a day: harvest, entry, resistance, what labels allow.
 
-        And who was where before entry was allowed. Sentences speak in `units`; None: the usual
-        ones.
+        And who was where before entry was allowed.
+
+        Parameters
+        ----------
+        on
+            The day.
+        units
+            In which sentences speak; None: metres, hectares and dates as 2026-11-16.
         """
         done, rules, seen = self._held_to(units)
         early = early_entries(done, rules, seen, self.plot.grid, on)
@@ -243,7 +262,7 @@ class SeasonTreatments(OpenSeason):
         )
 
     def cautions_because_of(
-        self, batch: int, on: date, units: Units | None = None
+        self, batch: int, on: Day, units: Units | None = None
     ) -> tuple[Caution, ...]:
         """Return what to beware of on a day because of a treatment's batch, later uses among it.
 
@@ -257,12 +276,23 @@ class SeasonTreatments(OpenSeason):
         )
 
     def cautions_if_treated(
-        self, on: date, product: str, plants: NDArray[np.bool_], units: Units | None = None
+        self, on: Day, product: str, plants: NDArray[np.bool_], units: Units | None = None
     ) -> tuple[Caution, ...]:
         """Return what a treatment of plants ``(n,)`` with a product on a day would bring.
 
         As `cautions_because_of` says it once it is done: nothing is kept. Empty where there is no
-        product, or no plant. Sentences speak in `units`; None: the usual ones.
+        product, or no plant.
+
+        Parameters
+        ----------
+        on
+            The day.
+        product
+            Trade name, as in the labels.
+        plants
+            ``(n,)`` whether each plant is treated.
+        units
+            In which sentences speak; None: metres, hectares and dates as 2026-11-16.
         """
         plants = self._each_plant(plants)
         if not product.strip() or not plants.any():
@@ -297,7 +327,7 @@ class SeasonTreatments(OpenSeason):
         rules = RulesToKeep(label_table.read(db), settings.harvest, settings.starts)
         return self._treatments(db), rules if units is None else replace(rules, units=units)
 
-    def harvest_from(self, on: date) -> tuple[date | None, KeptTreatment] | None:
+    def harvest_from(self, on: Day) -> tuple[date | None, KeptTreatment] | None:
         """Return the first day of harvest that treatments until `on` allow, and which one waits.
 
         The day is None where nobody said how long to wait from a treatment: that one, or the last
@@ -308,10 +338,20 @@ class SeasonTreatments(OpenSeason):
             labels = label_table.read(db)
         return cautions.harvest_from(done, labels)
 
-    def effects(self, on: date, units: Units | None = None) -> tuple[TreatmentEffect, ...]:
+    def effects(self, on: Day, units: Units | None = None) -> tuple[TreatmentEffect, ...]:
         """Return what inspections up to the evening of `on` tell of each treatment before it.
 
-        Sentences speak in `units`; None: the usual ones. Raise `SettingError` outside the season.
+        Parameters
+        ----------
+        on
+            The day.
+        units
+            In which sentences speak; None: metres, hectares and dates as 2026-11-16.
+
+        Raises
+        ------
+        SettingError
+            If the day is not of the season.
         """
         with self._lock, self.store.reading() as db:  # both of one moment
             done = self._treatments(db)

@@ -105,7 +105,7 @@ class ToldOtherwise(NamedTuple):
     n: int
 
     def sentence(self) -> Worded:
-        """Return it in words."""
+        """Return in words whose inspections they are, what was said with them, and the own."""
         days = worded("{first} to {last}", first=self.first, last=self.last)
         return worded(
             "{who}, {on}: {n} {n:inspection finds|inspections find} {detects} of what is there, as "

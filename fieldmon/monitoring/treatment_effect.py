@@ -65,7 +65,7 @@ class FoundShare:
         return low, high
 
     def sentence(self) -> str:
-        """Return it in words."""
+        """Return the share found infested, in words, with its interval."""
         low, high = self.interval
         return worded(
             "{share} ({found} of {n}; {low} to {high})",
@@ -109,7 +109,7 @@ class TreatmentEffect:
     cured_of: int
 
     def sentence(self) -> str:
-        """Return it in words."""
+        """Return how well the treatment worked, in words."""
         product = self.product or worded("a product that nobody named")
         if not self.before.inspected:
             return worded(

@@ -41,7 +41,7 @@ def found_bound(day: DayPlan, within_s: float = WITHIN_S) -> float | None:
         return None
     finds = np.where(scene.last_inspected == scene.day, 0.0, scene.chance * scene.robot.detects)
     most = bound(scene.aisles, finds, scene.robot, scene.seconds_left, within_s)
-    most = sound_bound(day.route.expected_found, most)
+    most = sound_bound(day.route.expected_finds, most)
     return most if np.isfinite(most) else None
 
 

@@ -126,6 +126,11 @@ def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
     robot
         What each is; None: the usual `Robot`.
 
+    Returns
+    -------
+    tuple of TeamMember
+        For `plan_team`, or as the ``team`` of `MonitoringSettings`.
+
     Raises
     ------
     SettingError

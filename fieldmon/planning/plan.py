@@ -155,6 +155,7 @@ def plan_day(
     plot: Plot,
     records: Records | None = None,
     on: str | date | datetime | np.datetime64 | None = None,
+    *,
     robot: Robot | None = None,
     sampler: str | Sampler = "adaptive",
     risk: NDArray[np.float64] | None = None,
@@ -184,6 +185,11 @@ def plan_day(
     ImportDoubt
         For records that are left out: of a later day, neither infested nor clean, of no position,
         or more than 100 m away; and for those placed so roughly that they say nothing.
+
+    Returns
+    -------
+    DayPlan
+        The route and its stops, the chance of each plant, and who goes where in a table.
 
     Raises
     ------

@@ -120,12 +120,12 @@ class Route:
         return self.chance if self.infested is None else self.infested
 
     @property
-    def expected_finds(self) -> float:
-        """Infested plants on the route that can be seen, as believed; not all would be."""
+    def expected_visible(self) -> float:
+        """Infested plants on the route that can be seen, as believed; not all would be found."""
         return float(self.chance.sum())
 
     @property
-    def expected_found(self) -> float:
+    def expected_finds(self) -> float:
         """Infested plants that would be found on the route, as believed."""
         return float((self.chance * self.detects).sum())
 
@@ -134,7 +134,7 @@ class Route:
         """Return for people what is expected, and what no other route can exceed; "" if unknown."""
         if self.found_bound is None:
             return ""
-        return bound_sentence(self.expected_found, self.found_bound)
+        return bound_sentence(self.expected_finds, self.found_bound)
 
     @cached_property
     def ways_said(self) -> tuple[str, ...]:

@@ -101,14 +101,14 @@ class TeamPlan:
         return self.late_s + [member.starts_s for member in self.members]
 
     @property
-    def expected_found(self) -> float:
+    def expected_finds(self) -> float:
         """Return the infested plants that would be found, as believed."""
-        return sum(day.route.expected_found for day in self.days)
+        return sum(day.route.expected_finds for day in self.days)
 
     @property
     def sentence(self) -> str:
         """Return for people what is expected, and what no other routes can exceed."""
-        return bound_sentence(self.expected_found, self.bound, routes="routes")
+        return bound_sentence(self.expected_finds, self.bound, routes="routes")
 
     def meetings(self) -> list[Meeting]:
         """Return where two are in one aisle at once: nowhere, if the plan is right."""
@@ -124,9 +124,10 @@ def plan_team(
     plot: Plot,
     chance: ArrayLike,
     members: Sequence[TeamMember],
-    progress: Callable[[int, int], None] | None = None,
-    passing_m: float = 0.0,
+    *,
     on: str | date | datetime | np.datetime64 | None = None,
+    passing_m: float = 0.0,
+    progress: Callable[[int, int], None] | None = None,
 ) -> TeamPlan:
     """Plan a day of a team: no plant twice, and no two in one aisle at once.
 
@@ -141,14 +142,14 @@ def plan_team(
         ``(n,)`` believed chance of infestation, in 0..1, for instance `DayPlan.chance`.
     members
         Who works, robots and scouts: `team_of` returns several of one kind.
-    progress
-        Told how many routes were looked for and prices of plants tried for the bound, and of how
-        many.
+    on
+        The day, or when work starts on it, as `plan_day` takes it: routes say when each begins.
     passing_m
         Metres of headland that two need to pass each other: where it is narrower nobody meets
         another head-on, but begins later. 0: they pass each other anywhere.
-    on
-        The day, or when work starts on it, as `plan_day` takes it: routes say when each begins.
+    progress
+        Told how many routes were looked for and prices of plants tried for the bound, and of how
+        many.
 
     Returns
     -------
@@ -168,7 +169,7 @@ def plan_team(
     >>> chance = fm.plan_day(plot, on="2026-11-18").chance
     >>> members = fm.TeamMember("Ann", fm.scout().with_hours(1)), fm.TeamMember("robot")
     >>> team = fm.plan_team(plot, chance, members, on="2026-11-18 05:30")
-    >>> len(team.routes), team.meetings(), team.expected_found <= team.bound
+    >>> len(team.routes), team.meetings(), team.expected_finds <= team.bound
     (2, [], True)
     >>> [f"{route.notes.who} {route.notes.start:%H:%M}" for route in team.routes]
     ['Ann 05:30', 'robot 05:30']
@@ -253,7 +254,7 @@ def _handed_out(day: DayPlan, chance: Float, notes: RouteNotes) -> DayPlan:
 
 
 def _expected(days: Sequence[DayPlan]) -> float:
-    return float(sum(day.route.expected_found for day in days))
+    return float(sum(day.route.expected_finds for day in days))
 
 
 def bound_of_days(days: Sequence[DayPlan]) -> str:

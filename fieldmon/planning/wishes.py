@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.kinds import must_hold_kinds
+from fieldmon.compute.wording import worded
+from fieldmon.errors import SettingError
 from fieldmon.samplers.base import NEVER
 
 if TYPE_CHECKING:
@@ -32,13 +35,16 @@ class Wishes:
 
     Examples
     --------
-    >>> from fieldmon.planning.wishes import Wishes
-    >>> Wishes((3, 4), (7,)).also((7,))
+    >>> import fieldmon as fm
+    >>> fm.Wishes((3, 4), (7,)).also((7,))
     Wishes(wanted=(3, 4, 7), unwanted=())
     """
 
     wanted: tuple[int, ...] = ()
     unwanted: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        must_hold_kinds(self, "Wishes'")
 
     def __bool__(self) -> bool:
         """Return whether anything is wished for."""
@@ -58,9 +64,16 @@ class Wishes:
         Wanted plants seem all but surely infested; unwanted ones seem inspected today. What is
         left out because nobody could inspect it, or as it is known, is not if it is wanted. A
         sampler that reads no chances, as a sweep, passes wishes for more by: see `unmet`.
+
+        Raise `SettingError` where there is no such plant.
         """
         if not self:
             return scene
+        last = len(scene.chance) - 1
+        if wrong := [plant for plant in (*self.wanted, *self.unwanted) if not 0 <= plant <= last]:
+            raise SettingError(
+                worded("A plant must be 0 to {last}, but it is {plant}.", last=last, plant=wrong[0])
+            )
         wanted, unwanted = (np.array(some, np.intp) for some in (self.wanted, self.unwanted))
         chance, seen = scene.chance.copy(), scene.last_inspected.copy()
         chance[wanted] = np.maximum(chance[wanted], _SURE)

@@ -19,7 +19,7 @@ from fieldmon.errors import PlotError, SettingError
 from fieldmon.plot.grid import block_number, plant_numbers
 from fieldmon.plot.near_doubles import near_doubles
 from fieldmon.plot.plant_columns import plain, plant_columns
-from fieldmon.plot.plant_names import FACES, PlantNames
+from fieldmon.plot.plant_names import PlantNames, faces_called
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import goes_round, metres_per_unit
 from fieldmon.plot.rounding import doubts_of_rounding
@@ -63,7 +63,7 @@ def plant_frame(
         row["row_name"] = [grid.row_names.get(line, "") for line in numbered.line.tolist()]
     columns = {"plant": chosen, **block, **row, "number": numbered.number}
     twin = grid.twin[chosen]
-    if (grid.twin >= 0).any():
+    if grid.has_faces:
         columns["face"] = np.where(twin < 0, 1, np.where(chosen < twin, 1, 2))
     lon, lat = grid.lonlat(chosen).T
     lon = _in_one_piece(lon, grid, boundary)
@@ -135,9 +135,8 @@ def faces_in(
     if column is None:
         return frame, planting, None
     _must_say_where(frame)
-    words = [_written(one).casefold().removesuffix(".0") for one in frame[column].tolist()]
     placed = _placed(frame.geometry.to_numpy())
-    face = np.where(placed, [FACES.get(word, 0) for word in words], 0)
+    face = np.where(placed, faces_called(map(_written, frame[column].tolist())), 0)
     of_face: tuple[dict[bytes, int], ...] = ({}, {}, {})
     for i, place in enumerate(frame.geometry.to_wkb().tolist()):
         of_face[face[i]].setdefault(place, i)

@@ -341,6 +341,20 @@ class PlantGrid:
         return Linked(*self.adjacent, read_only(back))
 
     @cached_property
+    def has_faces(self) -> bool:
+        """Whether both faces of some plant are inspected, each for itself.
+
+        Examples
+        --------
+        >>> import fieldmon as fm, shapely
+        >>> area = shapely.MultiPolygon([shapely.box(35.150, 30.360, 35.151, 30.361)])
+        >>> field = fm.Field("home", area, row_bearing_deg=90.0)
+        >>> [fm.Plot.of(field, fm.Planting(faces=n)).grid.has_faces for n in (1, 2)]
+        [False, True]
+        """
+        return bool((self.twin >= 0).any())
+
+    @cached_property
     def vine(self) -> NDArray[np.intp]:
         """One number for both faces of a vine, ``(n,)``: that of the lower-numbered face."""
         itself = np.arange(len(self))
@@ -353,7 +367,7 @@ class PlantGrid:
         Where both faces are inspected insects stay on a vine's faces, but a sprayer reaches the
         next row.
         """
-        if not (self.twin >= 0).any():
+        if not self.has_faces:
             return self.adjacent
         from fieldmon.plot.adjacency import beside_vines  # noqa: PLC0415 - as below
 

@@ -13,6 +13,8 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.plot.grid import block_number, plant_numbers, row_in_block
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from fieldmon.plot.field import Field
@@ -31,10 +33,22 @@ _PLAIN = re.compile(r"\s*\d+(?:\.0+)?\s*$")
 _DIGITS = re.compile(r"(?<!\d)0*(\d{1,6})(?!\d)")
 
 
+def faces_called(words: Iterable[str]) -> NDArray[np.int8]:
+    """Return which face of its plant each word means ``(n,)``: 1 or 2, and 0 where it is none."""
+    bare = (word.strip().casefold().removesuffix(".0") for word in words)
+    return np.array([FACES.get(word, 0) for word in bare], np.int8)
+
+
 class PlantNames(NamedTuple):
     """The names ``(n,)`` of row, block and plant of each measured plant, empty where it has none.
 
     None: no plant has one.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np
+    >>> fm.PlantNames(row=np.array(["R1", "R1", "R2"]))
+    <PlantNames: 3 plants>
     """
 
     row: NDArray[np.str_] | None = None
@@ -54,7 +68,7 @@ class PlantNames(NamedTuple):
         return replace(field, plant_rows=self.row, plant_blocks=self.block, plant_names=self.plant)
 
     def take(self, which: NDArray[np.bool_]) -> Self:
-        """Return the names of those plants."""
+        """Return the names of `which` plants, ``(n,)`` whether."""
         return type(self)(*(None if one is None else one[which] for one in self))
 
 

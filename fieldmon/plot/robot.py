@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from types import NoneType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from fieldmon.compute.arguments import must_be
 from fieldmon.compute.kinds import checked, must_hold_kinds
@@ -311,46 +311,66 @@ class Robot:
         return replace(self, hours=hours)
 
 
-def scout() -> Robot:
+def scout(**fields: Any) -> Robot:  # noqa: ANN401 - of `Robot`
     """Return a person on foot with a hand lens.
 
     The numbers are our choice: 4 km/h, 30 s at a plant (69 % of what is there is found), 5 s for
     each stop, 3 s for another row, 2 s to turn about, 4 h a day.
 
+    Parameters
+    ----------
+    **fields
+        What is otherwise, by the names of `Robot`: ``hours=2``.
+
     Returns
     -------
     Robot
-        With other numbers: ``replace(scout(), look_s=60)``.
+        With the numbers of a scout.
+
+    Raises
+    ------
+    SettingError
+        If a field cannot hold what is given.
 
     Examples
     --------
     >>> import fieldmon as fm
-    >>> ann = fm.scout().with_hours(2)
+    >>> ann = fm.scout(hours=2)
     >>> ann.day_s, ann.visit_s, ann.detects
     (7200.0, 35.0, 0.69)
     """
-    return Robot(4.0 / 3.6, *SCOUT_TIMES, look_s=30.0, hours=4.0)
+    return replace(Robot(4.0 / 3.6, *SCOUT_TIMES, look_s=30.0, hours=4.0), **fields)
 
 
-def rover() -> Robot:
+def rover(**fields: Any) -> Robot:  # noqa: ANN401 - as above
     """Return a small robot with two driven wheels: the usual one, with its size.
 
     It is the robot of `fieldmon drive --robot mujoco`; docs/drive tells how its times were found.
     Its mast looks to both sides, and it drives as well backwards: it need not turn in an aisle.
+
+    Parameters
+    ----------
+    **fields
+        What is otherwise, by the names of `Robot`: ``hours=2``.
 
     Returns
     -------
     Robot
         The usual numbers, 0.58 m wide and 0.8 m long: aisles too narrow for it are not driven.
 
+    Raises
+    ------
+    SettingError
+        If a field cannot hold what is given.
+
     Examples
     --------
     >>> import fieldmon as fm
-    >>> small = fm.rover()
-    >>> small.width_m, small.length_m, small.hours == fm.Robot().hours
-    (0.58, 0.8, True)
+    >>> small = fm.rover(hours=6)
+    >>> small.width_m, small.length_m, small.hours
+    (0.58, 0.8, 6)
     """
-    return Robot(width_m=0.58, length_m=0.8)
+    return replace(Robot(width_m=0.58, length_m=0.8), **fields)
 
 
 def must_be_robot(given: object) -> None:

@@ -460,7 +460,7 @@ def _abreast(grid: PlantGrid) -> bool:
     line = grid.row_line[grid.row]
     up = line[grid.across_plant] == line[one] + 1
     one, other = one[up], grid.across_plant[up]
-    if len(one) < _MANY or (grid.twin >= 0).any():
+    if len(one) < _MANY or grid.has_faces:
         return False
     of_line = np.split(
         grid.along_m[other] - grid.along_m[one], np.flatnonzero(np.diff(line[one])) + 1
@@ -484,7 +484,7 @@ def _gaps_m(grid: PlantGrid) -> Float:
 
 def _nearer_share(grid: PlantGrid) -> float:
     """Return the share of plants that stand much nearer to another row's than to their own's."""
-    if (grid.twin >= 0).any():
+    if grid.has_faces:
         return 0.0
     return nearer_share(grid.xy_m, grid.row_line[grid.row])
 

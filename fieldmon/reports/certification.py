@@ -20,6 +20,7 @@ from fieldmon.compute.wording import KeptText, counted, figure, joined, worded
 from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.cautions import groups, label_of, waits
+from fieldmon.monitoring.season_copies import called_apart
 from fieldmon.plot.named_rows import place_in_words
 from fieldmon.reports import words
 from fieldmon.reports.content import (
@@ -55,6 +56,7 @@ class _PlotRecord:
     """What one season holds up to a day."""
 
     season: Season
+    called: str
     on: date
     units: Units
     treatments: tuple[KeptTreatment, ...]
@@ -67,7 +69,7 @@ class _PlotRecord:
     corrected: dict[str, set[str]]
 
     @classmethod
-    def of(cls, season: Season, until: date | None, units: Units) -> _PlotRecord:
+    def of(cls, season: Season, called: str, until: date | None, units: Units) -> _PlotRecord:
         on = season.default_date() if until is None else until
         done = tuple(one for one in season.treatments() if one.on <= on)
         # until when nobody may enter stands with each treatment: a record is read after it
@@ -84,11 +86,12 @@ class _PlotRecord:
         corrected: dict[str, set[str]] = {}
         for (_, day, *_), who in season.corrected_by().items():
             corrected.setdefault(str(day), set()).add(who)
-        return cls(season, on, units, done, unsaid, beware, told, log, wrong, seen, corrected)
+        when = on, units
+        return cls(season, called, *when, done, unsaid, beware, told, log, wrong, seen, corrected)
 
     @property
     def name(self) -> str:
-        return words.isolated(self.season.plot.field.name)
+        return words.isolated(self.called)
 
     def harvest_from(self, first: date | None) -> str:
         """Return from when on harvest is allowed after a treatment; empty: nobody said.
@@ -144,7 +147,11 @@ def certification_report(
     with ExitStack() as still:
         for season in seasons:
             still.enter_context(season.one_moment())
-        records = [_PlotRecord.of(season, until, units) for season in seasons]
+        called = called_apart(seasons)
+        records = [
+            _PlotRecord.of(season, name, until, units)
+            for season, name in zip(seasons, called, strict=True)
+        ]
         begins = min(one.season.settings.begins for one in records)
         on = max(one.on for one in records)
         title = worded(words.CERT_TITLE, begins=units.day(begins), day=units.day(on))

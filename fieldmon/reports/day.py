@@ -286,7 +286,7 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     )  # fmt: skip
     hours = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
     ahead = KeyFigure(
-        words.FINDS, estimate(route.expected_found), _of_infested(facts),
+        words.FINDS, estimate(route.expected_finds), _of_infested(facts),
     )  # fmt: skip
     done = KeyFigure(
         words.FOUND_TODAY, figure(len(facts.found)), worded(words.OF_INSPECTED, n=facts.inspected)
@@ -307,7 +307,7 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
 
 def _of_infested(facts: DayFacts) -> str:
     """Return of how many infested plants the finds are; where it hides in some, how many show."""
-    seen = estimate(facts.route.expected_finds)
+    seen = estimate(facts.route.expected_visible)
     n = seen if facts.infested is None else estimate(facts.infested)
     return worded(words.OF_INFESTED if n == seen else words.OF_HIDDEN, n=n, seen=seen)
 

@@ -26,13 +26,16 @@ def headline(route: Route, day: str) -> str:
         return worded(words.HEADLINE_NONE, day=day)
     line = plant_numbers(route.aisles.grid, route.plant).line
     low, high = row_ends(route.aisles.grid, line)
-    rows, finds = worded(words.ROW, low=low), route.expected_found
+    rows, finds = worded(words.ROW, low=low), route.expected_finds
+    stops = counted(len(route), "plant")
+    if route.aisles.grid.has_faces:
+        stops = counted(len(route), "face")
     if not route.aisles.grid.in_rows:
         rows = worded(words.NO_ROWS)
     elif low != high:
         rows = worded(words.ROWS, low=low, high=high)
     return worded(
-        words.HEADLINE, plants=counted(len(route), "plant"), rows=rows, day=day,
+        words.HEADLINE, plants=stops, rows=rows, day=day,
         hours=hours_figure(route.end_s / 3600),
         finds=worded(words.FEW_FINDS, n=finds) if round(finds, 1) < 10
         else counted(round(finds), "find"),

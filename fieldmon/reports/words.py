@@ -171,7 +171,7 @@ LIQUID, LITRES, INFESTED_INSIDE = "Liquid", "{value} l", "Infested plants inside
 AND_ELSEWHERE, ENOUGH = "{n} elsewhere", "Chance that it is enough"
 ZONES, ZONES_REST = "Zones", "... and {n} more; the files for the sprayer hold all."
 ZONES_COLUMNS = ("zone", "rows", "plants of the row", "plants", "infested", "by itself")
-VERDICTS = {"treat": "treat", "do not treat": "do not treat", "look on": "not clear"}
+VERDICTS = {"treat": "treat", "do not treat": "do not treat", "inspect more": "inspect more"}
 MEANING = "How the numbers are meant"
 MEANINGS = (
     "Unknown is not clean: a plant was found infested, or looked clean, or was never inspected.",

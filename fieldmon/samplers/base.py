@@ -277,10 +277,21 @@ class Sampler(Protocol):
     def walk(self, scene: Scene, would_find: WouldFind) -> Stops:
         """Return the stops from here to the end of the day, in a `scene`.
 
-        ``would_find`` (n,) says of each plant from which of the sampler's inspection times on an
-        inspection today would find it infested, counted from 1; 0: none would. Where there is one
-        time only, that is whether it would.
         A sampler may read an entry only when it has driven to that plant and inspected it: each
         plant follows from what those before it showed. One of somebody's own is asked several times
         a day, to see that it does.
+
+        Parameters
+        ----------
+        scene
+            What is known when the day goes on: where one stands, the seconds left, chances.
+        would_find
+            ``(n,)`` for each plant from which of the sampler's inspection times on an inspection
+            today would find it infested, counted from 1; 0: none would. Where there is one time
+            only, that is whether it would.
+
+        Returns
+        -------
+        Stops
+            Plants in the order of their inspections, and when one arrives at each.
         """

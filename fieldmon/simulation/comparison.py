@@ -120,7 +120,7 @@ class Comparison:
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> chance = fm.plan_day(plot, on="2026-11-18").chance
     >>> short = fm.CompareSettings(seeds=3, season=fm.SimulationSettings(n_days=4))
-    >>> made = fm.compare(plot, chance, ("bouncy", "naive"), short)
+    >>> made = fm.compare(plot, chance, ("bouncy", "naive"), settings=short)
     >>> made.left.shape, made.infested_plant_days.shape
     ((2, 3, 4), (2, 3))
     """
@@ -173,7 +173,8 @@ class Comparison:
         >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
         >>> chance = fm.plan_day(plot, on="2026-11-18").chance
         >>> short = fm.CompareSettings(seeds=3, season=fm.SimulationSettings(n_days=4))
-        >>> ratio = fm.compare(plot, chance, ("bouncy", "naive"), short).ratios("naive")["bouncy"]
+        >>> made = fm.compare(plot, chance, ("bouncy", "naive"), settings=short)
+        >>> ratio = made.ratios("naive")["bouncy"]
         >>> ratio.low <= ratio.value <= ratio.high
         True
         """
@@ -196,7 +197,7 @@ class Comparison:
         >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
         >>> chance = fm.plan_day(plot, on="2026-11-18").chance
         >>> short = fm.CompareSettings(seeds=3, season=fm.SimulationSettings(n_days=4))
-        >>> days = fm.compare(plot, chance, ("bouncy", "naive"), short).to_pandas()
+        >>> days = fm.compare(plot, chance, ("bouncy", "naive"), settings=short).to_pandas()
         >>> days.groupby(["sampler", "seed"]).left.sum().shape
         (6,)
         """
@@ -264,9 +265,10 @@ def compare(
     plot: Plot,
     chance: ArrayLike,
     samplers: Samplers = ("adaptive", "dynamic", "naive"),
+    *,
     settings: CompareSettings | None = None,
-    progress: Callable[[int, int], None] | None = None,
     stop: Callable[[], bool] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Comparison:
     """Compare samplers on a plot, in simulated seasons of the same insects.
 
@@ -287,10 +289,10 @@ def compare(
         dict of them by names of your choice. Several threads simulate, unless one is your own.
     settings
         Seasons, share infested, robot, days; None: as `CompareSettings` has them.
-    progress
-        Told how many seasons are done, and of how many.
     stop
         Asked before each season whether to stop. What every sampler has been through is returned.
+    progress
+        Told how many seasons are done, and of how many.
 
     Returns
     -------
@@ -309,7 +311,7 @@ def compare(
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
     >>> chance = fm.plan_day(plot, on="2026-11-18").chance
     >>> short = fm.CompareSettings(seeds=3, season=fm.SimulationSettings(n_days=4))
-    >>> made = fm.compare(plot, chance, ("bouncy", "naive"), short)
+    >>> made = fm.compare(plot, chance, ("bouncy", "naive"), settings=short)
     >>> made
     <Comparison: bouncy, naive, 3 seasons>
     >>> made.sentence("naive").startswith("Infested plant-days over those of naive, in 3 simul")

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def draw_start(
-    plot: Plot, chance: NDArray[np.float64], share: float = 0.02, seed: int = 1
+    plot: Plot, chance: NDArray[np.float64], share: float = 0.02, *, seed: int = 1
 ) -> Start:
     """Draw which plants are infested on a simulated season's first morning.
 
@@ -42,6 +42,11 @@ def draw_start(
         Share of all plants infested on average, above 0 and below 1.
     seed
         The same seed infests the same plants.
+
+    Returns
+    -------
+    Start
+        Who is infested, and what is believed of it: `simulate` begins with it.
 
     Raises
     ------
@@ -67,6 +72,7 @@ def simulate(
     plot: Plot,
     start: Start,
     sampler: str | Sampler = "adaptive",
+    *,
     robot: Robot | None = None,
     settings: SimulationSettings | None = None,
     seed: int = 1,
@@ -117,7 +123,9 @@ def simulate(
     >>> season.visits, (season.worked_h > 0).nonzero()[0].tolist()
     (2, [0, 7])
     """
-    return season_metrics(simulate_days(plot, start, sampler, robot, settings, seed))
+    return season_metrics(
+        simulate_days(plot, start, sampler, robot=robot, settings=settings, seed=seed)
+    )
 
 
 @checked
@@ -125,6 +133,7 @@ def simulate_days(
     plot: Plot,
     start: Start,
     sampler: str | Sampler = "adaptive",
+    *,
     robot: Robot | None = None,
     settings: SimulationSettings | None = None,
     seed: int = 1,

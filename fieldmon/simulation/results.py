@@ -175,12 +175,18 @@ def seasons(folder: Path) -> pa.Table:
     """Return all seasons that a study has so far, in the order of their settings and seeds.
 
     Each once, also where parts overlap, as they may when chunks were cut in another way before.
+    Those of a pest have no spread, though an older fieldmon named one.
     """
     if not any(folder.glob("sampler=*/*.parquet")):
         raise FileProblem(f"{folder} must hold a study with finished seasons, but it does not.")
     by_sampler = ds.partitioning(pa.schema([("sampler", pa.string())]), flavor="hive")
     table = ds.dataset(folder, format="parquet", partitioning=by_sampler).to_table()
-    table = table.sort_by([(column, "ascending") for column in _ORDER])
-    columns = [table[name].to_numpy() for name in _ORDER]
+    # all seasons of a study are of one pest, or of none
+    if (spread := table["spread"]).null_count:
+        none = pa.nulls(len(table), spread.type)
+        table = table.set_column(table.column_names.index("spread"), "spread", none)
+    by = [name for name in _ORDER if table[name].null_count < len(table)]
+    table = table.sort_by([(column, "ascending") for column in by])
+    columns = [table[name].to_numpy() for name in by]
     fresh = np.logical_or.reduce([column[1:] != column[:-1] for column in columns])
     return table.filter(pa.array(np.concatenate([[True], fresh])))

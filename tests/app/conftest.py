@@ -243,8 +243,11 @@ def new_tab(browser):
             page.told = window.new_cdp_session(page)
             page.told.send("Emulation.setUserAgentOverride", {"userAgent": agent})
         page.set_viewport_size({"width": size[0], "height": size[1]})
-        page.requests = []
+        page.requests, page.complaints = [], []
         page.on("request", lambda sent: page.requests.append(sent.url))
+        page.on(
+            "console", lambda one: page.complaints.append(one.text) if one.type == "error" else None
+        )
         return page
 
     return of
@@ -252,7 +255,7 @@ def new_tab(browser):
 
 @pytest.fixture
 def page(new_tab, request):
-    """Return a new tab of the asked size that remembers every request.
+    """Return a new tab of the asked size that remembers every request and complaint.
 
     Of a test that failed it keeps a picture.
     """

@@ -26,7 +26,7 @@ SQUARE = MultiPolygon([box(35.15, 30.36, 35.1506, 30.3606)])
 PAGES = tuple(page for item in menu.MENU.values() for page in item.pages)
 
 
-def until(is_so, within_s=180.0, every_s=0.005):
+def until(is_so, within_s=180.0, every_s=0.02):
     """Wait for a state that another thread or the browser brings about."""
     end = time.monotonic() + within_s
     while not is_so():

@@ -69,6 +69,12 @@ def awake(page):
     page.evaluate(_ASLEEP)
 
 
+def asked_of_the_world(page, address):
+    """Return the addresses a tab asked that are not the app's own."""
+    own = (address, address.replace("http", "ws"), "data:", "blob:", "about:")
+    return [url for url in page.requests if not url.startswith(own)]
+
+
 def rest(page):
     """Wait until the server has answered and a map is drawn."""
     try:

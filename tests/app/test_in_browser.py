@@ -22,7 +22,6 @@ from streamlit.proto.ForwardMsg_pb2 import ForwardMsg
 
 from app.show.map_view import LOADER
 from app.show.maps import colours
-from app.state import menu
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.level_range import first_level_range
@@ -39,8 +38,8 @@ from fieldmon.plot.robot import scout
 from tests.app.driving import until, zipped
 from tests.app.map_in_browser import (
     DRAWN,
-    IDLE,
     MAP,
+    asked_of_the_world,
     awake,
     becomes,
     card,
@@ -205,53 +204,6 @@ _COUNT_SENT = """() => {
   };
   return window.sentToServer;
 }"""
-
-
-@pytest.fixture(scope="module")
-def walk(new_tab, address):
-    """Turn to every item of the menu; return what was asked for and complained.
-
-    Every page of each is turned to in a season: see `test_hostile_texts`.
-    """
-    page, complaints = new_tab(), []
-    page.on("console", lambda one: complaints.append(one.text) if one.type == "error" else None)
-    for name in ("study", "prior", ""):
-        page.goto(f"{address}/{name}")
-        page.wait_for_selector(IDLE, timeout=240_000)
-    try:
-        rest(page)  # as people do: they see the map before they turn from it
-        for name in menu.MENU:
-            open_item(page, texts.MENU[name])
-    except PlaywrightTimeout as late:
-        late.add_note(f"Its console says: {complaints}; asked last: {page.requests[-12:]}")
-        raise
-    still(page)
-    page.close()
-    return page.requests, complaints
-
-
-def test_nothing_is_asked_of_the_world(walk, address):
-    asked, _ = walk
-    assert len(asked) > 30
-    own = (address, address.replace("http", "ws"), "data:", "blob:", "about:")
-    assert [url for url in asked if not url.startswith(own)] == []
-
-
-def test_no_page_has_an_error_on_its_console(walk):
-    _, complaints = walk
-    assert complaints == []
-
-
-def test_a_map_comes_though_the_network_fails_and_the_server_has_let_go_of_a_part(page, address):
-    failures = [lambda asked: asked.abort(), lambda asked: asked.fulfill(status=404)]
-
-    def answer(asked):
-        failures.pop()(asked) if failures else asked.continue_()
-
-    page.route("**/map_data/*", answer)
-    page.goto(address)
-    rest(page)
-    assert not failures, "it was asked for, and did fail"
 
 
 def test_a_page_is_shown_again_over_a_line_so_slow_that_another_was_turned_to_meanwhile(
@@ -540,9 +492,19 @@ def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
 
 @pytest.fixture(scope="module")
 def asked_tab(new_tab, address):
-    """Load the first screen once for all who ask it about plants, which alone are pointed at."""
+    """Load the first screen once for all who ask it about plants, which alone are pointed at.
+
+    The first two times that it asks for a part of the map, it gets none.
+    """
     page = new_tab()
+    page.failures = [lambda asked: asked.abort(), lambda asked: asked.fulfill(status=404)]
+
+    def answer(asked):
+        page.failures.pop()(asked) if page.failures else asked.continue_()
+
+    page.route("**/map_data/*", answer)
     shown(page, address)
+    page.unroute("**/map_data/*")
     for name in (ROUTE, HOT):
         switch(page, name, on=False)
     yield page
@@ -554,6 +516,10 @@ def asked_screen(asked_tab):
     """Return that screen as the test before left it."""
     with awake(asked_tab) as page:
         yield page
+
+
+def test_a_map_comes_though_the_network_fails_and_the_server_has_let_go_of_a_part(asked_tab):
+    assert not asked_tab.failures, "it was asked for, and did fail"
 
 
 def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(asked_screen):
@@ -713,7 +679,8 @@ def test_a_plot_is_drawn_by_four_taps_corrected_and_has_a_route(page, address):
     assert np.linalg.norm(corners[:, None] - wanted, axis=2).min(axis=0).max() < 3
     open_item(page, texts.MENU["today"])
     assert len(plants_of(route_of(page))) > 10
-    assert all(asked.startswith((address, "blob:", "data:")) for asked in page.requests)
+    assert asked_of_the_world(page, address) == []
+    assert page.complaints == []
 
 
 @pytest.mark.parametrize("page", [PHONE], indirect=True)
@@ -891,21 +858,6 @@ def stops(page):
     return plants_of(route_of(page))
 
 
-def test_three_samplers_are_compared_while_the_page_stays_usable(page, address):
-    page.goto(f"{address}/ahead")
-    seeds = page.get_by_role("spinbutton", name="Seasons each")
-    seeds.wait_for(timeout=240_000)
-    seeds.fill("60")
-    seeds.press("Enter")
-    page.get_by_role("button", name="Compare", exact=True).click()
-    page.get_by_text("seasons simulated").wait_for(timeout=180_000)
-    page.get_by_text(re.compile("is best|comes out best")).wait_for(timeout=240_000)
-    page.get_by_role("button", name="Stop", exact=True).click()
-    page.get_by_role("button", name="Go on").wait_for(timeout=180_000)
-    done = page.get_by_text("of 180 seasons simulated").inner_text()
-    assert 3 <= int(done.split(" ")[0]) < 180
-
-
 def contrast(button):
     """Return the contrast of a button's words with its ground (WCAG's formula)."""
     shades = ("",)
@@ -1059,16 +1011,15 @@ def test_a_day_that_is_typed_counts_by_enter_and_by_tab(record_page):
         rest(page)
 
 
-def test_one_press_of_back_leads_to_the_item_before(page, address, served_seasons):
-    season(served_seasons / "Back.gpkg", sample()[0])
-    page.goto(f"{address}/?season=Back&day=2026-11-18")
-    rest(page)
+def test_one_press_of_back_leads_to_the_item_before(record_page):
+    page = record_page
+    here, day = page.url, re.search(r"day=([\d-]+)", page.url)[1]
     open_item(page, texts.MENU["season"])
-    page.wait_for_url("**/season?*day=2026-11-18*")
+    page.wait_for_url(f"**/season?*day={day}*")
     rest(page)
     page.go_back()
-    page.get_by_text(texts.STEPS["record"]).first.wait_for()
-    page.wait_for_url("**/?season=Back&day=2026-11-18")
+    page.get_by_role("tab", name=texts.RECORD_ROUTE).wait_for()
+    page.wait_for_url(here)
 
 
 def test_a_double_press_begins_one_season_and_keeps_one_plan(page, address, served_seasons):
@@ -1135,47 +1086,53 @@ def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_m
     assert title.evaluate(gap) < 5, "a heading of Latin letters begins where the others do"
 
 
+# tools whose middle another thing lies over or that cannot be pressed, as a press would find them:
+# a trial press of each waits a second for frames that a map at rest does not draw
+_COVERED = """(tools) => tools.filter((tool) => {
+  const { x, y, width, height } = tool.getBoundingClientRect();
+  const [left, top] = [x + width / 2, y + height / 2];
+  let hit = document.elementFromPoint(left, top);
+  for (let within; (within = hit?.shadowRoot?.elementFromPoint(left, top)) && within !== hit;) hit = within;
+  return tool.disabled || !tool.contains(hit);
+}).map((tool) => tool.ariaLabel ?? tool.outerHTML)"""  # noqa: E501
+_LID = """() => document.body.append(Object.assign(document.createElement("div"),
+  { id: "lid", style: "position:fixed;inset:0;z-index:2147483647" }))"""
+
+
 def test_in_a_low_window_or_a_zoomed_one_all_tools_of_the_map_can_be_pressed(screen):
     page = screen
+    tools = page.locator(f"{MAP} .tools .tool")
     for width, height in ((960, 600), (720, 450)):  # 1440 x 900 at 150 and 200 %
         page.set_viewport_size({"width": width, "height": height})
-        tools = page.locator(f"{MAP} .tools .tool")
+        page.wait_for_function("(wide) => innerWidth === wide", arg=width)
+        still(page)
         assert tools.count() >= 7
-        for k in range(tools.count()):
-            tools.nth(k).click(trial=True, timeout=5_000)  # nothing lies over it
+        assert tools.evaluate_all(_COVERED) == []
+    page.evaluate(_LID)
+    assert len(tools.evaluate_all(_COVERED)) == tools.count(), "what lies over them is noticed"
+    page.evaluate("document.getElementById('lid').remove()")
 
 
-def test_no_plot_lies_behind_the_legend_of_the_map_of_all(page, address, served_seasons):
-    # the farthest away of all seasons that other tests keep: the map of all has it in its corner
-    files = [served_seasons / f"{name}.gpkg" for name in ("North-west", "South-east")]
-    for file, (lon, lat) in zip(files, ((34.0, 32.0), (37.0, 28.9)), strict=True):
-        area = shapely.MultiPolygon([box(lon, lat, lon + 0.0005, lat + 0.0005)])
-        Season.create(file, Plot.of(Field(file.stem, area)), begins=date(2026, 11, 16))
-    try:
-        page.goto(f"{address}/plots")
-        rest(page)
-        (place,) = pixels(view(page), [[37.0, 28.9]])
-        legend = page.locator(f"{MAP} .legend").bounding_box()
-        top = page.locator(MAP).bounding_box()["y"]
-        behind = place[0] > legend["x"] and top + place[1] > legend["y"]
-        assert not behind, f"it is at {place}, the legend at {legend}"
-    finally:
-        for file in files:
-            file.unlink()
-
-
-def test_plots_under_one_dot_are_counted_on_it_and_each_can_be_opened(
+def test_on_the_map_of_all_none_is_behind_the_legend_and_each_of_those_under_one_dot_can_be_opened(
     page, address, served_seasons
 ):
-    area = shapely.MultiPolygon([box(36.0, 31.0, 36.0005, 31.0005)])
-    files = [served_seasons / f"{name}.gpkg" for name in ("Last year", "This year")]
-    for file in files:
-        Season.create(file, Plot.of(Field("East", area)), begins=date(2026, 11, 16))
+    # the farthest away of all seasons that other tests keep: the map of all has it in its corner
+    places = {"North-west": (34.0, 32.0), "South-east": (37.0, 28.9),
+              "Last year": (36.0, 31.0), "This year": (36.0, 31.0)}  # fmt: skip
+    files = []
+    for name, (lon, lat) in places.items():
+        area = shapely.MultiPolygon([box(lon, lat, lon + 0.0005, lat + 0.0005)])
+        files.append(served_seasons / f"{name}.gpkg")
+        Season.create(files[-1], Plot.of(Field(f"{lat}", area)), begins=date(2026, 11, 16))
     try:
         page.goto(f"{address}/plots")
         rest(page)
+        corner, place = pixels(view(page), [[37.0, 28.9], [36.00025, 31.00025]])
+        legend = page.locator(f"{MAP} .legend").bounding_box()
+        top = page.locator(MAP).bounding_box()["y"]
+        behind = corner[0] > legend["x"] and top + corner[1] > legend["y"]
+        assert not behind, f"it is at {corner}, the legend at {legend}"
         page.locator(f"{MAP} .label.plots", has_text="2").wait_for()
-        (place,) = pixels(view(page), [[36.00025, 31.00025]])
         click(page, place)
         page.locator(f"{MAP} .choice button", has_text="This year").click()
         box_of_plots = page.locator(".st-key-season input")
@@ -1292,7 +1249,8 @@ def test_on_a_phone_two_taps_cut_the_plot_into_blocks(page, address):
 
 def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up(page, address):
     page.goto(f"{address}/ahead?part=drive")
-    rest(page)
+    still(page)
+    plan = view(page)
     page.get_by_role("button", name=texts.DRIVE_RUN).click()
     bar = page.locator(f"{MAP} .drive[data-now]")
     bar.wait_for(timeout=120_000)
@@ -1321,6 +1279,25 @@ def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up
     assert len(places) == 1, "it stands while it looks"
     assert [one["found"] for one in standing] == [0, 0, 1]
     becomes(page, lambda image: red(image) > red(before) + 100, "the find")
+    assert view(page)["bearing"] != 0
+    page.get_by_role("radio", name=texts.DRIVE_SOURCES["recorded"]).click()
+    # no robot is shown any more: the whole plot, and north is up
+    until(lambda: view(page) == plan, within_s=30.0, every_s=0.2)
+    assert asked_of_the_world(page, address) == []
+    assert page.complaints == []
+
+
+def test_nothing_is_asked_of_the_world_nor_complained_of_on_any_console(
+    first_screen, phone_tab, address
+):
+    """By all that was done before in tabs without a season.
+
+    Every page is turned to in a season, see `test_hostile_texts`; drawing and driving say it above.
+    """
+    assert len(first_screen.requests) > 30
+    for page in (first_screen, phone_tab):
+        assert asked_of_the_world(page, address) == []
+        assert page.complaints == []
 
 
 def fetch(page, url):

@@ -6,6 +6,7 @@
 import hashlib
 import os
 import random
+import re
 import shutil
 from dataclasses import replace
 from datetime import date, timedelta
@@ -28,7 +29,7 @@ from tests.app.scouting import BrokenLine, Line, PhoneBrowser, PhoneWindow, a_pi
 from tests.app.test_hostile_texts import EVIL, NAMES, hostile_season
 from tests.monitoring.phone import a_finding, told
 from tests.monitoring.rules import keeps_the_rules
-from tests.monitoring.seasons import BEGINS, a_season
+from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 PLANTS = int(os.environ.get("FIELDMON_DAY", "12"))
 PHOTOS = int(os.environ.get("FIELDMON_PHOTOS", "3"))
@@ -488,6 +489,7 @@ def test_by_keyboard_alone(season, line, phone):
 
 
 def test_what_a_scout_does_in_the_field(season, line, browser):
+    season = a_season(season.path.parent / "Faces 2026.gpkg", plot=a_plot(faces=2))
     start = route_ahead(season, BEGINS).plant[0]
     lon, lat = season.plot.grid.lonlat([start])[0]
     here = {"longitude": lon, "latitude": lat, "accuracy": 4}
@@ -505,19 +507,30 @@ def _in_the_field(phone, line, season):
     page.locator("#place .good", has_text="You are there").wait_for()
     first = plant_of(page)
     row, number = (int(each[0]) for each in plant_numbers(plot.grid, [first]))
-    assert f"Row {row}, plant {number}" in page.locator("h1").inner_text()
+    assert re.search(rf"Row\W+{row}, plant\W+{number}, face\W[12]", page.locator("h1").inner_text())
+    assert page.locator("#here").count() == 0, "on neither face"
     # the neighbours of a find come next
     told_now(page, "found", 7)
     assert plant_of(page) in _neighbours(plot, first)
     page.locator("#undo").click()
     page.locator(f"#place[data-plant='{first}']").wait_for()
-    # off the route, by its row and number, with a note
+    # off the route, by its row, number and face, with a note
     page.locator("#other_plant").click()
     other = int((plot.grid.row_start[3] + plot.grid.row_start[4]) // 2)
+    other = max(other, int(plot.grid.twin[other]))
     page.locator("#to_row").fill(str(numbered.line[other]))
     page.locator("#to_plant").fill(str(numbered.number[other]))
     page.locator("#ok").click()
+    assert _asks_for_the_face(page, first) == _faces(plot, other)
+    page.locator(f".face[data-plant='{other}']").click()
     page.locator(f"#place[data-plant='{other}']").wait_for()
+    page.locator("#here").click()
+    assert _asks_for_the_face(page, other) == _faces(plot, first)
+    page.get_by_role("button", name="Cancel").click()
+    page.locator("#menu:not([open])").wait_for(state="attached")
+    page.locator("#map").click()  # in the middle of it, where the plant is now
+    assert _asks_for_the_face(page, other) == _faces(plot, other)
+    page.get_by_role("button", name="Cancel").click()
     page.locator("#note_button").click()
     page.locator("#notes").fill("webs ב")
     page.locator("#ok").click()
@@ -531,6 +544,20 @@ def _in_the_field(phone, line, season):
     told_now(page, "clean")
     page.locator("#sync[data-state=ended][data-left='1']").wait_for(timeout=180_000)
     assert key not in page.url
+
+
+def _asks_for_the_face(page, stays):
+    """Return the plants among which the page asks, none chosen, while the one in hand stays."""
+    faces = page.locator(".face")
+    faces.first.wait_for()
+    assert page.evaluate("document.activeElement.tagName") == "H2"
+    page.locator("#faces:not([data-resting])").wait_for()
+    assert plant_of(page) == stays
+    return {int(faces.nth(k).get_attribute("data-plant")) for k in range(faces.count())}
+
+
+def _faces(plot, plant):
+    return {plant, int(plot.grid.twin[plant])}
 
 
 def _brings_a_photo_asked_for(page, season):

@@ -3,9 +3,10 @@
 import re
 import subprocess
 import sys
+from datetime import date
 
 from app.words import texts
-from tests.app.driving import PAGES, go, map_of, opened, texts_of
+from tests.app.driving import PAGES, go, map_of, opened, press, texts_of
 from tests.paths import ROOT
 
 
@@ -16,14 +17,20 @@ def idle_digits(app):
     return [one for one in written if re.search(r"\.\d*0$", one[1])]
 
 
-def test_every_part_opens_on_the_sample_and_no_box_writes_digits_that_nobody_needs(app):
-    boxes = set()
+def test_every_part_opens_on_the_sample_over_one_map_and_no_box_writes_digits_that_nobody_needs(
+    app,
+):
+    boxes, place = set(), map_of(app)["place"]
     for page in PAGES:
         go(app, page)
         assert not app.exception, page
         assert not app.error, page
         assert texts_of(app), page
-        assert map_of(app)["layers"], page
+        ids = [one["id"] for one in map_of(app)["layers"]]
+        assert ids, page
+        if page != "plots":
+            assert map_of(app)["place"] == place, page
+            assert ids[:4] == ["headland", "rows-ground", "aisles", "boundary"], page
         assert idle_digits(app) == [], page
         boxes |= {box.label for box in app.number_input}
     assert len(boxes) > 10
@@ -41,12 +48,28 @@ def test_every_part_asks_for_a_plot_where_nothing_was_brought(app):
         assert app.get("bidi_component") == [], page
 
 
-def test_every_part_opens_on_a_season_and_no_box_writes_digits_that_nobody_needs(season_app):
+def test_every_part_of_a_season_opens_marks_another_day_and_folds_away_who_inspects(season_app):
+    """On the season's first day all open in another language: see `words/test_languages.py`."""
+    season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 20)).run()
     for page in PAGES:
         go(season_app, page)
         assert not season_app.exception, page
         assert not season_app.error, page
         assert idle_digits(season_app) == [], page
+        # unfolded where a day is planned
+        who = [box for box in season_app.expander if box.label == texts.WHO]
+        assert [box.proto.expanded for box in who] == [page == "today"] * len(who), page
+        if page == "plots":
+            continue  # each plot has a today of its own there
+        assert "**Fri 20 Nov**" in season_app.warning[0].value, page
+        assert "not today (Mon 16 Nov)" in season_app.warning[0].value
+        records = page in {"today", "scout", "record", "decide"}
+        assert ("is recorded for" in season_app.warning[0].value) == records, page
+    assert "2026-11-20" in season_app.query_params["day"]
+    press(season_app, texts.BACK_TO_TODAY)
+    assert not season_app.warning
+    assert season_app.date_input(key="day Gate 2026").value == date(2026, 11, 16)
+    assert "day" not in season_app.query_params
 
 
 def test_a_box_for_files_speaks_the_language_of_the_page():

@@ -139,10 +139,10 @@ def test_a_day_that_is_stopped_says_what_is_kept_and_writes_its_table(
 
 
 def test_a_day_past_midnight_says_so_and_writes_its_tables(run, season, tmp_path):
-    run("change", season, "--start", "23:50", "--hours", "0.3")
+    run("change", season, "--start", "23:56", "--hours", "0.15")
     code, _, err, _ = run("drive", season, "--date", BEGINS, "--made-up", "-o", "day.csv")
     assert code == 0, err
-    assert "past midnight, to 00:08: a result with a time after that is of 2026-11-03" in err
+    assert "past midnight, to 00:05: a result with a time after that is of 2026-11-03" in err
     held = Season(season).history.inspections
     assert set(held.date.astype(str)) == {BEGINS, "2026-11-03"}
     assert len(table(tmp_path / "day.stops.csv")) == len(held)

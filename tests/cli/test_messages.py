@@ -133,7 +133,7 @@ def test_records_that_say_nothing_about_a_day_are_named(capsys):
     dates = np.array([day + 5, day - 1])
     records = Records.of(np.zeros((2, 2)), np.array([PRESENT, PRESENT]), dates)
     tell_unusable(records, day, PriorSettings())
-    assert "1 of the records are of a later day" in capsys.readouterr().err
+    assert "1 of the records is of a later day" in capsys.readouterr().err
     tell_unusable(records.take(np.array([1])), day, PriorSettings())
     said = "seen: Chances and hot spots begin with 1 record of 2026-11-01.\n"
     assert capsys.readouterr().err == said

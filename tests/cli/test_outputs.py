@@ -62,9 +62,9 @@ def test_a_chance_map_is_written_where_it_is_asked_for(today, tmp_path, capsys):
 def test_a_day_in_words_says_its_stops_its_hours_and_what_to_expect(today):
     words = day_in_words(today.route)
     assert words.startswith(f"{len(today.route)} of {len(PLOT.grid)} plants in 0.5 h, ")
-    seen = estimate(today.route.expected_finds)
+    seen = estimate(today.route.expected_visible)
     assert f"about {seen} of them infested, about" in words
-    assert day_in_words(today.route, today.route.expected_finds) == words
+    assert day_in_words(today.route, today.route.expected_visible) == words
     more = day_in_words(today.route, 99.0)
     assert f"about 99 of them infested, about {seen} so that it can be seen, about" in more
 

@@ -182,14 +182,14 @@ def test_hours_that_are_worked_already_are_no_hours_left(run, season, who, whose
     assert run(*words, "--now", "06:10")[0] == 0
 
 
-def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
+def test_five_days_by_command_are_five_days_of_the_library(run, season, tmp_path):
     """The app calls the library: the same findings give the same belief and the same routes."""
     begun = Season(season)
     with pytest.warns(ImportDoubt, match="15 of the records are of a later day"):
         with_library = Season.create(
             tmp_path / "library.gpkg", begun.plot, begun.records, begun.settings
         )
-    for day in range(10):
+    for day in range(5):
         on = date.fromisoformat(BEGINS) + timedelta(days=day)
         code, _, err, _ = run("plan", season, "--date", on, "-o", "r.csv")
         assert code == 0, err
@@ -200,7 +200,7 @@ def test_ten_days_by_command_are_ten_days_of_the_library(run, season, tmp_path):
         found = np.isin(np.arange(12), [day, day + 3])
         with_library.record(Inspections.of(np.array(plants), found, np.datetime64(on)), "app")
         assert np.array_equal(with_library.evening(on), Season(season).evening(on))
-    assert len(with_library.history.inspections) == 120
+    assert len(with_library.history.inspections) == 60
 
 
 def test_a_plan_says_which_detection_counts_for_what_once_the_season_learnt_another(run, season):

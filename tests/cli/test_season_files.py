@@ -12,6 +12,8 @@ from fieldmon.errors import SettingError
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, MITES, ZIP, begin_next_year, filled_in, table
 from tests.cli.test_merge import worked
+from tests.cli.test_plan_all import SHAPES
+from tests.parcels import many, write_geojson
 
 OTHERS = f"plot,row,plant,found,date\nNursery,1,1,yes,{BEGINS}\nPond,1,2,yes,{BEGINS}\n"
 
@@ -57,6 +59,8 @@ def test_two_seasons_of_one_plot_begun_on_one_day_are_no_copies(run, season, tmp
         code, _, err, _ = run(words[0], season, flies, *words[1:])
         assert code == 0, err
         assert "season and flies are 2 seasons of one plot: each" in err
+    called = {next(iter(row.values())) for row in table(tmp_path / "all.csv")}
+    assert called == {"Nursery (flies)"}, "their files tell plots of one name apart"
     before = season.read_bytes()
     code, _, err, _ = run("merge", season, flies)
     assert code == 2
@@ -138,8 +142,11 @@ def test_what_was_filled_in_for_another_plot_is_kept_and_nobody_is_told_to_recor
     ],
 )
 def test_a_plan_without_a_season_never_writes_over_what_was_filled_in(run, tmp_path, words, name):
-    chosen = [] if "--all" in words else ["--feature", "Gate"]
-    words = ["plan", ZIP, *chosen, *words, "--date", BEGINS, "--no-bound", "--hours"]
+    chosen = [ZIP, "--feature", "Gate"]
+    if "--all" in words:  # not all of the estate, whose plots workers would share
+        write_geojson(tmp_path / "two.geojson", many(SHAPES, 2), name=["Pond", "Gate"])
+        chosen = ["two.geojson"]
+    words = ["plan", *chosen, *words, "--date", BEGINS, "--no-bound", "--hours"]
     for hours in (1, 1.5):  # not filled in, it may be
         code, _, err, _ = run(*words, hours)
         assert code == 0, err

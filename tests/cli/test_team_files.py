@@ -159,7 +159,7 @@ def test_names_that_are_one_in_file_names_are_refused():
 
 def test_of_each_it_is_said_where_its_way_leaves_the_plot(capsys):
     class Leaving(list):
-        expected_found, end_s, drive_m = 1.0, 3600.0, 500.0
+        expected_finds, end_s, drive_m = 1.0, 3600.0, 500.0
         ways_said = ("5 m of the way lie outside.", "The body reaches over.")
 
     tell_member("Ann", datetime(2026, 11, 18, 6), Leaving([1, 2]))

@@ -40,7 +40,7 @@ def test_it_treats_leaves_or_looks_on_as_sure_as_asked():
 
     assert verdict(0.3) == "treat"
     assert verdict(0.005) == "do not treat"
-    assert verdict(0.05) == "look on"
+    assert verdict(0.05) == "inspect more"
 
 
 @pytest.mark.parametrize("n", [1, 7, 25, 333])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fieldmon.decisions.sequential import (
+    INSPECT_MORE,
     LEAVE,
-    LOOK_ON,
     TREAT,
     BayesPlan,
     IwaoPlan,
@@ -28,7 +28,7 @@ PLANS = {
 def test_the_published_example_ends_with_treatment_at_the_fifth_count():
     """The tests of the R package sequential.pops 0.1.1 (Rincon et al. 2025)."""
     assert decided(SPREAD, [2, 5, 6, 2, 7]) == (TREAT, 5)
-    assert decided(SPREAD, [2, 5, 6, 2]) == (LOOK_ON, 4)
+    assert decided(SPREAD, [2, 5, 6, 2]) == (INSPECT_MORE, 4)
 
 
 @pytest.mark.parametrize("plan", PLANS.values(), ids=PLANS)
@@ -125,7 +125,7 @@ def test_iwaos_lines_are_a_confidence_interval_round_the_threshold():
     assert (lines.high[99] / 100 - 5.0) / error == pytest.approx(1.645)
     assert decided(plan, [0] * 10)[0] == LEAVE
     assert decided(plan, [12] * 40)[0] == TREAT
-    assert decided(IwaoPlan(0.22), [0, 1, 0, 0] * 4) == (LOOK_ON, 16)
+    assert decided(IwaoPlan(0.22), [0, 1, 0, 0] * 4) == (INSPECT_MORE, 16)
 
 
 def test_the_bayesian_plan_says_the_published_chances():
@@ -152,7 +152,7 @@ def test_on_its_lines_the_bayesian_plan_is_as_sure_as_asked(plan):
 
 def test_before_the_first_look_a_share_is_as_likely_above_as_below():
     assert BayesPlan(0.05).chance_above(0, 0) == pytest.approx(0.5)
-    assert decided(BayesPlan(0.05), [0])[0] == LOOK_ON
+    assert decided(BayesPlan(0.05), [0])[0] == INSPECT_MORE
 
 
 @pytest.mark.parametrize(

@@ -77,16 +77,16 @@ def test_records_that_say_neither_and_those_of_tomorrow_are_left_out_and_told_of
 def test_records_so_old_that_they_hardly_count_are_told_of(days, old):
     kept = usable(at_middle(PRESENT, days), TODAY)
     assert (kept.old, len(kept.records)) == (old, 1)
-    said = "1 of the records are more than 70 days old and hardly count."
+    said = "1 of the records is more than 70 days old and hardly counts."
     assert kept.messages() == (said,)[:old]
 
 
 def test_how_old_that_is_follows_from_the_half_life_of_records():
     short = PriorSettings(half_life_days=4.0)
     kept = usable(at_middle(PRESENT, 21), TODAY, short)
-    assert kept.messages() == ("1 of the records are more than 20 days old and hardly count.",)
+    assert kept.messages() == ("1 of the records is more than 20 days old and hardly counts.",)
     undated = replace(at_middle(PRESENT), day=np.array(["NaT"], "datetime64[D]"))
-    said = "1 of the records have no date and count as 9 days old, whatever day is planned."
+    said = "1 of the records has no date and counts as 9 days old, whatever day is planned."
     assert usable(undated, TODAY, PriorSettings(undated_days=9.0)).messages() == (said,)
     # a thirtieth of what it says on its own day
     nothing = np.zeros(len(GRID))

@@ -95,13 +95,13 @@ class Process:
 
 @pytest.mark.parametrize(
     ("waits", "at_least_s"),
-    [(False, 0.1), (True, 3.0)],
+    [(False, 0.05), (True, 1.5)],
     ids=["one that sleeps", "one kept from working by others"],
 )
 def test_a_reader_is_given_patience(monkeypatch, waits, at_least_s):
     monkeypatch.setattr(process, "_work", lambda _: process._Work(0.0, waits))
     began, running = time.monotonic(), Process()
-    clock = process._Clock(running, 0.1)
+    clock = process._Clock(running, 0.05)
     clock.run()
     assert clock.is_late
     assert running.killed_at - began >= at_least_s

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.wording import counted
-from fieldmon.decisions.sequential import LEAVE, LOOK_ON, TREAT
+from fieldmon.decisions.sequential import INSPECT_MORE, LEAVE, TREAT
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import SKIPPED, Inspections
@@ -35,10 +35,10 @@ def test_where_nobody_has_inspected_there_is_no_verdict(tmp_path):
     made.record(Inspections.of(np.arange(5), np.full(5, SKIPPED), np.datetime64(BEGINS)), "day")
     for level in (0.9, 1e-6):
         advice = made.advice(BEGINS, AdviceSettings(level, costs=CHEAP))
-        assert advice.verdict == made.verdict(BEGINS, level).verdict == LOOK_ON
+        assert advice.verdict == made.verdict(BEGINS, level).verdict == INSPECT_MORE
         assert advice.headline().startswith("Keep inspecting before you decide: nobody has")
         assert advice.reasons()[1].startswith("Nobody has inspected yet: the answer rests on")
-        assert {one.verdict for one in advice.said.zones} <= {LOOK_ON}
+        assert {one.verdict for one in advice.said.zones} <= {INSPECT_MORE}
     made.record(Inspections.of(np.arange(5), np.zeros(5), np.datetime64(BEGINS)), "day")
     assert made.verdict(BEGINS, 0.9).verdict == LEAVE
 
@@ -166,7 +166,7 @@ def test_of_few_plants_out_of_reach_nothing_is_said(season):
 def test_when_nobody_can_say_it_tells_how_many_looks_decide(season):
     level = float(season.evening(BEGINS).mean())
     advice = season.advice(BEGINS, AdviceSettings(level, costs=CHEAP))
-    assert advice.verdict == "look on"
+    assert advice.verdict == "inspect more"
     assert advice.more is not None
     looks = advice.more
     assert looks.if_clean is not None
@@ -253,9 +253,9 @@ def test_each_verdict_has_its_sentence(season, m2, above, verdict, said):
     ("verdict", "zones", "above", "said"),
     [
         (LEAVE, [LEAVE, LEAVE], True, "The zones are below the threshold too."),
-        (LEAVE, [LEAVE, LOOK_ON], True, "whatever the threshold says."),
+        (LEAVE, [LEAVE, INSPECT_MORE], True, "whatever the threshold says."),
         (LEAVE, [LEAVE, TREAT], True, ""), (TREAT, [LEAVE], True, ""), (LEAVE, [], True, ""),
-        (LOOK_ON, [TREAT], True, "If you cannot inspect any more today and the costs are yours"),
+        (INSPECT_MORE, [TREAT], True, "If you cannot inspect any more today and the costs are"),
         (TREAT, [TREAT], False, "whatever the threshold says."), (LEAVE, [], False, ""),
     ],
 )  # fmt: skip

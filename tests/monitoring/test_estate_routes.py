@@ -16,9 +16,11 @@ from fieldmon.monitoring.estate_routes import (
     PlotLeftOut,
     plan_table,
     stems,
+    too_far,
     walked,
 )
 from fieldmon.planning.members import TeamMember
+from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
@@ -30,7 +32,7 @@ def a_route(plot):
 
 
 class SevenStops:
-    end_s, expected_found, aisles = 3599.7, 1.234, a_plot().aisles
+    end_s, expected_finds, aisles, plant = 3599.7, 1.234, a_plot().aisles, np.arange(7)
 
     def __len__(self):
         return 7
@@ -40,6 +42,27 @@ def test_plots_of_one_name_have_files_of_their_own():
     assert [*stems([a_route("a/b"), a_route("a/b"), a_route("מטע")])] == [
         "01-a_b", "02-a_b", "03-מטע",
     ]  # fmt: skip
+
+
+def test_both_faces_of_a_plant_are_one_plant_of_a_round():
+    grid = a_plot(faces=2).grid
+    route = SimpleNamespace(plant=np.arange(len(grid)), aisles=SimpleNamespace(grid=grid))
+    assert 2 * replace(a_route("a"), route=route).plants == len(grid)
+
+
+def test_a_way_to_the_next_plot_that_nobody_drives_in_its_minutes_is_said():
+    """Of 30 km a quarter of an hour asks for 120 km/h; of one who has another plot for nothing."""
+    frames = {"gate": Frame(35.0, 30.0), "far": Frame(35.0, 30.27), "near": Frame(35.0, 30.001)}
+    routes = [
+        replace(a_route(plot), who=who, begins=SIX.replace(hour=hour), route=SimpleNamespace(
+            aisles=SimpleNamespace(grid=SimpleNamespace(frame=frames[plot]), gate_m=np.zeros(2)),
+        ))
+        for plot, who, hour in (("far", "Ann", 8), ("gate", "Ann", 6), ("near", "Ben", 6),
+                                ("gate", "Ben", 7), ("far", "Cy", 6))
+    ]  # fmt: skip
+    (said,) = too_far(routes, 900.0)
+    assert said.startswith("From gate to far it is 29.93 km in a straight line, more than 15 minut")
+    assert too_far(routes, 1800.0) == []
 
 
 def test_the_table_tells_each_route_once_and_all_its_files():

@@ -116,7 +116,10 @@ def test_an_export_that_is_no_longer_or_nowhere_of_the_season_is_refused(season,
     moved.loc[mine, "geometry"] = moved[layer["plant"] == 300].geometry.to_numpy()
     with pytest.raises(ObservationError, match="elsewhere than its plant"):
         brought(season, moved, tmp_path)
-    layer.loc[mine, "result"] = "clean"
+    layer.loc[mine, "count"] = 0
+    with pytest.raises(ObservationError, match=r"record \d+ of .* its count is 0"):
+        brought(season, layer, tmp_path)
+    layer.loc[mine, ["result", "count"]] = ["clean", 2.0]
     with pytest.raises(ObservationError, match="result and its count contradict each other"):
         brought(season, layer, tmp_path)
     layer.loc[mine, "count"] = None
@@ -198,8 +201,8 @@ def test_the_table_that_is_exported_comes_back_as_spreadsheets_save_it(varied, t
     german = {"delimiter": ";", "day": "{d:02d}.{m:02d}.{y}"}
     american = {"day": "{m}/{d}/{y}", "clock": "{h}:{m}:{s}"}
     minutes = {"day": "{d:02d}/{m:02d}/{y}", "clock": "{h}:{m}"}
-    ways = ({}, german, german | {"code": "cp1252"}, american, minutes, {"delimiter": "\t"})
-    for way in ways:  # what says the same is no correction, nor a note
+    # what says the same is no correction, nor a note
+    for way in ({}, minutes, {"delimiter": "\t"}):
         assert from_spreadsheet(varied, lines, tmp_path, **way) == (0, 0, 0), way
     edited = [{**line} for line in lines]
     of = {line["who"] + line["date"]: line for line in edited}
@@ -207,7 +210,8 @@ def test_the_table_that_is_exported_comes_back_as_spreadsheets_save_it(varied, t
     of["Jörg2026-05-02"].update(who="Dan", notes="other")
     of["דנה2026-05-03"].update(number="2", lon="", lat="")
     edited.append({**lines[0], "row": "1", "number": "2", "lon": "", "lat": "", "digest": ""})
-    for way in ways[1:4]:
+    # nor is it beside what is changed
+    for way in (german, german | {"code": "cp1252"}, american):
         assert from_spreadsheet(varied, edited, tmp_path, **way) == (3, 1, 1), way
         now = varied.history.inspections
         (moved,) = numbers.number[now.plant[now.date == np.datetime64("2026-05-03")]]
@@ -220,15 +224,19 @@ def test_the_table_that_is_exported_comes_back_as_spreadsheets_save_it(varied, t
 def test_a_table_that_cannot_be_taken_is_refused_and_says_what_to_do(varied, tmp_path):
     lines = a_table(varied)
     elsewhere = [{**line, "digest": f"{line['digest'][:-1]}x"} for line in lines]
+    capitals = [{**lines[-1], "digest": lines[-1]["digest"].upper()}]
+    nameless = [{**line, "digest": ""} for line in lines]
     other = [{**line, "digest": f"i{line['digest'][:0:-1]}"} for line in lines]
     moved = [{**line} for line in lines]
     moved[3]["number"] = "2"
     erased = [{**line, "result": "", "count": ""} if line["notes"] else line for line in lines]
     for said, wanted in (
-        (elsewhere, r"with their columns result and digest .*fieldmon export --of inspections"),
+        (elsewhere, r"of record 1 of .* it is 'i[0-9a-f]{23}x'\. Put it there as"),
+        (lines[:-1] + capitals, r"24 small letters and digits .* of record \d+ of .* it is 'I"),
+        (nameless, r"with their columns result and digest .*fieldmon export --of inspections"),
         (lines + other, r"Export this season alone, and anew"),
         (moved, r"empty its position if the plant is right"),
-        (erased, r"no result any more: left unknown\. Mend it there"),  # once
+        (erased, r"no result any more: left unknown\. Correct it there or"),  # once
     ):
         with pytest.raises(FieldmonError, match=wanted):
             from_spreadsheet(varied, said, tmp_path)
@@ -272,6 +280,16 @@ def test_a_table_without_faces_moves_nothing_to_another_face(tmp_path):
     lines[0]["number"] = str(int(lines[0]["number"]) - 1)
     with pytest.raises(ObservationError, match="which face of its plant"):
         from_spreadsheet(season, lines, tmp_path)
+
+
+def test_seconds_that_a_file_may_not_show_are_no_correction_and_counted(path, tmp_path):
+    season = Season(path)
+    season.record(Inspections.of([300], [0], date(2026, 6, 6), second=[25_231.0]), "today")
+    (line,) = (line for line in a_table(season) if line["date"] == "2026-06-06")
+    for at, n, n_seconds in (("07:00:31", 0, 0), ("07:00:00", 0, 1), ("07:00:45", 1, 0)):
+        assert from_spreadsheet(season, [line | {"time": at}], tmp_path) == (n, 0, 0), at
+        file = tmp_path / "table" / "edited.csv"
+        assert edited_copy(season, file, OPTIONS, tmp_path).n_seconds == n_seconds, at
 
 
 def test_dates_whose_order_nothing_tells_are_refused(path, tmp_path):

@@ -394,6 +394,17 @@ def test_one_takes_back_ones_own_though_an_older_file_writes_the_name_in_capital
     assert 37 not in season.history.inspections.plant
 
 
+def test_what_another_recorded_of_the_same_plant_counts_once_ones_own_is_taken_back(season, key):
+    one = a_finding(37)
+    take(season, key, [one], NOW)
+    told = season.inspections
+    same = told.take(np.flatnonzero(told.plant == 37))
+    season.record(replace(same, who=np.array(["Ben"], object)), "ben.csv")
+    take(season, key, [a_finding(None, None, undoes=one.id)], NOW)
+    told = season.inspections
+    assert told.who[told.plant == 37].tolist() == ["Ben"]
+
+
 def test_nobody_takes_back_what_another_told_and_that_is_said(season, key):
     theirs = a_finding(37)
     take(season, scouts.let_in(season, "Ben"), [theirs], NOW)

@@ -170,7 +170,7 @@ WORK = {
     "settings": lambda season: season.change(
         replace(season.settings, sampler="naive"), season.settings
     ),
-    "advise": lambda season: season.advise(BEGINS, "Look on."),
+    "advise": lambda season: season.advise(BEGINS, "Inspect more."),
     "let in": lambda season: scouts.let_in(season, "Ann"),
     "take a key back": _take_back_key,
     "tell": _look,

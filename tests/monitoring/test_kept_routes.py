@@ -105,7 +105,7 @@ def test_each_field_of_a_kept_route_and_of_its_stops_is_what_the_route_says(seas
     assert frame.drop("geometry").to_dict() == {
         "day": 0, "date": frame["date"], "sampler": season.settings.sampler,
         "starts": begin.isoformat(), "seconds": route.end_s, "drive_m": route.drive_m,
-        "stops": len(route), "expected": route.expected_finds, "at_plant": today.scene.at,
+        "stops": len(route), "expected": route.expected_visible, "at_plant": today.scene.at,
         "seconds_left": today.scene.seconds_left, "digest": frame["digest"], "who": "",
     }  # fmt: skip
     assert str(frame["date"])[:10] == str(BEGINS)

@@ -134,18 +134,14 @@ def test_a_treatment_taken_back_leaves_the_mornings_of_before(path):
     assert the_same(of_day(Season(path), LAST), before)
 
 
-@pytest.mark.parametrize(
-    "damage",
-    [
-        "UPDATE mornings SET chances = X'00'",
-        "UPDATE mornings SET content = 'none'",
-        "UPDATE mornings SET causes = 'none'",
-        "DELETE FROM mornings",
-    ],
-)
-def test_a_kept_morning_that_is_not_what_it_was_is_worked_out_again(path, from_the_first, damage):
-    change(path, damage)
+def test_a_kept_morning_that_is_not_what_it_was_is_worked_out_again(path, from_the_first):
+    """Nor is the one before it taken, which is damaged in another way."""
+    damages = ("chances = X'00'", "content = 'none'", "causes = 'none'", "chances = X''")
+    for damage, day in zip(damages, (LAST, LAST - 1, 16, 8), strict=True):
+        change(path, f"UPDATE mornings SET {damage} WHERE day = ?", day)  # noqa: S608
+    change(path, "DELETE FROM mornings WHERE day = 0")
     assert the_same(of_day(Season(path), LAST), from_the_first[LAST])
+    assert Season(path)._now().mornings.last_until(LAST) == 0
 
 
 def test_a_kept_morning_that_is_pressed_is_not_unpacked(path):

@@ -154,15 +154,17 @@ def test_a_day_that_was_only_planned_in_a_copy_has_its_figures(three_weeks, tmp_
 
 @pytest.mark.parametrize("row", [1, 12, 33])
 def test_a_correction_changes_every_day_from_its_own_on(three_weeks, row):
+    before = layers(three_weeks)
     with closing(sqlite3.connect(three_weeks.path)) as db:
         other = "CASE result WHEN 'found' THEN 'clean' ELSE 'found' END"
         db.execute(f"UPDATE inspections SET result = {other} WHERE fid = ?", (row,))  # noqa: S608
         db.commit()
     season = Season(three_weeks.path)
     assert season.correct("Ann") == 1
+    assert layers(season) != before
     assert as_if_all_was_worked_out_again(season)
     season.undo()
-    assert as_if_all_was_worked_out_again(season)
+    assert layers(season) == before
 
 
 def test_a_correction_of_the_last_days_work_begins_at_its_morning(three_weeks, nights):

@@ -67,13 +67,33 @@ def test_a_note_added_later_is_kept_and_said_and_undone(season):
 
 def test_the_same_note_twice_brings_nothing(season):
     season.record(find("webs", "Ada"))
-    for told in (find("webs", "Ada"), find("", "Bob"), find("webs", "Bob")):
+    for told in (find("webs", "Ada"), find("webs"), find("", "ada")):
         done = season.record(told)
         assert (done.new, done.known, done.more, done.batch) == (0, 1, "", None)
     for _ in range(2):
         season.record(find("eggs", "Bob"))
+    assert season.record(find("webs", "Bob")).batch is None
     assert [one.rows for one in season.batches()] == [1, 1]
     assert beside(season) == ("Ada", "webs; eggs (Bob)")
+
+
+def test_what_two_people_saw_counts_once_and_still_when_either_file_is_undone(season):
+    season.record(find(who="Ada").and_those(find(who="Ada", plant=6)), "ada.csv")
+    bobs = find(who="Bob", count=np.nan).and_those(find(who="Bob", plant=7))
+    done = season.record(bobs, "bob.csv")
+    assert (done.new, done.known, done.seen_by_another, done.batch) == (1, 1, 1, 2)
+    assert done.more == "1 by a second person added"
+    assert season.log()[-1].sentence().endswith("batch 2; 1 by a second person added")
+    assert season.record(bobs, "again.csv").batch is None
+    assert season.inspections.plant.tolist() == [5, 6, 7]
+    assert "1 of the same results counts still" in season.undo(1)
+    assert beside(season) == ("Bob", "")
+    assert {*season.inspections.plant.tolist()} == {5, 7}
+    assert season.inspections.count.tolist() == [3.0, 3.0]
+    season.redo(1)
+    assert "1 of the same results counts still" in season.undo(2)
+    assert beside(season) == ("Ada", "")
+    assert season.inspections.plant.tolist() == [5, 6]
 
 
 def test_the_same_note_of_two_sources_brought_at_once_is_added_once(season):

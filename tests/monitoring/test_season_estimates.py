@@ -245,5 +245,5 @@ def test_a_day_is_planned_by_the_map_that_is_told_of_it(season):
     season.record(some_results(season, n=20, found=[3]), "x")
     route = season.plan(BEGINS, keep=False).route
     told = season.evening(BEGINS)
-    assert route.expected_finds == pytest.approx(told[route.plant].sum())  # nothing hides there
-    assert route.expected_finds < told.sum()
+    assert route.expected_visible == pytest.approx(told[route.plant].sum())  # nothing hides there
+    assert route.expected_visible < told.sum()

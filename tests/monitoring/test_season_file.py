@@ -72,7 +72,7 @@ def test_a_new_season_never_replaces_a_file(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-@pytest.mark.parametrize("name", ["naive", "bouncy", "dynamic", "random"])
+@pytest.mark.parametrize("name", ["naive", "dynamic", "random"])
 def test_ten_days_on_disk_are_ten_days_of_the_simulator(tmp_path, name):
     """The same insects, the same belief and the same stops, digit for digit."""
     robot = ROBOT.with_hours(0.8)

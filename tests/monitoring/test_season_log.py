@@ -352,7 +352,7 @@ def test_what_was_planned_is_told_as_the_plan_told_it(path):
     for k in range(1, 6):
         route = season.plan(on(k)).route
         said = season.log()[-1].sentence()
-        assert said.endswith(f"about {estimate(route.expected_finds)} of them visibly infested")
+        assert said.endswith(f"about {estimate(route.expected_visible)} of them visibly infested")
     # half a plant is not rounded twice
     entry = replace(season.log()[-1], what={**season.log()[-1].what, "expected": 14.509})
     assert "about 15 of them" in entry.sentence()

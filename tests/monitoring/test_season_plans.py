@@ -75,8 +75,9 @@ def night_of(season, day, who=""):
     return begins, moments[-1].item()
 
 
-@pytest.mark.parametrize("returns", [True, False])
-@pytest.mark.parametrize("late_s", [None, 0.0, 2400.0])
+@pytest.mark.parametrize(
+    ("returns", "late_s"), [(True, None), (False, None), (True, 0.0), (False, 2400.0)]
+)
 def test_each_night_of_a_season_has_its_own_begin_and_all_its_hours(tmp_path, returns, late_s):
     """Those before went past midnight, too. With `late_s` two of a team, one so much later."""
     robot, starts = replace(ROBOT, hours=1.0, returns=returns), time(23, 30)
@@ -161,8 +162,10 @@ def test_a_date_of_no_season_is_a_sentence(season):
 
 
 def test_the_time_now_is_a_time_or_a_sentence(season):
-    with pytest.raises(SettingError, match="must be a time, but it is '11:00'"):
-        season.plan(BEGINS, "11:00")
+    with pytest.raises(SettingError, match="must be a time, but it is 'noon'"):
+        season.plan(BEGINS, "noon")
+    said, meant = (season.plan(BEGINS, now, keep=False) for now in ("07:00", time(7)))
+    assert said.scene.seconds_left == meant.scene.seconds_left
 
 
 def test_an_earlier_day_is_planned_by_what_counted_then(season, monkeypatch):

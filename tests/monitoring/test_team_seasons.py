@@ -1,13 +1,10 @@
 """A season of several: who did what, and the rest of a day planned for all."""
 
-import os
-import signal
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import time, timedelta
 from threading import Barrier
+from time import sleep
 
 import numpy as np
 import pytest
@@ -20,7 +17,7 @@ from fieldmon.planning.meetings import meetings
 from fieldmon.planning.members import TeamMember, Teamwork, team_of
 from fieldmon.plot.robot import Robot, scout
 from tests.monitoring.seasons import BEGINS, ROBOT, a_season, state
-from tests.paths import ROOT
+from tests.monitoring.working import started, team_day_by_day
 
 TWO = team_of(2, Robot(hours=0.7))
 
@@ -203,17 +200,12 @@ def test_what_two_found_recorded_at_once_is_as_if_recorded_one_after_the_other(s
 
 def test_a_team_that_was_killed_at_work_goes_on_from_a_whole_file(season):
     """Plans and records of two, killed half-way: what is there holds together, and goes on."""
-    code = (
-        "import sys; from tests.monitoring.working import team_day_by_day; "
-        "print('begun', flush=True); team_day_by_day(sys.argv[1])"
-    )
-    command = [sys.executable, "-c", code, str(season.path)]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, cwd=ROOT)
-    process.stdout.readline()
+    process = started(team_day_by_day, season.path)
     while len(Season(season.path).batches()) < 3:
-        assert process.poll() is None
-    os.kill(process.pid, signal.SIGKILL)
-    process.communicate()
+        assert process.is_alive()
+        sleep(0.01)
+    process.kill()
+    process.join()
     n = state(season.path)
     assert n >= 3
     on = Season(season.path).last_date() + timedelta(days=1)

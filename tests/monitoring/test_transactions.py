@@ -8,7 +8,6 @@ import time
 from contextlib import closing, contextmanager
 from functools import partial
 from itertools import count
-from multiprocessing import get_context
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -21,17 +20,10 @@ from fieldmon.monitoring import Season, is_season, kept_open, transactions
 from fieldmon.monitoring.transactions import Store
 from tests.monitoring.open_elsewhere import as_qgis, beside
 from tests.monitoring.seasons import BEGINS, state, three_results
-from tests.monitoring.working import day_by_day, one_by_one
+from tests.monitoring.working import day_by_day, one_by_one, started
 
 SEASONS_OF_OLD = Path(__file__).with_name("seasons_of_old")
-KILLS = int(os.environ.get("FIELDMON_KILLS", "12"))
-
-
-def working(task, *words):
-    """Start a process that is warm already, so that it is at work within milliseconds."""
-    process = get_context("fork").Process(target=task, args=words)
-    process.start()
-    return process
+KILLS = int(os.environ.get("FIELDMON_KILLS", "8"))
 
 
 def test_a_process_killed_at_any_moment_leaves_a_whole_season(path):
@@ -45,7 +37,7 @@ def test_a_process_killed_at_any_moment_leaves_a_whole_season(path):
     pace_s = time.monotonic() - started  # of this machine, now
     before, grew = state(path), 0
     for kill in range(KILLS):
-        process = working(day_by_day, path)
+        process = started(day_by_day, path)
         while kill % 2 and process.is_alive() and state(path) == before:
             time.sleep(0.01)  # every other one has written for sure
         time.sleep(rng.uniform(0.01, 6 * pace_s))
@@ -71,8 +63,8 @@ def test_what_is_no_season_is_not_called_a_damaged_one(content, tmp_path):
 
 
 def test_two_processes_recording_at_once_lose_nothing(path):
-    before, rounds = state(path), 50
-    both = [working(one_by_one, path, who, rounds) for who in (0, 1)]
+    before, rounds = state(path), 25
+    both = [started(one_by_one, path, who, rounds) for who in (0, 1)]
     for process in both:
         process.join(240)
         assert process.exitcode == 0

@@ -2,12 +2,20 @@
 
 import os
 from datetime import timedelta
+from multiprocessing import get_context
 
 import numpy as np
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
 from tests.monitoring.seasons import BEGINS
+
+
+def started(task, *words):
+    """Start a process that is warm already, so that it is at work within milliseconds."""
+    process = get_context("fork").Process(target=task, args=words)
+    process.start()
+    return process
 
 
 def one_by_one(path, who, rounds):

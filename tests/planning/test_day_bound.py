@@ -32,14 +32,14 @@ def planned(name="adaptive", **more) -> DayPlan:
 @pytest.mark.parametrize("name", [name for name, kind in SAMPLERS.items() if not kind.chooses_time])
 def test_no_sampler_expects_more_than_the_bound_and_all_share_it(name):
     day = with_bound(planned(name))
-    assert day.route.expected_found <= day.route.found_bound
+    assert day.route.expected_finds <= day.route.found_bound
     assert day.route.found_bound == pytest.approx(found_bound(planned("naive")))
 
 
 def test_the_sentence_says_the_expected_finds_and_the_bound():
     route = with_bound(planned()).route
     assert route.bound_sentence.startswith(
-        f"{estimate(route.expected_found)} finds expected; no route "
+        f"{estimate(route.expected_finds)} finds expected; no route "
     )
 
 
@@ -65,12 +65,12 @@ def test_no_bound_is_claimed_away_from_the_gate_nor_where_inspection_times_are_c
 def test_with_no_time_to_compute_it_is_a_bound_all_the_same():
     day = planned()
     hurried = found_bound(day, within_s=0.0)
-    assert hurried >= found_bound(day) >= day.route.expected_found
+    assert hurried >= found_bound(day) >= day.route.expected_finds
 
 
 def test_a_bound_below_what_the_day_expects_is_not_told(monkeypatch):
     day = planned()
-    monkeypatch.setattr(routes, "bound", lambda *_: 0.9 * day.route.expected_found)
+    monkeypatch.setattr(routes, "bound", lambda *_: 0.9 * day.route.expected_finds)
     with pytest.warns(RuntimeWarning, match="a fault of fieldmon"):
         assert with_bound(day).route.bound_sentence == ""
 
@@ -125,6 +125,6 @@ def test_only_today_s_inspections_leave_nothing_to_find():
 
 def test_what_a_route_holds_is_below_its_bound_though_sums_round(monkeypatch):
     day = planned()
-    held = day.route.expected_found
+    held = day.route.expected_finds
     monkeypatch.setattr(routes, "bound", lambda *_: held * (1.0 - 1e-9))
     assert found_bound(day) == held

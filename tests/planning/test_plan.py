@@ -77,7 +77,7 @@ def test_a_record_raises_the_chance_about_it_on_its_day_and_less_later(plot):
     at = plot.grid.lonlat(np.array([130]))
     records = Records.of(at, np.array([PRESENT], np.int8), np.array(["2026-11-18"], "M8[D]"))
     plain, soon, late = (
-        plan_day(plot, given, on, ROBOT).chance[130]
+        plan_day(plot, given, on, robot=ROBOT).chance[130]
         for given, on in [(None, "2026-11-18"), (records, "2026-11-18"), (records, "2026-12-18")]
     )
     assert plain < late < soon
@@ -187,7 +187,7 @@ def test_a_start_that_names_its_zone_is_the_plot_s_own_time():
     assert starts == [datetime(2026, 11, 18, 1, 30)] * 3
     at = there.grid.lonlat(np.array([20]))
     records = Records.of(at, np.array([PRESENT], np.int8), np.array(["2026-11-18"], "M8[D]"))
-    late, same = (plan_day(there, records, on, ROBOT).chance for on in (
+    late, same = (plan_day(there, records, on, robot=ROBOT).chance for on in (
         "2026-11-17T23:30:00+00:00", "2026-11-18"))  # fmt: skip
     assert late.tolist() == same.tolist()
 

@@ -26,7 +26,7 @@ def check(scene, work):
     """Check what every route promises."""
     route = route_of(scene, work)
     assert route.leave_s == pytest.approx(route.arrive_s + work.stop_s)
-    assert route.expected_found == pytest.approx((route.chance * work.detects).sum())
+    assert route.expected_finds == pytest.approx((route.chance * work.detects).sum())
     assert route.line_s[route.line_stop] == pytest.approx(route.arrive_s)
     assert (np.diff(route.line_s) >= -1e-9).all()
     here = route.line_m[route.line_stop]

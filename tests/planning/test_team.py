@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from datetime import datetime, timedelta
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -47,6 +48,15 @@ def chances(plot, seed=1):
     return np.random.default_rng(seed).beta(0.3, 3.0, len(plot.grid))
 
 
+def plan_of_two():
+    plot = plot_of()
+    return plan_team(plot, chances(plot), team_of(2, Robot(hours=0.6)))
+
+
+#: one that is made once, for tests that only look at it
+usual_plan = cache(plan_of_two)
+
+
 def check(plan):
     """No plant twice, nobody together in an aisle, hours kept, a bound that holds."""
     stops = np.concatenate([day.route.plant for day in plan.days])
@@ -64,10 +74,10 @@ def check(plan):
                 )
             )
             assert day.route.end_s == pytest.approx(used + len(day.route) * robot.visit_s)
-    assert plan.expected_found <= plan.bound
+    assert plan.expected_finds <= plan.bound
 
 
-@pytest.mark.parametrize(("n", "faces"), [(1, 2), (2, 1), (3, 2), (5, 1)])
+@pytest.mark.parametrize(("n", "faces"), [(1, 2), (3, 2), (5, 1)])
 def test_a_team_shares_a_plot_and_nobody_meets(n, faces):
     plot = plot_of(faces=faces)
     plan = plan_team(plot, chances(plot), team_of(n, Robot(hours=0.4)))
@@ -139,7 +149,7 @@ def test_a_member_s_day_is_expected_to_find_what_its_stops_hold_for_its_own_eyes
     plot, robot = plot_of(), Robot(hours=0.5, detection=detection)
     stops = np.array([3, 4, 40, 41])
     day = _day(MemberTask(plot.aisles, robot, detection * chances(plot)), stops)
-    assert day.route.expected_found == pytest.approx(detection * chances(plot)[stops].sum())
+    assert day.route.expected_finds == pytest.approx(detection * chances(plot)[stops].sum())
     assert day.scene.chance == pytest.approx(chances(plot))
 
 
@@ -147,7 +157,7 @@ def test_a_member_s_day_is_expected_to_find_what_its_stops_hold_for_its_own_eyes
 def test_two_are_never_worse_than_one_of_the_same_hours(seed):
     plot = plot_of()
     one, two = (
-        plan_team(plot, chances(plot, seed), team_of(n, Robot(hours=0.7))).expected_found
+        plan_team(plot, chances(plot, seed), team_of(n, Robot(hours=0.7))).expected_finds
         for n in (1, 2)
     )
     assert two >= one
@@ -157,16 +167,14 @@ def test_on_an_even_plot_a_team_comes_within_a_twentieth_of_its_bound():
     plot = plot_of(30, 30)
     for n in (2, 3):
         plan = plan_team(plot, chances(plot), team_of(n, Robot(hours=2.0)))
-        assert plan.expected_found >= 0.95 * plan.bound
+        assert plan.expected_finds >= 0.95 * plan.bound
     assert plan.sentence.startswith(
-        f"{estimate(plan.expected_found)} finds expected; no routes of "
+        f"{estimate(plan.expected_finds)} finds expected; no routes of "
     )
 
 
 def test_the_same_team_has_the_same_plan():
-    plot = plot_of()
-    first, again = (plan_team(plot, chances(plot), team_of(2, Robot(hours=0.6))) for _ in range(2))
-    for one, other in zip(first.days, again.days, strict=True):
+    for one, other in zip(usual_plan().days, plan_of_two().days, strict=True):
         assert (one.route.plant == other.route.plant).all()
 
 
@@ -185,11 +193,10 @@ def test_a_team_that_cannot_work_is_refused(members, says):
 
 
 def test_the_days_of_a_team_have_a_bound_as_long_as_they_are_whole():
-    plot = plot_of()
-    plan = plan_team(plot, chances(plot), team_of(2, Robot(hours=0.6)))
+    plan = usual_plan()
     said = bound_of_days(plan.days)
     number, rest = said.split(maxsplit=1)
-    assert float(number) == pytest.approx(plan.expected_found, abs=0.05)
+    assert float(number) == pytest.approx(plan.expected_finds, abs=0.05)
     assert rest.startswith("finds expected; no routes of these hours ")
     begun = replace(plan.days[0], scene=replace(plan.days[0].scene, seconds_left=60.0))
     assert bound_of_days([begun, plan.days[1]]) == ""

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fieldmon.errors import SettingError
 from fieldmon.infestation.traced_pairs import TracedPairs
 from fieldmon.planning.plan import PlanSettings, plan_believed, plan_from
 from fieldmon.planning.wishes import Wishes
@@ -33,6 +34,12 @@ def chance(plot):
 @pytest.fixture(scope="module")
 def usual(plot, chance):
     return plan_from(plot, chance, HOUR)
+
+
+@pytest.mark.parametrize("wishes", [Wishes((480,)), Wishes((), (-1,))])
+def test_a_wish_for_a_plant_that_is_not_there_is_refused(plot, chance, wishes):
+    with pytest.raises(SettingError, match="A plant must be 0 to 479, but it is"):
+        wished(plot, chance, HOUR, wishes)
 
 
 def wished(plot, chance, plans, wishes):

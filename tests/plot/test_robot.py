@@ -34,6 +34,10 @@ def test_a_detection_given_by_hand_wins_over_the_table():
 def test_a_scout_is_a_robot_with_other_numbers():
     assert isinstance(scout(), Robot)
     assert scout().speed_m_s > Robot().speed_m_s
+    assert scout(hours=2, look_s=60) == replace(scout(), hours=2, look_s=60)
+    assert rover(hours=2) == replace(rover(), hours=2)
+    with pytest.raises(SettingError, match="hours"):
+        scout(hours=25)
 
 
 def test_a_scout_is_known_by_its_times_whatever_the_hours_and_is_charged_no_robot_s():

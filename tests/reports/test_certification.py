@@ -118,6 +118,11 @@ def test_several_seasons_are_one_record(season, tmp_path):
     other.treat(BEGINS + timedelta(6), 0.5, product="water")
     both = certification_report([season, other], Units())
     assert len(cards(both)) == 13
+    said = " ".join(both.words())
+    name = season.plot.field.name
+    for file in ("other", season.path.stem):
+        assert f"{name} ({file})" in said
+    assert f"{name} (" not in " ".join(certification_report([season], Units()).words())
     plots = next(b for s in both.sheets for b in s.blocks if isinstance(b, Table))
     assert [row[4:] for row in plots.rows] == [("6", "12", "2"), ("7", "12", "2")]
     before = certification_report([season], Units(), BEGINS + timedelta(1))

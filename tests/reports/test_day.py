@@ -55,7 +55,7 @@ def test_a_planned_day_says_what_to_do_first(worked, last, ahead, of_day):
     assert paragraphs(of_day)[0] == headline(plan.route, str(on))
     shown = figures(of_day)
     assert shown["Plants to inspect"].value == f"{len(plan.route):,}"
-    assert shown["Expected finds"].value == f"{plan.route.expected_found:.1f}"
+    assert shown["Expected finds"].value == f"{plan.route.expected_finds:.1f}"
     assert shown["Drive"].value == Units().metres(plan.route.drive_m)
     assert shown["Hours"].note.startswith("06:00 to ")
     assert ahead.route.plant.tolist() == plan.route.plant.tolist()
@@ -140,9 +140,9 @@ def test_where_it_hides_a_day_tells_how_many_of_the_infested_can_be_seen(worked,
 
     chance = worked.evening(last + timedelta(days=1))
     assert ahead.infested == pytest.approx(chance[ahead.route.plant].sum())
-    seen = estimate(ahead.route.expected_finds)
+    seen = estimate(ahead.route.expected_visible)
     assert note(500.0) == f"of 500 infested, {seen} of them visible"
-    assert note(None) == note(ahead.route.expected_finds) == f"of {seen} infested on the route"
+    assert note(None) == note(ahead.route.expected_visible) == f"of {seen} infested on the route"
 
 
 def test_half_a_day_says_both_what_was_done_and_what_is_left(tmp_path):

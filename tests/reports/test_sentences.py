@@ -96,7 +96,7 @@ def test_the_headline_says_plants_rows_hours_and_finds():
     assert headline(route, "2026-11-18") == (
         f"Inspect {len(route)} plants in rows {lines.min()}–{lines.max()} on 2026-11-18, "
         f"{hours_figure(route.end_s / 3600)} h: "
-        f"about {estimate(route.expected_found)} finds expected."
+        f"about {estimate(route.expected_finds)} finds expected."
     )
 
 

@@ -56,17 +56,18 @@ def test_who_names_no_plant_is_named_where_hours_reach_one(returns):
         MultiPolygon([box(-30, -30, 30, 30)]))))  # fmt: skip
     nobody = Told(Stops(np.empty(0, np.int32), np.empty(0)))
     start = fm.draw_start(plot, np.full(plot.n_plants, 0.1))
+    short = fm.SimulationSettings(n_days=2)
     day, soon = fm.Robot(hours=2.0, returns=returns), fm.Robot(hours=0.001, returns=returns)
     for asked in (
         lambda robot: fm.plan_day(plot, on="2026-11-18", robot=robot, sampler=nobody),
-        lambda robot: fm.simulate(plot, start, nobody, robot, fm.SimulationSettings(n_days=2)),
-        lambda robot: list(fm.simulate_days(plot, start, nobody, robot)),
+        lambda robot: fm.simulate(plot, start, nobody, robot=robot, settings=short),
+        lambda robot: list(fm.simulate_days(plot, start, nobody, robot=robot)),
     ):
         with pytest.raises(SettingError, match=r"^Told must name plants .*, though 2 h reach some"):
             asked(day)
     with pytest.raises(SettingError, match="The working day must be long enough"):
         fm.plan_day(plot, on="2026-11-18", robot=soon, sampler=nobody)
-    assert fm.simulate(plot, start, nobody, soon, fm.SimulationSettings(n_days=2)).visits == 2
+    assert fm.simulate(plot, start, nobody, robot=soon, settings=short).visits == 2
 
 
 def test_lists_and_other_whole_numbers_will_do():

@@ -36,17 +36,6 @@ def nearest(scene, at, open_plants):
     return min(open_plants, key=lambda plant: (charged_s(scene, at, plant), plant))
 
 
-def test_the_nearest_open_plant_is_always_next():
-    scene = scene_with([])
-    room = int(scene.seconds_left // scene.robot.visit_s)
-    open_plants, at = set(range(min(room, len(GRID)))), GATE
-    for plant in plan_work(scene, Dynamic()).plant.tolist():
-        best_s = min(charged_s(scene, at, other) for other in open_plants)
-        assert charged_s(scene, at, plant) == pytest.approx(best_s)
-        open_plants.remove(plant)
-        at = plant
-
-
 def seconds_to(scene, at, plants):
     """Return the seconds from a place to each of some plants."""
     seconds = scene.aisles.distance_m(at, plants) / scene.robot.speed_m_s

@@ -33,7 +33,11 @@ def test_the_sampler_of_the_page_plans_a_day_and_beats_nobody_by_cheating(file, 
     assert len(day.route) > 20
     start = fm.draw_start(plot, day.chance, 0.05)
     season = fm.simulate(
-        plot, start, f"{file}:Mine", fm.Robot(hours=1), fm.SimulationSettings(n_days=3)
+        plot,
+        start,
+        f"{file}:Mine",
+        robot=fm.Robot(hours=1),
+        settings=fm.SimulationSettings(n_days=3),
     )
     assert season.found.sum() > 0
     with fm.Monitor(plot, f"{file}:Mine", fm.Robot(hours=1)).day() as asked:
@@ -44,7 +48,7 @@ def test_the_world_of_the_page_runs_a_season(plot):
     world = {"fm": fm}
     exec(f"import numpy as np\n{WORLD}", world)  # noqa: S102 - the page's own lines
     start = fm.draw_start(plot, fm.plan_day(plot, on="2026-11-18").chance, 0.05)
-    season = fm.simulate(plot, start, "naive", fm.Robot(hours=1), world["settings"])
+    season = fm.simulate(plot, start, "naive", robot=fm.Robot(hours=1), settings=world["settings"])
     assert (season.new >= 0).all()
     assert (season.detection_pct <= 100.0).all()
     assert season.new[1:].sum() > 0

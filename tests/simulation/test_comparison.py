@@ -44,22 +44,22 @@ def compared(left, names=("one", "other")):
 
 
 def test_seed_by_seed_it_is_the_season_that_is_simulated_alone():
-    made = compare(PLOT, CHANCE, ("naive", "adaptive"), SETTINGS)
+    made = compare(PLOT, CHANCE, ("naive", "adaptive"), settings=SETTINGS)
     assert made.seeds.tolist() == [1, 2, 3, 4]
     for i, name in enumerate(made.samplers):
         for j, seed in enumerate(made.seeds.tolist()):
-            start = draw_start(PLOT, CHANCE, 0.1, seed)
-            alone = simulate(PLOT, start, name, ROBOT, SHORT, seed)
+            start = draw_start(PLOT, CHANCE, 0.1, seed=seed)
+            alone = simulate(PLOT, start, name, robot=ROBOT, settings=SHORT, seed=seed)
             for column in COLUMNS:
                 np.testing.assert_array_equal(getattr(made, column)[i, j], getattr(alone, column))
             assert made.infested_plant_days[i, j] == alone.infested_plant_days
 
 
 def test_samplers_of_ones_own_go_by_their_class_or_by_names_of_choice():
-    made = compare(PLOT, CHANCE, [Mine(), "naive"], SETTINGS)
+    made = compare(PLOT, CHANCE, [Mine(), "naive"], settings=SETTINGS)
     assert made.samplers == ("Mine", "naive")
     np.testing.assert_array_equal(made.left[0], made.left[1])
-    named = compare(PLOT, CHANCE, {"a": Bouncy(), "b": Bouncy(), "c": "naive"}, SETTINGS)
+    named = compare(PLOT, CHANCE, {"a": Bouncy(), "b": Bouncy(), "c": "naive"}, settings=SETTINGS)
     assert repr(named) == "<Comparison: a, b, c, 4 seasons>"
     np.testing.assert_array_equal(named.left[0], named.left[1])
     np.testing.assert_array_equal(named.left[2], made.left[1])
@@ -107,7 +107,7 @@ def test_seasons_are_those_of_the_commands_and_a_sentence_says_what_insects_did(
     for words, chosen in worlds.items():
         told = dataclasses.replace(made, season=SimulationSettings(n_days=3, **chosen))
         assert words in told.sentence("one")
-    assert compare(PLOT, CHANCE, ("naive", "bouncy"), SETTINGS).season == SHORT
+    assert compare(PLOT, CHANCE, ("naive", "bouncy"), settings=SETTINGS).season == SHORT
 
 
 def test_one_alone_is_held_to_nobody():
@@ -129,17 +129,25 @@ def test_a_comparison_with_a_sampler_that_was_not_compared_is_refused():
 
 def test_progress_is_told_of_all_seasons():
     told = []
-    compare(PLOT, CHANCE, ("naive", "bouncy"), SETTINGS, lambda *done: told.append(done))
+    compare(
+        PLOT,
+        CHANCE,
+        ("naive", "bouncy"),
+        settings=SETTINGS,
+        progress=lambda *done: told.append(done),
+    )
     assert told == [(done, 8) for done in range(9)]
 
 
 def test_stopped_it_returns_what_all_have_been_through():
     asked = count()
     # one of one's own: seasons are simulated one after the other
-    made = compare(PLOT, CHANCE, [Mine(), "naive"], SETTINGS, stop=lambda: next(asked) >= 5)
+    made = compare(
+        PLOT, CHANCE, [Mine(), "naive"], settings=SETTINGS, stop=lambda: next(asked) >= 5
+    )
     assert made.seeds.tolist() == [1, 2]
     assert made.left.shape == (2, 2, SHORT.n_days)
-    none = compare(PLOT, CHANCE, ("naive", "bouncy"), SETTINGS, stop=lambda: True)
+    none = compare(PLOT, CHANCE, ("naive", "bouncy"), settings=SETTINGS, stop=lambda: True)
     assert none.left.shape == (2, 0, SHORT.n_days)
     assert none.left.dtype == np.int64
     assert none.sentence("naive") == "No seed has been met by every sampler yet."
@@ -147,7 +155,7 @@ def test_stopped_it_returns_what_all_have_been_through():
 
 def test_one_of_ones_own_that_names_nobody_is_refused():
     with pytest.raises(SettingError, match="Nobody must name plants"):
-        compare(PLOT, CHANCE, [Nobody(), "naive"], SETTINGS)
+        compare(PLOT, CHANCE, [Nobody(), "naive"], settings=SETTINGS)
 
 
 @pytest.mark.parametrize(
@@ -163,12 +171,12 @@ def test_one_of_ones_own_that_names_nobody_is_refused():
 )
 def test_samplers_that_cannot_be_told_apart_or_are_none_are_refused(samplers, said):
     with pytest.raises(SettingError, match=said):
-        compare(PLOT, CHANCE, samplers, SETTINGS)
+        compare(PLOT, CHANCE, samplers, settings=SETTINGS)
 
 
 def test_chances_of_another_plot_and_settings_beyond_reason_are_refused():
     with pytest.raises(SettingError, match="chance map must have the shape"):
-        compare(PLOT, CHANCE[:5], ("naive",), SETTINGS)
+        compare(PLOT, CHANCE[:5], ("naive",), settings=SETTINGS)
     for name, value in (("seeds", 1), ("share", 0.0), ("share", 1.0)):
         with pytest.raises(SettingError, match=f"A comparison's {name} must be"):
             dataclasses.replace(SETTINGS, **{name: value})

@@ -21,7 +21,7 @@ def test_a_season_is_that_of_the_library():
     season = INSECTS.season(sampler("naive"), ROBOT, 4)
     start = draw_start(PLOT, CHANCE, 0.1, seed=4)
     np.testing.assert_array_equal(
-        season.left, simulate(PLOT, start, "naive", ROBOT, SHORT, seed=4).left
+        season.left, simulate(PLOT, start, "naive", robot=ROBOT, settings=SHORT, seed=4).left
     )
     assert repr(INSECTS) == "<SameInsects: 10.0% of <Plot Square: 126 plants in 9 rows>>"
 

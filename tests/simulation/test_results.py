@@ -40,6 +40,16 @@ def test_a_season_that_two_parts_hold_counts_once(tmp_path):
     assert results.seasons(tmp_path).equals(once)
 
 
+def test_seasons_of_a_pest_have_no_spread_though_an_older_fieldmon_named_one(tmp_path):
+    store = simulated(tmp_path, [plot()])
+    rows = [row | {"spread": None} for row in results.seasons(tmp_path).to_pylist()]
+    half = [row for row in rows if row["sampler"] == "naive"]
+    for seeds in ((1, 2), (2, 3)):  # and parts that overlap
+        part = [row for row in half if row["seed"] in seeds]
+        store.keep(("naive", f"continued from {seeds[0]}"), part)
+    assert results.seasons(tmp_path).to_pylist() == rows
+
+
 def test_the_dataset_is_read_by_any_reader_of_parquet(tmp_path):
     simulated(tmp_path, [plot()])
     table = pq.read_table(tmp_path)

@@ -1,6 +1,7 @@
 """Many days of a team: the same insects, the same rules, and more of them seen."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -44,6 +45,12 @@ def season(name="adaptive", members=2, teamwork=None, seed=3):
     return list(simulated_team_days(PLOT, works, sampler(name), start(), SETTINGS, streams))
 
 
+@cache
+def usual_season(name="adaptive", members=2, teamwork=None, seed=3):
+    """Return a season for tests that only look at it."""
+    return season(name, members, teamwork, seed)
+
+
 @pytest.mark.parametrize("teamwork", [Teamwork(), SECTIONS, Teamwork(contact_s=900.0)])
 def test_the_same_seed_gives_the_same_season_and_another_another(teamwork):
     one, same, other = (season(teamwork=teamwork, seed=seed) for seed in (3, 3, 4))
@@ -68,7 +75,7 @@ def test_a_team_of_one_has_the_season_of_one_alone(name):
 @pytest.mark.parametrize("teamwork", [Teamwork(), SECTIONS])
 def test_the_figures_of_every_day_add_up(name, teamwork):
     found = 0
-    for day in season(name, 3, teamwork):
+    for day in usual_season(name, 3, teamwork):
         assert len(day.each) == 3
         assert len(np.unique(day.work.plant)) == len(day.work) == sum(map(len, day.each))
         found += day.found
@@ -98,7 +105,7 @@ def test_a_team_meets_the_insects_that_one_alone_does():
 
 
 def test_those_without_prior_information_keep_to_their_sections_all_season():
-    days = season("naive", 2)
+    days = usual_season("naive", 2)
     rows = [{int(r) for day in days for r in GRID.row[day.each[k].plant]} for k in range(2)]
     assert not rows[0] & rows[1]
     # each goes on where it stopped the day before

@@ -1,5 +1,7 @@
 """Seasons treated by a rule: without one nothing changes, with one fewer plants stay infested."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -20,6 +22,7 @@ AISLES = Aisles.of(rectangle(15, 15))
 COSTS = TreatmentCosts(per_ha=20.0, per_zone=0.1)
 
 
+@cache  # nobody changes them
 def days(rule=None, name="dynamic", visit_every=1):
     infested = np.zeros(225, bool)
     infested[100:106] = True

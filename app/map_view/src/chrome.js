@@ -3,6 +3,8 @@
 import { metresPerPixel } from "./view.js";
 
 const LONGEST_PX = 120;
+// long, so that it is seen whichever way it points: a triangle looks upright at every 120 degrees
+export const NORTH = "↑";
 const ICONS = {
   plus: "M11 5h2v6h6v2h-6v6h-2v-6H5v-2h6z",
   minus: "M5 11h14v2H5z",
@@ -47,7 +49,7 @@ export class Scale {
   constructor(place) {
     this.bar = element("div", { class: "bar" });
     this.text = element("div", { class: "text" });
-    this.north = element("div", { class: "north", text: "▲" });
+    this.north = element("div", { class: "north", text: NORTH });
     this.root = place.appendChild(element("div", { class: "scale", role: "img" }, [
       this.north, element("div", {}, [this.text, this.bar])]));
   }
@@ -56,10 +58,11 @@ export class Scale {
     const metre = 1 / metresPerPixel(viewport);
     const fits = lengths.filter(([metres]) => metres * metre <= LONGEST_PX);
     const [metres, text] = fits.length ? fits[fits.length - 1] : lengths[0];
-    this.length = { px: metres * metre, text };
+    const { bearing = 0 } = viewport;
+    this.length = { px: metres * metre, text, bearing };
     this.bar.style.width = `${metres * metre}px`;
     this.text.textContent = text;
-    this.north.style.transform = `rotate(${-(viewport.bearing ?? 0)}deg)`;
+    this.north.style.transform = `rotate(${-bearing}deg)`;
     this.root.setAttribute("aria-label", alt.replace("{bar}", text));
   }
 }

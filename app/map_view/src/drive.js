@@ -141,7 +141,7 @@ export class Drive {
   }
 
   release(state) {
-    if (!this.data || !this.following) return;
+    if (!this.leads()) return;
     if (state?.isRotating) this.turning = false;
     if (state?.isPanning) this.following = this.camera.checked = false;
   }
@@ -170,11 +170,11 @@ export class Drive {
 
   // Return the view that follows the robot, at a place of the window; null where nobody wants it.
   view(viewport, middle) {
-    if (!this.data || !this.following) return null;
+    if (!this.leads()) return null;
     const { lon, lat } = poseAt(this.data, this.second), { width, height } = viewport;
     const own = this.turning ? { bearing: this.bearing } : { bearing: viewport.bearing };
     const near = this.near === this.data ? viewport.zoom : FOLLOW_ZOOM, pitch = viewport.pitch || PITCH;
-    this.near = this.data;
+    Object.assign(this, { near: this.data, size: `${width} ${height}` });
     const port = new WebMercatorViewport({ width, height, longitude: lon, latitude: lat, zoom: near, pitch, ...own });
     return { ...port.panByPosition([lon, lat], middle), zoom: near, pitch, ...own };
   }
@@ -251,9 +251,16 @@ export class Drive {
     return this.following ? poseAt(this.data, this.second) : { lon: viewport.longitude, lat: viewport.latitude };
   }
 
-  // Tell whether other plants are to be drawn tall since somebody moved the map.
+  // Tell whether the map follows the robot.
+  leads() {
+    return Boolean(this.data && this.following);
+  }
+
+  // Tell whether other plants are to be drawn tall since somebody moved the map, or whether the robot is
+  // elsewhere in a window that was made larger or smaller.
   isStale(viewport) {
     if (!this.data || this.timer || !viewport) return false;
+    if (this.leads() && this.size !== `${viewport.width} ${viewport.height}`) return true;
     const near = metresPerPixel(viewport) < NEAR;
     return near !== this.tall || (near && this.columnsAt && metresApart(this.centre(viewport), this.columnsAt) > REACH_M / 8);
   }

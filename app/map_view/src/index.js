@@ -31,7 +31,7 @@ import { keepUnfinished } from "./unfinished.js";
 import { besideBox, fitted, metresPerPixel } from "./view.js";
 
 const STILL_PX = 6, TWICE_MS = 350, TIP_PX = 12, FLY_MS = 600, TURN_MS = 300;
-const NONE = [];
+const NONE = [], ASLANT = "aslant";
 const DARK = matchMedia("(prefers-color-scheme: dark)");
 // a GIF of more pixels is too large to be sent; more plants at once are no selection
 const FILM_PX = 1100, MOST_PICKED = 20000;
@@ -42,7 +42,7 @@ const MOST_SAID = 6;
 // from farther away a tap is no corner of a plot; nor is a position that is less exact
 const CORNER_M_A_PX = 5, CORNER_M = 30, WAIT_MS = 20000, NEAR_ZOOM = 18;
 
-class MapPage {
+export class MapPage {
   constructor(parent) {
     takeCommas();
     takeDays();
@@ -120,7 +120,7 @@ class MapPage {
     this.jsons = jsons;
     this.playback.show(data.frames ? null : data.play ?? null, data.words);
     this.frames.show(data.frames ?? null, data.words);
-    this.root.classList.toggle("aslant", Boolean(driven));
+    this.root.classList.toggle(ASLANT, Boolean(driven));
     this.drive.show(driven ?? null, data.words, data.drive);
     this.look();
     this.drawLayers();
@@ -140,13 +140,16 @@ class MapPage {
   }
 
   look() {
-    const { bounds, drive } = this.data, place = `${this.data.place} ${drive ? "aslant" : ""}`;
+    const { bounds, drive } = this.data, place = `${this.data.place} ${drive ? ASLANT : ""}`;
     if (!this.deck) {
       this.open(bounds);
     } else if (place !== this.place) {
       this.tip.hidden = true; // it is of what is no longer shown
       const view = this.fit();
-      this.deck.setProps({ initialViewState: { ...view, maxZoom: 24, transitionDuration: this.place ? FLY_MS : 0,
+      this.moved = false; // who followed a robot moved another map
+      // after a drive there is no flight: `limited` makes the map flat, which ends it at the first step, still turned
+      const flies = this.place && !this.place.endsWith(ASLANT);
+      this.deck.setProps({ initialViewState: { ...view, maxZoom: 24, transitionDuration: flies ? FLY_MS : 0,
         transitionInterpolator: new FlyToInterpolator({ speed: 4 }) } });
     } else if (!drive) {
       const before = this.whence;
@@ -260,7 +263,8 @@ class MapPage {
   // not under the finger of who sets corners
   resized() {
     this.boxes = null;
-    if (this.deck && !this.moved && !(this.drawing.outlines && this.drawing.points.length)) this.deck.setProps({ initialViewState: { ...this.fit(), maxZoom: 24 } });
+    if (this.drive.leads()) this.drawLayers(); // who follows a robot stays near it
+    else if (this.deck && !this.moved && !(this.drawing.outlines && this.drawing.points.length)) this.deck.setProps({ initialViewState: { ...this.fit(), maxZoom: 24 } });
   }
 
   // -- drawing
@@ -288,8 +292,8 @@ class MapPage {
     const labels = this.drawing.outlines ? this.drawing.labels() : this.dots.labels(withHot(this.data.labels ?? NONE, this.frames.of(this.jsons)), this.jsons, viewport);
     this.labels.draw(labels, viewport, new Set(this.off()), ...this.around());
     if (!this.cross.hidden) this.pointAtMiddle();
-    const { longitude, latitude, zoom, width, height } = viewport;
-    this.root.dataset.view = JSON.stringify({ longitude, latitude, zoom, width, height });
+    const { longitude, latitude, zoom, bearing, width, height } = viewport;
+    this.root.dataset.view = JSON.stringify({ longitude, latitude, zoom, bearing, width, height });
   }
 
   viewport() {

@@ -1,5 +1,7 @@
 // The map as a picture of its own, for a report: what the panel leaves free, with what lies on it.
 
+import { NORTH } from "./chrome.js";
+
 const PAD = 12, LINE = 18, TITLE_PX = 20, FONT = "system-ui, sans-serif";
 // on what is narrower the legend would lie over the plot
 const NARROW_PX = 600;
@@ -12,7 +14,7 @@ export function freePart({ width, height }, { left, right, bottom }) {
 // Draw the map with its words, legend and scale.
 //
 // `shot` is {canvas, size, part, colours: {ground, surface, ink, route}, title, credit, legend: [{title, scale, items}],
-// signs (sign and colour to image), labels: [{x, y, t, k}], bar: {px, text}, rtl, most, onPicture}; returns a canvas.
+// signs (sign and colour to image), labels: [{x, y, t, k}], bar: {px, text, bearing}, rtl, most, onPicture}; returns a canvas.
 export function composed(shot) {
   const { canvas, size, part, colours } = shot;
   const ratio = Math.min(canvas.width / size.width, (shot.most ?? 4000) / part.width);
@@ -122,7 +124,13 @@ export function foot(pen, { bar, credit, colours, rtl }, part) {
   const y = part.height - PAD - 26, x = rtl ? part.width - PAD - bar.px - 46 : PAD;
   box(pen, x, y, bar.px + 46, 26, colours.surface);
   pen.strokeStyle = pen.fillStyle = colours.ink;
-  pen.fillText("▲", x + 8, y + 14);
+  pen.save();
+  pen.translate(x + 14, y + 13);
+  pen.rotate((-(bar.bearing ?? 0) * Math.PI) / 180);
+  pen.font = `700 20px ${FONT}`;
+  pen.textAlign = "center";
+  pen.fillText(NORTH, 0, 0);
+  pen.restore();
   pen.direction = rtl ? "rtl" : "ltr"; // the bar runs from the left, its words as the language does
   pen.fillText(bar.text, x + 30, y + 9);
   pen.direction = "ltr";

@@ -29,6 +29,8 @@ test("the north arrow turns with the map", () => {
   const scale = new Scale(place());
   scale.draw({ latitude: 0, zoom: 15, bearing: 40 }, { lengths: LENGTHS, alt: "" });
   assert.equal(scale.north.style.transform, "rotate(-40deg)");
+  assert.equal(scale.length.bearing, 40); // so it does in a picture
+  assert.notEqual(scale.north.textContent, "▲", "it looks upright at every 120 degrees");
 });
 
 test("a legend says every sign with its words, a scale every class", () => {

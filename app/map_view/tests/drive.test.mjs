@@ -46,6 +46,17 @@ test("the same moment is the same object, so that nothing is made twice", () => 
   assert.equal(drive.of([PLANTS])[0], first);
 });
 
+test("who follows the robot stays near it in a window of another size, who let go of it stays where they are", () => {
+  const drive = Object.assign(driving(10), { following: true, turning: true, bearing: 90 });
+  const port = (width, zoom) => ({ width, height: 400, longitude: 35, latitude: 30, zoom, pitch: 0, bearing: 0 });
+  assert.equal(drive.view(port(400, 16), [200, 100]).zoom, 20.5);
+  assert.equal(drive.view(port(400, 19), [200, 100]).zoom, 19, "from then on as near as somebody wants");
+  assert.equal(drive.isStale(port(300, 19)), true);
+  drive.view(port(300, 19), [150, 100]);
+  drive.following = false;
+  assert.deepEqual([drive.leads(), drive.view(port(200, 19), [100, 100])], [false, null]);
+});
+
 test("only the nearest plants are drawn tall, and not too many", () => {
   const n = 500, lon = Float64Array.from({ length: n }, (_, k) => 35 + k * 1e-5), lat = new Float64Array(n).fill(30);
   const own = nearest({ n, lon, lat }, { lon: 35, lat: 30 }, 1500);

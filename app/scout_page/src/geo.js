@@ -10,13 +10,14 @@ export function metresPerDegree(lat) {
 
 /** What the phone keeps of the plot's document: plants in metres east and north of its middle. */
 export function laidOut(document, digest) {
-  const { lon, lat, number, face } = document.plants, n = lon.length;
+  const { lon, lat, number, face, drawn_lon, drawn_lat } = document.plants;
   const lon0 = (low(lon) + high(lon)) / 2, lat0 = (low(lat) + high(lat)) / 2;
   const [kx, ky] = metresPerDegree(lat0);
-  const x = new Float32Array(n), y = new Float32Array(n);
-  for (let i = 0; i < n; i++) { x[i] = (lon[i] - lon0) * kx; y[i] = (lat[i] - lat0) * ky; }
+  const east = (some) => Float32Array.from(some, (one) => (one - lon0) * kx), north = (some) => Float32Array.from(some, (one) => (one - lat0) * ky);
   const plot = {
-    digest, name: document.name, zone: document.zone, lon0, lat0, kx, ky, x, y,
+    digest, name: document.name, zone: document.zone, lon0, lat0, kx, ky, x: east(lon), y: north(lat),
+    // where faces are drawn: each towards its aisle, as both have one place
+    drawn: drawn_lon && { x: east(drawn_lon), y: north(drawn_lat) },
     number: Int32Array.from(number), face: face && Int8Array.from(face), start: Int32Array.from(document.rows.start),
     row: Int32Array.from(document.rows.row), sign: document.rows.sign, aisle: Int32Array.from(document.rows.aisle), side: Int8Array.from(document.rows.side),
     rowSpacing: document.row_spacing_m, plantSpacing: document.plant_spacing_m,
@@ -74,7 +75,31 @@ export function linesOf(plot) {
   return lines.get(plot);
 }
 
-/** The plant with a row and a number as people count, or -1. */
+const twins = new WeakMap();
+/** The other face of a plant that has two, which stands in the same place, or -1. */
+export function twinOf(plot, plant) {
+  if (!plot.face?.[plant]) return -1;
+  if (!twins.has(plot)) twins.set(plot, inPairs(plot));
+  return twins.get(plot)[plant];
+}
+
+function inPairs({ x, y, face }) {
+  const twin = new Int32Array(x.length).fill(-1), first = new Map();
+  for (let i = 0; i < x.length; i++) {
+    const place = `${x[i]} ${y[i]}`, other = face[i] ? first.get(place) : undefined;
+    if (other !== undefined) { twin[i] = other; twin[other] = i; } else if (face[i]) first.set(place, i);
+  }
+  return twin;
+}
+
+/** Where the aisle of a face is on the map, north up: an arrow; none where that is not known. */
+export function arrowOf({ x, y, drawn }, plant) {
+  if (!drawn) return "";
+  const turn = Math.atan2(drawn.y[plant] - y[plant], drawn.x[plant] - x[plant]);
+  return "→↗↑↖←↙↓↘"[Math.round(turn / (Math.PI / 4)) & 7];
+}
+
+/** The plant with a row and a number as people count, its first face where it has two, or -1. */
 export function plantAt(plot, row, number) {
   for (let k = 0; k < plot.row.length; k++) {
     if (plot.row[k] !== row) continue;
@@ -83,7 +108,7 @@ export function plantAt(plot, row, number) {
   return -1;
 }
 
-/** The plant nearest to a place, and how far it is. */
+/** The plant nearest to a place, its first face where it has two, and how far it is. */
 export function nearest(plot, x, y) {
   let best = Infinity, plant = -1;
   for (let i = 0; i < plot.x.length; i++) {
@@ -102,11 +127,15 @@ export function offered(plot, position) {
   return found.metres <= position.accuracy ? found.plant : -1;
 }
 
-/** The plants next to one: in its row, and across in the rows on both sides. */
+/** The plants next to one: in its row, and across in the rows on both sides, or its other face where rows have two, as the season has them. */
 export function neighbours(plot, plant) {
   const piece = pieceOf(plot, plant), line = linesOf(plot), found = [];
   if (plant > plot.start[piece]) found.push(plant - 1);
   if (plant + 1 < plot.start[piece + 1]) found.push(plant + 1);
+  if (plot.face) {
+    const twin = twinOf(plot, plant);
+    return twin < 0 ? found : [...found, twin];
+  }
   for (const side of [-1, 1]) {
     let best = 1.5 * plot.rowSpacing, across = -1;
     for (let k = 0; k < plot.row.length; k++) {

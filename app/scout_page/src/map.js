@@ -1,6 +1,8 @@
 // A map on one canvas: plants by their chance, what is known, the way, and where one is.
 // No tiles and no graphics card: it is there with the first picture of the page.
 
+import { twinOf } from "./geo.js";
+
 const CLASSES = [10, 50, 150, 400, 1001]; // of a chance, in thousandths, as in the app
 const PAINT = {
   sun: { ground: "#ffffff", classes: ["#d5d9d0", "#f5d76e", "#f08c1e", "#c8500a", "#7d1f02"], edge: "#555", route: "#000",
@@ -9,9 +11,14 @@ const PAINT = {
     found: "#ff8a3c", clean: "#56b4e9", ring: "#fff", next: "#ffd54a", here: "#7db4ff", spot: "#ff8a3c", asked: "#e0b0ff", ink: "#fff" },
 };
 const FINGER = 26;
+
+/** The room of a plant, or of each of its faces, across. */
+const roomOf = ({ plantSpacing, rowSpacing, face }) => (face ? Math.min(plantSpacing, rowSpacing) / 2 : plantSpacing);
+
 // plants along the side of a square in which they are looked up
 const SQUARE = 16;
 
+/** `picked(plant, isSure)`: where the finger covers both faces of a plant, it is not sure which is meant. */
 export class PlotMap {
   constructor(canvas, { picked }) {
     this.canvas = canvas;
@@ -28,12 +35,12 @@ export class PlotMap {
 
   /** Show a plot and a day. */
   lay(plot, chance, hotSpots) {
-    this.plot = plot;
+    this.plot = { ...plot, ...plot.drawn, room: roomOf(plot), itself: plot };
     this.hotSpots = hotSpots;
     const n = plot.x.length;
     this.klass = new Uint8Array(n);
     for (let i = 0; i < n; i++) { let c = 0; while (chance[i] >= CLASSES[c]) c++; this.klass[i] = c; }
-    this.squares = inSquares(plot, this.klass);
+    this.squares = inSquares(this.plot, this.klass);
     if (!this.laid) { this.laid = true; this.fit(); }
     this.draw();
   }
@@ -69,7 +76,7 @@ export class PlotMap {
   look(plant, late = false) {
     if (plant < 0 || !this.plot) return;
     this.middle = [this.plot.x[plant], this.plot.y[plant]];
-    this.scale = Math.max(this.scale, 22 / this.plot.plantSpacing);
+    this.scale = Math.max(this.scale, 22 / this.plot.room);
     this.show({}, late);
   }
 
@@ -129,7 +136,7 @@ export class PlotMap {
     const image = ink.createImageData(width, height), pixels = new Uint32Array(image.data.buffer);
     pixels.fill(packed(paint.ground));
     const colours = paint.classes.map(packed);
-    const by = this.scale * dense, side = Math.max(1, Math.round(Math.min(this.plot.plantSpacing * 0.6 * by, 14 * dense)));
+    const by = this.scale * dense, side = Math.max(1, Math.round(Math.min(this.plot.room * 0.6 * by, 14 * dense)));
     const x0 = width / 2 - this.middle[0] * by, y0 = height / 2 + this.middle[1] * by, half = side >> 1;
     const paintOne = (i, colour) => {
       const left = Math.round(x0 + x[i] * by) - half, top = Math.round(y0 - y[i] * by) - half;
@@ -160,7 +167,7 @@ export class PlotMap {
   }
 
   #way(ink, paint) {
-    const apart = this.plot.plantSpacing * this.scale; // from afar stops and aisles would be one blot
+    const apart = this.plot.room * this.scale; // from afar stops and aisles would be one blot
     ink.strokeStyle = paint.route;
     ink.lineWidth = Math.max(0.75, Math.min(2, apart));
     this.#line(ink, this.shown.way);
@@ -188,7 +195,7 @@ export class PlotMap {
   }
 
   #known(ink, paint) {
-    const r = Math.max(3.5, Math.min(9, this.plot.plantSpacing * 0.4 * this.scale));
+    const r = Math.max(3.5, Math.min(9, this.plot.room * 0.4 * this.scale));
     ink.fillStyle = paint.clean;
     for (const plant of this.shown.clean) this.#dot(ink, plant, r * 0.8);
     ink.lineWidth = 3;
@@ -198,7 +205,10 @@ export class PlotMap {
     ink.fillStyle = paint.ground;
     ink.strokeStyle = paint.found;
     ink.lineWidth = 2;
-    for (const plant of this.shown.recorded) this.#diamond(ink, plant, r);
+    for (const plant of this.shown.recorded) {
+      this.#blank(ink, plant);
+      this.#diamond(ink, plant, r);
+    }
     ink.fillStyle = paint.found;
     ink.strokeStyle = paint.ring;
     ink.lineWidth = 1.5;
@@ -211,6 +221,12 @@ export class PlotMap {
     ink.moveTo(px - r, py - r); ink.lineTo(px + r, py + r);
     ink.moveTo(px + r, py - r); ink.lineTo(px - r, py + r);
     ink.stroke();
+  }
+
+  /** Take a plant's square away: its corners would make a star of the diamond on it. */
+  #blank(ink, plant) {
+    const [px, py] = this.#pixels(this.plot.x[plant], this.plot.y[plant]), side = Math.min(this.plot.room * 0.6 * this.scale, 14) + 2;
+    ink.fillRect(px - side / 2, py - side / 2, side, side);
   }
 
   #diamond(ink, plant, r) {
@@ -305,8 +321,10 @@ export class PlotMap {
       if (d < best) { best = d; plant = i; }
     }
     // from afar a finger covers a hundred plants: the first tap comes closer
-    if (plant >= 0 && this.scale * this.plot.plantSpacing < 7) { this.middle = [x, y]; this.zoom(14 / this.plot.plantSpacing / this.scale); return; }
-    if (plant >= 0) this.picked(plant);
+    if (plant >= 0 && this.scale * this.plot.room < 7) { this.middle = [x, y]; this.zoom(14 / this.plot.room / this.scale); return; }
+    if (plant < 0) return;
+    const twin = twinOf(this.plot.itself, plant);
+    this.picked(plant, twin < 0 || Math.hypot(this.plot.x[twin] - x, this.plot.y[twin] - y) > FINGER / this.scale);
   }
 }
 

@@ -1,6 +1,6 @@
 // What is seen and touched: the map, the next plant, large buttons, and a menu.
 
-import { hasNames, plantAt, rowsCalled, shownEnds, signOf } from "./geo.js";
+import { arrowOf, hasNames, plantAt, rowsCalled, shownEnds, signOf, twinOf } from "./geo.js";
 import { PlotMap } from "./map.js";
 import { scaled } from "./photo.js";
 import { Held, KeyEnded, NotNow } from "./sync.js";
@@ -57,7 +57,7 @@ export class Page {
       tool("to_next", () => this.map.look(this.field.plant), "◎"), tool("whole_plot", () => this.map.fit(), "⛶"));
     const chosenInMenu = before?.open && before.dataset.of === "menu";
     this.root.replaceChildren(this.bar, h("section", { id: "stage", "aria-label": say("map_of") }, this.canvas, tools, this.note), this.sheet, this.menu);
-    this.map = new PlotMap(this.canvas, { picked: (plant) => this.#act(() => this.field.goTo(plant)) });
+    this.map = new PlotMap(this.canvas, { picked: (plant, isSure) => (isSure ? this.#act(() => this.field.goTo(plant)) : this.#goTo(plant)) });
     this.map.theme = this.theme;
     this.#laidOut = null;
     if (chosenInMenu) this.#openMenu();
@@ -297,7 +297,8 @@ export class Page {
     const { plot, plant } = field, away = field.metresAway();
     const where = away == null ? say("no_position") : field.isThere() ? say("there") : say("away", { m: Math.round(away) });
     place.replaceChildren(
-      h("h1", {}, placeOf(plot, plant)),
+      // a number stays with its word
+      h("h1", {}, placeOf(plot, plant).replace(/ (?=\W?\d)/g, "\u00a0")),
       h("p", {}, h("span", { class: field.isThere() ? "good" : "" }, where),
         // what was seen today is no chance
         !field.done.has(plant) && !field.back.has(plant) && h("span", {}, chanceSaid(field.day.chance[plant])),
@@ -365,13 +366,13 @@ export class Page {
     const input = h("input", { type: "file", accept: "image/*", capture: "environment", id: "camera", class: "hidden", tabindex: "-1", "aria-hidden": "true",
       onchange: () => this.#photo(input.files[0]) });
     const small = (name, act, more = {}) => h("button", { type: "button", id: name, onclick: act, ...more }, say(name));
-    const last = field.lastRecord(), offers = field.offered();
+    const last = field.lastRecord(), offers = field.offered(), isOther = offers >= 0 && ![offers, twinOf(field.plot, offers)].includes(draft.plant);
     return h("div", { id: "others" }, input,
       draft.plant >= 0 && small("photo", () => input.click(), field.asked(draft.plant).length > 0 && !draft.photos ? { class: "main" } : {}),
       draft.plant >= 0 && small("note_button", () => this.#note(), { "aria-pressed": String(Boolean(draft.notes)) }),
       // beside a find that is not saved yet one would take it for that
       last && !draft.open && h("button", { type: "button", id: "undo", onclick: () => this.#act(() => this.field.undo(), 30).then(() => this.onTold?.()) }, `↶ ${say("undo")}`),
-      offers >= 0 && offers !== draft.plant && small("here", () => this.#act(() => field.goTo(offers))),
+      isOther && small("here", () => this.#here()),
       small("other_plant", () => this.#other()),
       field.asked().length > 0 && h("button", { type: "button", id: "asked", onclick: () => this.#asked() }, `▣ ${say("asked", { n: field.asked().length })}`),
       field.offRoute && field.ahead.length > 0 && small("back_to_route", () => this.#act(() => field.goBack())),
@@ -389,6 +390,37 @@ export class Page {
     try { made = await scaled(file); } catch { return this.#say(say("no_picture"), true); }
     await this.#act(() => this.field.addPhoto(photo, made), 30);
     this.#draw();
+  }
+
+  /** Go where one stands now, which may be another plant than as the button was drawn; without a position the button goes. */
+  #here() {
+    const offers = this.field.offered();
+    if (offers >= 0) this.#goTo(offers);
+    else this.#draw();
+  }
+
+  /** Go to a plant; of one with two faces it is asked to which, and neither is taken for the other. */
+  #goTo(plant) {
+    const { field } = this, { plot } = field, twin = twinOf(plot, plant);
+    const go = (one) => {
+      if (field.plot?.digest !== plot.digest) return this.#draw(); // another window turned to another season meanwhile
+      this.#act(() => field.goTo(one));
+      this.map.look(one, true);
+    };
+    if (twin < 0) return go(plant);
+    const place = say("place", { row: signOf(plot, plant), plant: plot.number[plant] });
+    let rests = true; // a glove that bounces chooses none
+    const tap = (act) => () => { if (!rests) { this.menu.close(); act?.(); } };
+    // left and right as on the map, in every language; from the first where they are above each other
+    const { x } = plot.drawn ?? plot, far = (a, b) => Math.round(100 * (x[a] - x[b]));
+    const faces = [plant, twin].sort((a, b) => far(a, b) || plot.face[a] - plot.face[b]);
+    const head = h("h2", { tabindex: "-1", autofocus: true }, place); // a key that is held presses no button
+    const choice = h("div", { class: "pair", id: "faces", dir: "ltr", "data-resting": true, role: "group", "aria-labelledby": "which" }, ...faces.map((one) => h("button", {
+      type: "button", class: "face", "data-plant": one, onclick: tap(() => go(one)) }, `${plot.face[one]} ${arrowOf(plot, one)}`)));
+    setTimeout(() => { rests = false; choice.removeAttribute("data-resting"); }, REST_MS);
+    this.#show(h("div", {}, head, h("p", { id: "which" }, say("which_face"), plot.drawn && ` ${say("as_on_map")}`), choice,
+      h("button", { type: "button", class: "wide", onclick: tap() }, say("cancel"))), place, "face");
+    head.focus();
   }
 
   /** The photos asked for: a button leads to each. */
@@ -415,11 +447,15 @@ export class Page {
     const { plot } = this.field, numeric = { type: "number", inputmode: "numeric", min: "0" };
     const field = (name, kind = numeric) => h("input", { ...kind, id: `to_${name}`, required: true });
     const row = field("row", hasNames(plot) ? { type: "text", autocapitalize: "off" } : numeric), plant = field("plant");
-    this.#ask(say("other_plant"), h("div", { class: "pair" }, h("label", {}, say("row"), row), h("label", {}, say("plant"), plant)), () => {
+    this.#ask(say("other_plant"), h("div", { class: "pair" }, h("label", {}, say("row"), row), h("label", {}, say("plant"), plant)), (event) => {
       const rows = rowsCalled(plot, row.value), found = rows.length === 1 ? plantAt(plot, rows[0], Number(plant.value)) : -1;
       if (rows.length > 1) this.#say(say("several_rows", { row: row.value }), true);
       else if (found < 0) this.#say(say("no_such_plant"), true);
-      else { this.#act(() => this.field.goTo(found)); this.map.look(found, true); }
+      else {
+        event.preventDefault(); // the face may be asked in the same dialog
+        this.menu.close();
+        this.#goTo(found);
+      }
     });
     row.focus();
   }

@@ -73,8 +73,10 @@ export function afterFind(plot, day, ahead, plant, done, left) {
   const next = [];
   let here = plant, spent = 0;
   const open = new Set(neighbours(plot, plant).filter((one) => !done.has(one)));
+  // the other face is in the same place, but round the row's end
+  const far = (a, b) => (plot.face ? walkSeconds(plot, day.robot, a, b) : apart(plot, a, b));
   while (open.size) {
-    const one = [...open].sort((a, b) => apart(plot, here, a) - apart(plot, here, b) || a - b)[0];
+    const one = [...open].sort((a, b) => far(here, a) - far(here, b) || a - b)[0];
     open.delete(one);
     const cost = walkSeconds(plot, day.robot, here, one) + day.robot.visit_s;
     if (spent + cost + secondsBack(plot, day, one) > left) break;

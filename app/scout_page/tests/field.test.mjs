@@ -2,9 +2,10 @@ import "fake-indexeddb/auto";
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Field } from "../src/field.js";
+import { twinOf } from "../src/geo.js";
 import { openStore } from "../src/store.js";
 import { KeyEnded, NotNow, Sync } from "../src/sync.js";
-import { aDay, ASeason } from "./scene.mjs";
+import { aDay, ASeason, facedPlot } from "./scene.mjs";
 
 let stores = 0;
 const ACCESS = { season: "Gate", key: "k1", on: null };
@@ -30,6 +31,19 @@ test("what was tapped comes back after a kill", async () => {
   assert.deepEqual([other.draft.count, other.draft.stage, other.draft.notes, other.draft.open], [4, "adult", "webs", true]);
   assert.deepEqual(other.records.map((one) => [one.plant, one.result, one.state]), [[0, "clean", "waiting"]]);
   assert.deepEqual(other.ahead, [1, 2, 10, 11]);
+});
+
+test("what is told of one face is sent as of that face, and leaves the other as it was", async () => {
+  const season = new ASeason(aDay([0, 1], { chance: Array(20).fill(20), recorded: [12, 17] }), facedPlot());
+  const { field, sync, again } = await aField(season);
+  await field.goTo(17);
+  await field.tell("clean");
+  const other = await again();
+  await sync.send();
+  assert.deepEqual([...season.taken.values()].map((one) => [one.plant, one.result]), [[17, "clean"]]);
+  const { clean, recorded } = other.known();
+  assert.deepEqual([[...clean], [...recorded], twinOf(other.plot, 17)], [[17], [12, 17], 12]);
+  assert.deepEqual(other.plot.drawn, field.plot.drawn);
 });
 
 test("a plant that is gone is sent as skipped with the word for it, which servers of before know too", async () => {

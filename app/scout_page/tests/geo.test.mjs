@@ -1,9 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
-  apart, hasNames, laidOut, metres, metresPerDegree, nearest, neighbours, offered, pieceOf, plantAt, rowOf, rowsCalled, shownEnds, signOf, walkSeconds,
+  apart, arrowOf, hasNames, laidOut, metres, metresPerDegree, nearest, neighbours, offered, pieceOf, plantAt, rowOf, rowsCalled, shownEnds, signOf, twinOf,
+  walkSeconds,
 } from "../src/geo.js";
-import { aPlot, laid } from "./scene.mjs";
+import { aPlot, facedPlot, laid } from "./scene.mjs";
 
 const plot = laid(), robot = { speed_m_s: 1, row_change_s: 3 };
 
@@ -28,10 +29,28 @@ test("neighbours stand in the row and across", () => {
   assert.deepEqual(neighbours(plot, 0).sort((a, b) => a - b), [1, 5]);
 });
 
-test("the faces of plants that have two are kept, and none where they have but one", () => {
-  const document = aPlot(), face = document.plants.number.map((_, k) => 1 + (k % 2));
-  assert.deepEqual([...laidOut({ ...document, plants: { ...document.plants, face } }, "p2").face], face);
-  assert.equal(plot.face, undefined);
+test("two faces of a plant are twins, each drawn towards its aisle; a plant with one has none", () => {
+  const document = facedPlot(), faced = laidOut(document, "p2"), all = [...faced.number.keys()];
+  assert.deepEqual([...faced.face], document.plants.face);
+  assert.deepEqual(all.map((plant) => twinOf(faced, plant)), [5, 6, 7, 8, 9, 0, 1, 2, 3, 4, 15, 16, 17, 18, 19, 10, 11, 12, 13, 14]);
+  assert.deepEqual([twinOf(plot, 7), plot.face, plot.drawn], [-1, undefined, undefined]);
+  for (const plant of all) assert.ok(Math.abs(faced.drawn.y[plant] - faced.y[plant] - (faced.face[plant] === 2 ? 0.5 : -0.5)) < 0.01);
+  assert.deepEqual([2, 7].map((plant) => arrowOf(faced, plant)), ["↓", "↑"]);
+  const alone = laidOut({ ...document, plants: { ...document.plants, face: document.plants.face.map((one, k) => (k % 5 === 2 ? 0 : one)) } }, "p3");
+  assert.deepEqual([2, 7, 3].map((plant) => twinOf(alone, plant)), [-1, -1, 8], "0: no other face is inspected");
+});
+
+test("a row's and a plant's number, and a position, mean the first of two faces, whose twin is known", () => {
+  const faced = laidOut(facedPlot(), "p2"), [x, y] = [faced.x[17], faced.y[17]];
+  const found = plantAt(faced, 2, 3);
+  assert.deepEqual([found, twinOf(faced, found)], [12, 17]);
+  assert.equal(offered(faced, { x, y, accuracy: 1 }), 12);
+});
+
+test("neighbours of a face are those along its row and its twin, as the season has them: none across the aisle", () => {
+  const faced = laidOut(facedPlot(), "p2");
+  assert.deepEqual(neighbours(faced, 7).sort((a, b) => a - b), [2, 6, 8]);
+  assert.deepEqual(neighbours(faced, 0).sort((a, b) => a - b), [1, 5]);
 });
 
 test("rows called by other numbers have the same neighbours", () => {

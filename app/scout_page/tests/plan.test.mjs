@@ -1,12 +1,17 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { afterFind, results, secondsAhead, secondsLeft } from "../src/plan.js";
-import { aDay, laid } from "./scene.mjs";
+import { laidOut } from "../src/geo.js";
+import { aDay, facedPlot, laid } from "./scene.mjs";
 
 const plot = laid(), day = aDay();
 
 test("after a find its neighbours come next, then the route as it was", () => {
   assert.deepEqual(afterFind(plot, day, [1, 2, 10, 11], 0, new Set([0]), 1e5), [1, 5, 2, 10, 11]);
+});
+
+test("after a find the other face comes last of its neighbours: the way to it goes round the row's end", () => {
+  assert.deepEqual(afterFind(laidOut(facedPlot(), "p2"), day, [10], 2, new Set([2]), 1e5), [1, 3, 7, 10]);
 });
 
 test("what was inspected is not inspected again", () => {

@@ -13,6 +13,20 @@ export function aPlot() {
     row_spacing_m: 3, plant_spacing_m: 2, rows: { start: [0, 5, 10, 15], row: [1, 2, 3], aisle: [0, 0, 1], side: [1, -1, 1] }, plants: { lon, lat, number } };
 }
 
+/** The same with two faces of each plant of its first and its last row: piece after piece, first faces first. */
+export function facedPlot() {
+  const one = aPlot(), of = [0, 0, 2, 2], plants = { lon: [], lat: [], number: [], face: [], drawn_lon: [], drawn_lat: [] };
+  of.forEach((row, piece) => {
+    for (let k = 5 * row; k < 5 * row + 5; k++) {
+      for (const name of ["lon", "lat", "number"]) plants[name].push(one.plants[name][k]);
+      plants.face.push(1 + (piece % 2));
+      plants.drawn_lon.push(one.plants.lon[k]);
+      plants.drawn_lat.push(one.plants.lat[k] + (piece % 2 ? 0.5 : -0.5) / 110900);
+    }
+  });
+  return { ...one, rows: { start: [0, 5, 10, 15, 20], row: [1, 1, 2, 2], aisle: [0, 1, 1, 2], side: [-1, 1, -1, 1] }, plants };
+}
+
 export const laid = () => laidOut(aPlot(), "p1");
 
 export function aDay(plants = [0, 1, 2, 10, 11], more = {}) {
@@ -24,7 +38,7 @@ export function aDay(plants = [0, 1, 2, 10, 11], more = {}) {
 
 /** A season that takes what it is sent, and breaks as it is told. */
 export class ASeason {
-  constructor(day = aDay()) { Object.assign(this, { day, taken: new Map(), photos: new Map(), by: new Map(), asked: [], breaks: [] }); }
+  constructor(day = aDay(), plot = aPlot()) { Object.assign(this, { day, plot, taken: new Map(), photos: new Map(), by: new Map(), asked: [], breaks: [] }); }
 
   ask = async (address, request = {}) => {
     this.asked.push(address);
@@ -41,7 +55,7 @@ export class ASeason {
     const said = (value, status = 200) => new Response(JSON.stringify(value), { status, headers: this.date ? { date: this.date } : {} });
     if (this.keys && !this.keys.includes(headers.authorization?.slice(7))) return said({ error: "no key" }, 401);
     const path = address.split("/").slice(5).join("/").split("?")[0];
-    if (path === "plot") return said(aPlot());
+    if (path === "plot") return said(this.plot);
     if (path === "day") return said(this.day);
     if (path === "route") return said({ route: { plants: [14, 13], walk_s: [5, 2], end_s: 90, line: [] } });
     if (path === "findings") {

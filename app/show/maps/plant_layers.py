@@ -81,7 +81,7 @@ def plants(
         sentences, which = notes.known
         arrays["notes"] = which.astype("<u2").tobytes()
         tips["notes"] = list(sentences)
-    if (grid.twin >= 0).any():
+    if grid.has_faces:
         tips["faces"] = texts.TIP_FACE
     return ArraysLayer(
         "PlantsLayer", arrays, id=name, table=shade.table.tolist(), tips=tips,
@@ -94,7 +94,7 @@ def drawn_at(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> NDAr
 
     So each is seen and can be pointed at: both have one place.
     """
-    if not (grid.twin >= 0).any():
+    if not grid.has_faces:
         return grid.lonlat(plants)
     which = np.arange(len(grid)) if plants is None else plants
     middle = grid.xy_m[which]
@@ -107,7 +107,7 @@ def drawn_at(grid: PlantGrid, plants: NDArray[np.integer] | None = None) -> NDAr
 def _size_m(grid: PlantGrid) -> float:
     """Return the room that each plant has on the map, across."""
     least_m = min(grid.plant_spacing_m, grid.row_spacing_m)
-    return least_m * (_FACE_SIZE if (grid.twin >= 0).any() else 1.0)
+    return least_m * (_FACE_SIZE if grid.has_faces else 1.0)
 
 
 def _places(grid: PlantGrid) -> bytes:
@@ -117,10 +117,9 @@ def _places(grid: PlantGrid) -> bytes:
         first = lonlat[0]
         numbered = plant_numbers(grid, np.arange(len(grid)))
         step = max(grid.plant_spacing_m, grid.row_spacing_m) / M_PER_DEGREE
-        faced = bool((grid.twin >= 0).any())
-        head = np.array([len(grid), *first, step, faced, 0.0], "<f8")
+        head = np.array([len(grid), *first, step, grid.has_faces, 0.0], "<f8")
         offsets = (lonlat - first).T.astype("<f4")
-        face = [faces(grid, np.arange(len(grid)))] if faced else []
+        face = [faces(grid, np.arange(len(grid)))] if grid.has_faces else []
         names = np.stack([numbered.line, numbered.number, *face]).astype("<i4")
         _PLACES[grid] = head.tobytes() + offsets.tobytes() + names.tobytes()
     return _PLACES[grid]

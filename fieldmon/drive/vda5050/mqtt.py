@@ -9,6 +9,7 @@ import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
+from fieldmon.compute.wording import worded
 from fieldmon.drive.vda5050.versions import USUAL_VERSION, VERSIONS
 from fieldmon.errors import SettingError
 
@@ -55,12 +56,33 @@ class Broker(NamedTuple):
             port = 0
         if parts.scheme not in {"mqtt", "mqtts"} or not parts.hostname or port == 0:
             raise SettingError(
-                "A broker must be given as HOST, HOST:PORT or mqtts://USER:PASSWORD@HOST:PORT, "
-                f"but it is {text!r}."
+                worded(
+                    "A broker must be given as HOST, HOST:PORT or mqtts://USER:PASSWORD@HOST:PORT, "
+                    "but it is {text}.",
+                    text=repr(text),
+                )
             )
         encrypted = parts.scheme == "mqtts"
         usual = 8883 if encrypted else 1883
         return cls(parts.hostname, port or usual, parts.username, parts.password, encrypted)
+
+
+class BrokerError(SettingError):
+    """A broker cannot be used: say where another one is, or as whom it knows you.
+
+    Parameters
+    ----------
+    message
+        The sentence for the person.
+    where
+        Host and port.
+    answers
+        Whether one answers there, but lets nobody in.
+    """
+
+    def __init__(self, message: str, where: str, *, answers: bool) -> None:
+        super().__init__(message)
+        self.where, self.answers = where, answers
 
 
 class RobotName(NamedTuple):
@@ -75,8 +97,11 @@ class RobotName(NamedTuple):
         for name in self[:2]:
             if not name.isprintable() or not name or set(name) & set("/+#$"):
                 raise SettingError(
-                    "Manufacturer and serial number of a robot must be letters that can be "
-                    f"printed, but no /, +, # or $, and not be empty, but one is {name!r}."
+                    worded(
+                        "Manufacturer and serial number of a robot must be letters that can be "
+                        "printed, but no /, +, # or $, and not be empty, but one is {name}.",
+                        name=repr(name),
+                    )
                 )
 
     @property
@@ -152,22 +177,25 @@ class Wire:
     def _join(self, broker: Broker, hears: list[str]) -> None:
         """Connect; return once the broker has let one in, and topics are heard."""
         self._hears, self._answered, self._refused = hears, threading.Event(), ""
+        where = f"{broker.host}:{broker.port}"
         try:
             self.client.connect(broker.host, broker.port, _KEEP_ALIVE_S)
         except OSError as error:
-            raise SettingError(
+            raise BrokerError(
                 f"An MQTT broker must answer at {broker.host}, port {broker.port}, but none does "
-                f"({error}). Start one (docs: drive), or give --broker HOST:PORT."
-            ) from error
+                f"({error}). Start one (docs: drive), or give --broker HOST:PORT.",
+                where, answers=False,
+            ) from error  # fmt: skip
         self.client.loop_start()
         if not self._answered.wait(_ANSWERS_S):
             self._refused = f"it said nothing for {_ANSWERS_S:.0f} s"
         if self._refused:
             self.close()
-            raise SettingError(
+            raise BrokerError(
                 f"The MQTT broker at {broker.host}, port {broker.port}, must let us in, but "
-                f"{self._refused}. Give --broker mqtt://USER:PASSWORD@HOST:PORT as it knows you."
-            )
+                f"{self._refused}. Give --broker mqtt://USER:PASSWORD@HOST:PORT as it knows you.",
+                where, answers=True,
+            )  # fmt: skip
 
     def send(self, kind: str, data: bytes, *, kept: bool = False) -> None:
         """Send a message; `kept`: whoever comes later hears the last of its kind."""

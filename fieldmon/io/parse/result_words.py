@@ -23,7 +23,7 @@ segnato|segnata|segnalato|segnalata|sinalizado|sinalizada|oznaczony|oznaczone|i�
 отмечено|помечено|σημειωμένο|מסומן|מסומנת|סומן|סומנה|معلم|معلمة|معلَّم|معلَّمة|مُعلَّم|مُعلَّمة|चिह्नित
 标记|已标记|標記
 yes|y|true|t|present|positive|pos|p|found|detected|infested|infected|diseased|sick|attacked|pest
-pests|mite|mites|some|few|many|low|medium|high|x|v|1
+pests|found infested|mite|mites|some|few|many|low|medium|high|x|v|1
 ja|gefunden|befall|befallen|nachweis|nachgewiesen|positiv|vorhanden|krank|schädlinge
 aanwezig|gevonden|positief|besmet|aangetast|ziek
 oui|présent|présente|trouvé|trouvée|infesté|infestée|infecté|infectée|positif|positive|attaqué
@@ -48,7 +48,7 @@ no|false|f|absent|negative|neg|n|none|nil|zero|clean|clear|healthy|nothing|not f
 nil found|no pests|ok|okay|free|background|0
 not infested|uninfested|non-infested|no infestation|none found|none seen|none detected|nothing found
 no mites|no mites found|no pests found|no pest|not infected|not present|undetected|pest free
-pest-free|no symptoms
+pest-free|no symptoms|looked clean
 kein befund|ohne befund|nicht befallen|unbefallen|keine milben|keine schädlinge|nichts gefunden
 nein|keine|keiner|kein befall|nicht gefunden|sauber|befallsfrei|gesund|negativ|nichts|ohne befall
 niet aangetast|geen aantasting|geen mijten
@@ -78,12 +78,14 @@ hayır|hayir|yok|temiz|sağlıklı|negatif|bulunamadı
 _NOT_INSPECTED = """
 not inspected|uninspected|could not inspect|cannot inspect|not visited|ni|n/i|skip|skipped|missed
 not done|no access|nicht geprüft|ausgelassen|nicht kontrolliert|niet gecontroleerd
+übersprungen|nicht untersucht|overgeslagen|sauté|sautée|saltato|saltata|pulado|pulada
+pominięto|pominięty|pominięte|atlandı|пропущено|пропущен|παραλείφθηκε|छोड़ा गया|跳过|已跳过|スキップ
 could not be inspected|unable to inspect
 no se pudo|no se pudo inspeccionar|no se puede inspeccionar|no se ha podido inspeccionar
 no fue posible inspeccionar|omitido|omitida|saltada
 no inspeccionado|no inspeccionada|sin inspeccionar|saltado|non inspecté|non inspectée
 non ispezionato|não inspecionado|nie sprawdzono|kontrol edilmedi|не проверено
-לא נבדק|לא נבדקה|דולג|לא ניתן|לא ניתן לבדיקה|לא ניתן לבדוק
+לא נבדק|לא נבדקה|דולג|דולגה|לא ניתן|לא ניתן לבדיקה|לא ניתן לבדוק
 לא ניתן היה לבדוק|אי אפשר לבדוק|לא נבדקו
 لم يفحص|لم تفحص|لم يُفحص|لم تُفحص|تعذر|تعذّر|تعذر الفحص|تعذّر الفحص|تعذر فحصها|تعذّر فحصها|لم يمكن الفحص
 تخطيت|تُخطّيت|未检查
@@ -93,7 +95,7 @@ GONE = "gone"
 _GONE = """
 gone|pulled out|removed|uprooted|entfernt|gerodet|verwijderd|arraché|arrachée|enlevé|enlevée
 arrancado|arrancada|eliminado|eliminada|rimosso|rimossa|estirpato|estirpata|removido|removida
-usunięto|söküldü|удалено|נעקר|נעקרה|הוסר|أزيل|مقلوع|拔除
+plant is gone|usunięto|söküldü|удалено|נעקר|נעקרה|הוסר|أزيل|مقلوع|拔除
 """
 #: the same beside "could not inspect"; as a result alone they may be of the pest, or of the value
 _MAYBE_GONE = """

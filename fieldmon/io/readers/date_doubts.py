@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import joined, worded
-from fieldmon.io.import_report import ImportMessage, Severity, UnreadDates, doubtful, guessed
+from fieldmon.io.import_report import (
+    ImportMessage,
+    Remedy,
+    Severity,
+    UnreadDates,
+    doubtful,
+    guessed,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,6 +25,12 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.io.parse.dates import DatedColumn
+
+
+def read_day_first() -> ImportMessage:
+    """Return what is said where dates could be day or month first."""
+    said = worded("Dates could be day or month first; read day first.")
+    return guessed(said, None, Remedy("date_order", "mdy", worded("Read month first")))
 
 
 def mixed_dates(read: DatedColumn, where: str | None = None) -> list[ImportMessage]:
@@ -48,10 +61,7 @@ def amid_past(day: NDArray[np.datetime64], today: date | None = None) -> dict[in
     if not (~ahead & ~np.isnat(day)).any():
         return {}
     return {
-        i: worded(
-            "its day, {day}, has not come, but others of the file have; correct it there",
-            day=day[i],
-        )
+        i: worded("its day, {day}, has not come, but others of the file have", day=day[i])
         for i in np.flatnonzero(ahead).tolist()
     }
 

@@ -118,9 +118,9 @@ def exported(
 
     And of records whose plant is not sure, which are left out, why, by their number in the file.
     """
-    if rows.mark is None or not (rows.mark != "").any():
+    rows = rows.take(rows.exported)
+    if not len(rows):
         return Inspections.none(), [], {}
-    rows = rows.take(rows.mark != "")
     placed = _placed(rows, grid, options)
     off_m = from_plants_m(rows, grid, np.arange(len(rows)), placed.plant)
     moved = (off_m > grid.plant_spacing_m / 2) & (placed.plant >= 0)

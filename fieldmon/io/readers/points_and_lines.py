@@ -28,6 +28,7 @@ from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.geometry import closed_lines, geometry_kinds
 from fieldmon.io.parse.georeference import place_geometry
 from fieldmon.io.parse.positions import located
+from fieldmon.io.readers.inspection_file.columns import faces_named
 from fieldmon.io.readers.places import Plants
 from fieldmon.io.readers.plots import blocks_of
 from fieldmon.plot.near_doubles import near_doubles
@@ -142,6 +143,15 @@ def _one_of_each(
     n_doubles = len(here) - len(kept)
     if not n_doubles:
         return kept, []
+    if (column := _tells_faces(found, here, kept)) is not None:
+        said = worded(
+            "Column {column!r} names both faces of {n} {n:plant|plants}, which stand in one place: "
+            "one of each was kept. To have both, choose: Inspect both faces of each row "
+            "(--both-faces).",
+            column=column,
+            n=n_doubles,
+        )
+        return kept, [doubtful(said)]
     if options.doubles is None:
         gone = np.setdiff1d(np.arange(len(found.lonlat)), here)
         raise _about_doubles(found.layer, np.union1d(kept, gone))
@@ -152,6 +162,22 @@ def _one_of_each(
         apart=worded("{apart_cm:g} cm", apart_cm=100 * apart_m),
     )
     return kept, [dropped(said)]
+
+
+def _tells_faces(
+    found: LocatedFeatures, here: NDArray[np.intp], kept: NDArray[np.intp]
+) -> str | None:
+    """Return the column by which the plants `here` that are not `kept` are other faces of those.
+
+    None: there is none, or not each of them is.
+    """
+    if (named := faces_named(found.layer.take(here))) is None:
+        return None
+    column, face = named
+    xy_m, is_kept = frame_around(found.lonlat[here]).xy_m(found.lonlat[here]), np.isin(here, kept)
+    of = np.flatnonzero(is_kept)[cKDTree(xy_m[is_kept]).query(xy_m[~is_kept])[1]]
+    other = face[of] != face[~is_kept]
+    return column if other.all() and len(np.unique(of)) == len(of) else None
 
 
 def _of_near_doubles(lonlat: NDArray[np.float64]) -> list[ImportMessage]:

@@ -41,7 +41,7 @@ from fieldmon.io.readers.date_doubts import (
     mixed_dates,
     unread_dates,
 )
-from fieldmon.io.readers.inspection_file.columns import own_column
+from fieldmon.io.readers.inspection_file.columns import faces_named, own_column
 from fieldmon.io.readers.placed_twice import placed_twice
 from fieldmon.io.readers.species import one_pest
 from fieldmon.io.readers.wide_tables import by_day
@@ -113,14 +113,14 @@ def _records_and_plots(
         *layer.messages, *repeated, *found.messages, *unread, *twice, *day_messages,
         *counts.messages,
     )  # fmt: skip
-    place = places_of(records)
+    place, of_faces = _by_face(places_of(records), table)
     half_m = (apart_m or Planting().plant_spacing_m) / 2
     known = ~np.isnat(day) & np.isfinite(found.lonlat).all(axis=1)
     known &= ~(records.accuracy_m >= half_m) & (found.step_m < half_m)
     visits = RecordVisits(np.flatnonzero(known), place, at_s)
     first, counted_once = each_visit_once(records, table, visits)
     once = records.take(first)
-    more = (*of_species, *counted_once, *disagreeing(once, place[first]))
+    more = (*of_species, *of_faces, *counted_once, *disagreeing(once, place[first]))
     messages += (*about_confidences(layer.columns, table.used()),)
     return Imported(once, (*messages, *more)), None if found.plot is None else found.plot[first]
 
@@ -135,6 +135,22 @@ def _species(table: RecordColumns) -> tuple[NDArray[np.str_], list[ImportMessage
     cells = table.cells(name)
     usual, messages = one_pest(name, cells)
     return np.array([usual.get(cell, "") for cell in cells], dtype=np.str_), messages
+
+
+def _by_face(
+    place: NDArray[np.intp], table: RecordColumns
+) -> tuple[NDArray[np.intp], list[ImportMessage]]:
+    """Return places of records ``(n,)``, one for each face of a plant that is named, and say so."""
+    named = faces_named(table.layer)
+    if named is None or named[0] in table.used():
+        return place, []
+    column, face = named
+    said = worded(
+        "Column {column!r} names faces of plants: it tells records of one plant apart, but each "
+        "counts for the whole plant. Only inspections are of a face.",
+        column=column,
+    )
+    return 2 * place + (face == 2), [doubtful(said)]
 
 
 def _accuracy_m(

@@ -7,6 +7,8 @@ Decisions
 - Where the name says that it is counted up (``Daily Rain``, ``Precip. Accum.``), hours of standing
   still for each fall are enough. Elsewhere it must also have stood still for longer, and have risen
   twice in a row.
+- Where it never falls but at one time of day, on two days or more, and to little or nothing, nobody
+  knows: it is read as it stands, and doubted.
 - In tables by the day ``Daily Rain`` is what fell on each. Nothing is counted up there that falls,
   but where a month begins: rain of the month or the season. It must also rise within months, for a
   month's mean stands on each of its days.
@@ -22,7 +24,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import worded
-from fieldmon.io.import_report import ImportMessage, Remedy, guessed
+from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
 from fieldmon.io.parse.columns import plain
 from fieldmon.pests.weather import DAY_S, HOUR_S
 
@@ -42,6 +44,8 @@ _NAMED = (
 )
 # of standing still above nothing: for each fall, and in all where no name says it
 _STILL_EACH_S, _STILL_S, _STILL = 3 * HOUR_S, 6 * HOUR_S, 5
+# of falls at one time of day: so many, so many rises for each, and to such a share at most
+_FALLS, _RISES_A_FALL, _LEFT = 2, 4, 0.25
 # of never moving at all
 _STILL_ALL_S = 3 * DAY_S
 
@@ -84,6 +88,14 @@ def what_fell(
         said = worded("{name} falls during the day; each value was read as what fell.", name=name)
         remedy = Remedy("rain_is", RUNNING, worded("Read it as counted up"))
         return counted, [guessed(said, None, remedy)]
+    if not by_day and _falls_once_a_day(values, times):
+        said = worded(
+            "{name} rises all day and falls at one time of day only, as what a station counts up "
+            "does; each value was read as what fell. Say which it is.",
+            name=name,
+        )
+        remedy = Remedy("rain_is", RUNNING, worded("Read it as counted up"), (EACH,))
+        return counted, [doubtful(said, None, remedy)]
     return counted, []
 
 
@@ -130,6 +142,22 @@ def _counts_up(
     # amounts that were shared out to the hours of a day, or of half a day, rise once in that time
     again_s = np.diff(rises)
     return len(again_s) > 0 and bool(again_s.min() <= max(_step_s(times), HOUR_S))
+
+
+def _falls_once_a_day(values: Floats, times: NDArray[np.int64]) -> bool:
+    """Return whether values ``(n,)`` at times in order rise often, and fall at one time of day.
+
+    Some amounts that were shared out to the hours of a day do, too: they rise once in it.
+    """
+    steps = np.diff(values)
+    fall, n_rises = np.flatnonzero(steps < 0.0), int(np.count_nonzero(steps > 0.0))
+    if len(fall) < _FALLS or n_rises < _RISES_A_FALL * len(fall):
+        return False
+    at_s = times[1:][fall] % DAY_S
+    off_s = np.abs((at_s - at_s[0] + DAY_S // 2) % DAY_S - DAY_S // 2)
+    fell_to = values[1:][fall] <= _LEFT * values[:-1][fall]
+    # clocks change in between, and a reading may be missing
+    return bool(fell_to.all() and (off_s <= HOUR_S).all())
 
 
 def _step_s(times: NDArray[np.int64]) -> float:

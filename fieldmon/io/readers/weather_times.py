@@ -23,7 +23,7 @@ from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone
 from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.dates import dates
 from fieldmon.io.parse.values import number, numbers
-from fieldmon.io.readers.date_doubts import mixed_dates
+from fieldmon.io.readers.date_doubts import mixed_dates, read_day_first
 from fieldmon.io.readers.weather_rows import utc_times
 from fieldmon.io.readers.weather_services import NO_SERVICE, WeatherService, read_as_lst, told_zone
 
@@ -55,6 +55,8 @@ _DAYS = frozenset(
 )
 # 2026111813, 20261118:1300, 202611181300
 _PACKED = re.compile(r"^(\d{4})(\d\d)(\d\d)[ T:_]?(\d\d)(?::?(\d\d)(?::?\d\d)?)?(Z?)$")
+# 01.06.2026, perhaps with a clock behind
+_DOTTED = re.compile(r"^\D*\d{1,2}\.\d{1,2}\.(?:\d{4}|\d\d)\b")
 _AFTER_DATE = re.compile(
     r"^(?:\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/. ]\d{1,2}[-/. ](?:\d{4}|\d\d)|"
     r"[^:]*[^\W\d_][^:]*\D\d{4})[,T\s]+(\S.*)$"  # a month or a weekday in words
@@ -163,7 +165,9 @@ def times_of(
     zone = zone_of(options.zone) if options.zone else UTC
     cells = _cells(layer, columns)
     read = dates(np.array(cells, dtype=object), options.date_order)
-    if read.is_ambiguous:
+    # with points nobody writes the month first; read day first, as records are
+    dotted = read.is_ambiguous and all(_DOTTED.match(cell) for cell in cells if cell)
+    if read.is_ambiguous and not dotted:
         raise ChoiceNeeded(
             worded(
                 "Dates of {name} could be day or month first ({example}). Which is it?",
@@ -178,7 +182,7 @@ def times_of(
     ends, said_of_hours = _hours_that_end(layer, columns, service, clocks)
     if ends:
         local -= np.timedelta64(_HOUR_S, "s")
-    messages = [*mixed_dates(read), *said_of_hours]
+    messages = [*mixed_dates(read), *said_of_hours, *([read_day_first()] if dotted else [])]
     by_day = all(clock is None for clock in clocks.values())
     if by_day or np.isnat(local).all():
         at = utc_times(local, zone)

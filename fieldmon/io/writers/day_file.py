@@ -140,12 +140,12 @@ class DrivenRoute(Protocol):
         ...
 
     @property
-    def expected_finds(self) -> float:
-        """Return infested plants on the route, as believed."""
+    def expected_visible(self) -> float:
+        """Return infested plants on the route that can be seen, as believed."""
         ...
 
     @property
-    def expected_found(self) -> float:
+    def expected_finds(self) -> float:
         """Return infested plants that would be found on the route, as believed."""
         ...
 
@@ -238,7 +238,7 @@ class HandoffPlan:
     @property
     def has_faces(self) -> bool:
         """Return whether both faces of a plant are inspected, each for itself."""
-        return bool((self.grid.twin >= 0).any())
+        return self.grid.has_faces
 
     @property
     def has_blocks(self) -> bool:

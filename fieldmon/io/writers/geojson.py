@@ -54,7 +54,7 @@ def _bound(route: DrivenRoute) -> dict[str, Any]:
     if route.found_bound is None:
         return {}
     return {
-        "finds_expected": round(route.expected_found, 3),
+        "finds_expected": round(route.expected_finds, 3),
         "finds_bound": math.ceil(1000.0 * route.found_bound) / 1000.0,
         "bound": route.bound_sentence,
     }

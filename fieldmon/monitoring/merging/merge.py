@@ -160,7 +160,7 @@ class _Standing(NamedTuple):
 
     @classmethod
     def of(cls, db: sqlite3.Connection, stay: int) -> _Standing:
-        """Return it; inspections that `stay` are left out."""
+        """Return what holds in a season; inspections that `stay` are left out."""
         counting = merged_inspections.counting(db, stay)
         return cls(counting, _keys(db), repeated_recordings.notes(db, stay))
 

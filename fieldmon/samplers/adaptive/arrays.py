@@ -73,6 +73,35 @@ class BeliefArrays(NamedTuple):
     raised: Raised
 
 
+class ToursBefore(NamedTuple):
+    """What `RowTours` held at the price before this one: a price often goes up and down again.
+
+    Parameters
+    ----------
+    price
+        ``(1,)`` that price; NaN if nothing is kept.
+    net, seconds, last, stale
+        As in `RowTours`.
+    plans
+        ``(2,)`` the numbers of this price and of the one before, counted from 0.
+    """
+
+    price: Float
+    net: Float
+    seconds: Float
+    last: Int
+    stale: NDArray[np.bool_]
+    plans: Int
+
+    @classmethod
+    def none(cls, n_rows: int) -> ToursBefore:
+        """Return room."""
+        ways = n_rows, N_WAYS
+        stale = np.ones(n_rows, np.bool_)
+        tours = np.zeros(ways), np.zeros(ways), np.full(ways, NOWHERE), stale
+        return cls(np.full(1, np.nan), *tours, np.zeros(2, np.int64))
+
+
 class RowTours(NamedTuple):
     """What each of the four ways of driving each of r rows comes to, at a price of a second.
 
@@ -98,6 +127,10 @@ class RowTours(NamedTuple):
     after_clean
         ``(n, k)`` the same once the plant before it in the row was inspected, for each of k times,
         and seemed clean; -1 until somebody asks.
+    pays_of
+        ``(r,)`` the number of the price at which `pays` of each row were worked out.
+    before
+        What is kept of the price before.
     """
 
     net: Float
@@ -111,6 +144,8 @@ class RowTours(NamedTuple):
     most: Float
     value: Float
     after_clean: Float
+    pays_of: Int
+    before: ToursBefore
 
     @classmethod
     def of(cls, n: int, n_rows: int, n_times: int) -> RowTours:
@@ -122,7 +157,8 @@ class RowTours(NamedTuple):
         room = np.empty(n), np.empty(n)
         values = np.empty(n), np.empty((n, n_times))
         tours = np.zeros(ways), np.zeros(ways), last
-        return cls(*tours, stale, n_pays, pays, *room, most, *values)
+        before = np.zeros(n_rows, np.int64), ToursBefore.none(n_rows)
+        return cls(*tours, stale, n_pays, pays, *room, most, *values, *before)
 
 
 class BestTours(NamedTuple):

@@ -21,7 +21,13 @@ from fieldmon.infestation.tracing import rescale_traced, trace
 from fieldmon.plot.travel import travel_s
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, NEARLY, NOWHERE
 from fieldmon.samplers.adaptive.replan import first_price, plan_on, row_of
-from fieldmon.samplers.adaptive.rows import best_time, mark_changed, most_in, trusted_value
+from fieldmon.samplers.adaptive.rows import (
+    best_time,
+    mark_all_changed,
+    mark_changed,
+    most_in,
+    trusted_value,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -229,7 +235,7 @@ def _learn_clustering(linked: Linked, belief: BeliefArrays, rows: RowTours) -> N
     ratios = ratio * lean / belief.scale[2], ratio * (1.0 - lean) / (1.0 - belief.scale[2])
     scale_clustering((belief.chance, belief.pair_chance), linked, ratios)
     belief.scale[0], belief.scale[2] = scale, lean
-    rows.stale[:], rows.most[:] = True, -1.0
+    mark_all_changed(rows)
 
 
 @inner_loop
@@ -246,7 +252,7 @@ def _learn_level(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     times_odds_of_all(believed, linked, ratio, room)
     belief.level[2] = level
     belief.scale[4] = belief.chance.mean()
-    rows.stale[:], rows.most[:] = True, -1.0
+    mark_all_changed(rows)
 
 
 @inner_loop
@@ -258,7 +264,7 @@ def _learn_trust(belief: BeliefArrays, rows: RowTours) -> None:
     if abs(trust - belief.scale[3]) < _NOTABLE_TRUST:
         return
     belief.scale[3] = trust
-    rows.stale[:], rows.most[:] = True, -1.0
+    mark_all_changed(rows)
 
 
 @inlined
@@ -315,7 +321,7 @@ def _learn_jumps(linked: Linked, belief: BeliefArrays, rows: RowTours) -> None:
     believed, ratio = (belief.chance, belief.pair_chance), jumps / belief.scale[1]
     rescale_traced(believed, linked, belief.traces.from_afar, ratio)
     belief.scale[1] = jumps
-    rows.stale[:], rows.most[:] = True, -1.0
+    mark_all_changed(rows)
 
 
 @inner_loop

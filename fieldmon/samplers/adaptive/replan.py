@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.compute.jit import inner_loop
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, NOWHERE, Stretch
-from fieldmon.samplers.adaptive.rows import most_in, value_row
+from fieldmon.samplers.adaptive.rows import most_in, turn_price, value_row
 from fieldmon.samplers.adaptive.tours import best_from, extend_tours
 
 if TYPE_CHECKING:
@@ -63,12 +63,13 @@ def plan_on(
     stretch = _replan(travel, clock, work, (at, price))
     for _ in range(_TRIES):
         if stretch.seconds > left_s and trend >= 0:
-            trend, price = 1, price * _STEP
+            trend, to = 1, price * _STEP
         elif stretch.seconds < _FULL * left_s and trend <= 0:
-            trend, price = -1, price / _STEP
+            trend, to = -1, price / _STEP
         else:
             break
-        rows.stale[:] = True
+        turn_price(rows, price, to)
+        price = to
         stretch = _replan(travel, clock, work, (at, price))
     return price, stretch
 
@@ -102,9 +103,10 @@ def _replan(
     at, price = state
     own = row_of(travel, at)
     for row in range(rows.stale.size):
-        if rows.stale[row]:
+        # only of its own row the robot asks which plants pay
+        if rows.stale[row] or (row == own and rows.pays_of[row] != rows.before.plans[0]):
             value_row(travel, clock, (belief, rows, times), (row, price))
-            rows.stale[row] = False
+            rows.stale[row], rows.pays_of[row] = False, rows.before.plans[0]
     for down in range(2):
         extend_tours(clock, rows, tours, (down, own, price))
     if at < 0:

@@ -114,8 +114,37 @@ def most_in(belief: BeliefArrays, rows: RowTours, times: InspectionTimes, block:
 @inlined
 def mark_changed(travel: TravelTable, rows: RowTours, i: int) -> None:
     """Mark a plant, and the one after it, as ones of which something else is believed."""
-    rows.stale[travel.row[i]] = True
+    rows.stale[travel.row[i]] = rows.before.stale[travel.row[i]] = True
     rows.most[i // BLOCK] = rows.most[(i + 1) // BLOCK] = -1.0
+
+
+@inlined
+def mark_all_changed(rows: RowTours) -> None:
+    """Mark all plants as ones of which something else is believed."""
+    rows.stale[:] = rows.before.stale[:] = True
+    rows.most[:] = -1.0
+
+
+@inner_loop
+def turn_price(rows: RowTours, price: float, to: float) -> None:
+    """Leave what rows come to at a price, and take up what they came to at another, if it is kept.
+
+    Nothing is kept of the first price of a day: rows were valued at prices beside it.
+    """
+    before, plans = rows.before, rows.before.plans
+    kept = before.price[0] == to
+    before.price[0] = price if plans[0] > 0 else np.nan
+    number = plans[1] if kept else max(plans[0], plans[1]) + 1
+    plans[1], plans[0] = plans[0], number
+    for row in range(rows.stale.size):
+        for way in range(N_WAYS):
+            ways = row, way
+            net, seconds, last = before.net[ways], before.seconds[ways], before.last[ways]
+            before.net[ways], rows.net[ways] = rows.net[ways], net
+            before.seconds[ways], rows.seconds[ways] = rows.seconds[ways], seconds
+            before.last[ways], rows.last[ways] = rows.last[ways], last
+        stale = before.stale[row] or not kept
+        before.stale[row], rows.stale[row] = rows.stale[row], stale
 
 
 @inlined

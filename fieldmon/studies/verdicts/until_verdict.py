@@ -13,7 +13,7 @@ from fieldmon.compute.digest import digest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.decisions.map_plan import MapPlan
 from fieldmon.decisions.map_verdict import verdict_of
-from fieldmon.decisions.sequential import IwaoPlan, Verdict, WaldPlan
+from fieldmon.decisions.sequential import INSPECT_MORE, LEAVE, TREAT, IwaoPlan, Verdict, WaldPlan
 from fieldmon.decisions.stopping import decided
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
@@ -181,7 +181,7 @@ def answers(question: Question, seed: int) -> list[VerdictOutcome]:
     for name, contender in _ANSWERS.items():
         verdict, looks = contender(plot, streams.of(f"looks of {name}"))
         share = float(plot.infested.mean()) / plot.level
-        right = verdict == ("treat" if share >= 1.0 else "do not treat")
+        right = verdict == (TREAT if share >= 1.0 else LEAVE)
         made.append(
             VerdictOutcome(question.name, seed, name, float(looks), verdict, float(right), share)
         )
@@ -292,9 +292,9 @@ def _map_verdicts(plot: _Plot, rng: np.random.Generator) -> tuple[Verdict, int]:
         belief = belief.learn(plants[now], found[now], learning)
         left[plants[now][found[now]]] = True
         said = verdict_of(grid, belief, plot.level, 1 - WRONG, left)
-        if said.verdict != "look on":
+        if said.verdict != INSPECT_MORE:
             return said.verdict, min(first + _LOOKS_A_CHECK, len(plants))
-    return "look on", len(plants)
+    return INSPECT_MORE, len(plants)
 
 
 _ANSWERS: dict[str, Callable[[_Plot, np.random.Generator], tuple[Verdict, int]]] = {
@@ -352,11 +352,12 @@ def summaries(outcomes: Sequence[VerdictOutcome]) -> list[VerdictSummary]:
             mine = [one for one in outcomes if (one.question, one.contender) == (question, name)]
             apart = [one.right for one in mine if abs(np.log(one.share)) >= np.log(APART)]
             looks = float(np.mean([one.looks for one in mine]))
+            none = [one.verdict not in {TREAT, LEAVE} for one in mine]
             made.append(
                 VerdictSummary(
                     question, name, looks, float(np.mean([one.right for one in mine])),
                     float(np.mean(apart)) if apart else float("nan"),
-                    float(np.mean([one.verdict == "look on" for one in mine])), looks / whole,
+                    float(np.mean(none)), looks / whole,
                 )
             )  # fmt: skip
     return made

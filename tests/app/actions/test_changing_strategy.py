@@ -11,7 +11,7 @@ from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot, scout
-from tests.app.driving import PAGES, go, metric, opened, press, tap, texts_of, until
+from tests.app.driving import go, metric, opened, press, tap, texts_of, until
 
 BEGINS = date(2026, 11, 16)
 
@@ -109,12 +109,6 @@ def test_changes_of_settings_are_taken_back_one_by_one(season_app, season):
     press(season_app, "Take back: hours 7")
     assert season().settings == settings
     assert not [one for one in season_app.button if one.key == "undo_change"]
-
-
-def test_who_inspects_is_folded_away_where_no_day_is_planned(season_app):
-    for part in PAGES:
-        shown = [box for box in go(season_app, part).expander if box.label == texts.WHO]
-        assert [box.proto.expanded for box in shown] == [part == "today"] * len(shown), part
 
 
 def test_a_strategy_in_use_is_that_of_the_season_and_says_so(season_app, season):

@@ -1,7 +1,9 @@
 """What can be done on the page Decide: leaves, and the files."""
 
 import re
+from contextlib import nullcontext
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from fieldmon.decisions.thresholds import published
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.io.writers.treatment_map import MAP_FORMATS
+from tests.app.chosen import a_plot, chosen
 from tests.app.driving import boxed, go, press, texts_of
 
 
@@ -90,6 +93,18 @@ def test_zones_noted_as_treated_are_those_on_the_page_whatever_another_session_f
     press(season_app, texts.TREAT_BUTTON)
     (one,) = season().treatments()
     assert one.place.plants.tolist() == seen.tolist()
+
+
+def test_of_plants_with_two_faces_each_is_counted_once(monkeypatch):
+    plot, said = a_plot(faces=2), []
+    zones = type("Zones", (), {"m2": 100.0, "__len__": lambda _: 1})()
+    advice = SimpleNamespace(grid=plot.grid, zones=zones, sprayed=np.ones(len(plot.grid), bool))
+    monkeypatch.setattr(acting.treating, "show", lambda *_: None)
+    monkeypatch.setattr(acting, "st", SimpleNamespace(
+        expander=lambda _: nullcontext(), caption=said.append,
+    ))  # fmt: skip
+    acting.treated(chosen(plot), advice)
+    assert f": {len(plot.grid) // 2:,} plants" in said[0]
 
 
 def test_cells_are_told_of_and_by_boxes_changed_since_the_page_was_drawn_nothing_is_noted(

@@ -6,6 +6,7 @@ import json
 import zipfile
 from contextlib import nullcontext
 from dataclasses import replace
+from datetime import datetime, timedelta
 from types import SimpleNamespace
 
 import numpy as np
@@ -34,6 +35,9 @@ def test_all_plots_are_planned_by_one_button_and_shown_on_the_map(app):
     assert not app.exception
     (table,) = (frame.value for frame in app.dataframe)
     assert {"robot 1", "scout 1"} == set(table[texts.PLAN_ALL_COLUMNS["who"]].dropna())
+    when = table[texts.PLAN_ALL_COLUMNS["when"]].dropna().tolist()
+    assert [one[:5] for one in when] == sorted(one[:5] for one in when)
+    assert texts.PLAN_ALL_WHEN.format(day="Mon 16 Nov", start="06:00") in texts_of(app)
     app.number_input(key="crew_scouts").set_value(0).run()
     app.number_input(key="crew_robots").set_value(0).run()
     assert not app.exception
@@ -88,6 +92,17 @@ def test_plots_left_out_are_named_by_reason_and_very_many_in_a_fold(said):
         assert told[-1] == "Left out (not due): \u2068Hill\u2069."
         assert len(told) == (2 if n == 2 else 3)
         said.clear()
+
+
+def test_where_the_day_is_under_way_it_is_said_that_times_are_those_of_a_whole_one(
+    session, monkeypatch  # noqa: ARG001 - looked at within it
+):  # fmt: skip
+    begins = datetime(2026, 11, 16, 6)
+    turn = SimpleNamespace(begins=begins, route=SimpleNamespace(aisles=SimpleNamespace(grid=None)))
+    for later, said in ((0, []), (200, [texts.PLAN_ALL_LATE.format(now="09:20")])):
+        clock = SimpleNamespace(now=lambda later=later: begins + timedelta(minutes=later))
+        monkeypatch.setattr(sharing_plots, "grid_clock", lambda _, clock=clock: clock)
+        assert sharing_plots._times([turn])[1:] == said
 
 
 def test_where_no_plot_is_due_none_is_planned_until_those_seen_are_asked_for(app, monkeypatch):

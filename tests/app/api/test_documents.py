@@ -13,6 +13,7 @@ import pytest
 from app.api import description
 from app.api.documents import day_document, plot_document, rest_document
 from app.show import who_is_out
+from app.show.maps.plant_layers import drawn_at
 from app.show.next_stop import next_stop
 from app.words import texts
 from app.words.language import in_words
@@ -58,11 +59,15 @@ def test_plants_are_where_they_are_with_their_rows(served):
     assert "face" not in plot["plants"]
 
 
-def test_of_plants_with_two_faces_it_is_told_which_each_is(tmp_path):
+def test_of_plants_with_two_faces_it_is_told_which_each_is_and_where_the_app_draws_it(tmp_path):
     season = a_season(tmp_path / "s.gpkg", plot=a_plot(faces=2))
     plot, grid = json.loads(plot_document(season)[1]), season.plot.grid
     jsonschema.validate(plot, description.PLOT)
-    assert plot["plants"]["face"] == [1 if k < grid.twin[k] else 2 for k in range(len(grid))]
+    told = plot["plants"]
+    assert told["face"] == [1 if k < grid.twin[k] else 2 for k in range(len(grid))]
+    drawn = np.stack([told["drawn_lon"], told["drawn_lat"]], axis=1)
+    assert np.abs(drawn - drawn_at(grid)).max() < 1e-7
+    assert len(np.unique(drawn, axis=0)) == len(grid)
 
 
 def _tells_where_the_aisles_are(season, plot):

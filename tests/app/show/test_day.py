@@ -53,6 +53,14 @@ def on(season, number):
     return in_season(season, BEGINS + timedelta(days=number))
 
 
+def test_where_both_faces_are_inspected_a_stop_is_a_face():
+    choices = chosen(a_plot(faces=2))
+    plan = choices.plan()
+    assert f"Inspect {len(plan.route)} faces in rows " in apart(day.headline(choices, plan))
+    assert day.plan_in_short(plan).startswith(f"{len(plan.route)} faces")
+    assert day.in_short(a_plot().grid, 7, 1.0).startswith("7 plants")
+
+
 def test_the_headline_says_the_year_of_a_day_that_is_far_off():
     for said, ends in (("2026-11-18", "Wed 18 Nov"), ("2027-11-16", "Tue 16 Nov 2027")):
         choices = chosen(a_plot(), day=said, today=date(2026, 11, 16))

@@ -16,7 +16,7 @@ PLOTS = [PlotState("b", "b", OUTLINE, days_since=4, expected=2.5), PlotState("a"
 
 
 class Route(list):
-    expected_found = 1.25
+    expected_finds = 1.25
 
     def __len__(self):
         return 3

@@ -9,7 +9,7 @@ from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.plot.robot import Robot
 from tests.app.chosen import DAY, a_plot, chosen, in_season, records_at
-from tests.app.driving import PAGES, go, layer, map_of, plants
+from tests.app.driving import go, layer, map_of, plants
 
 
 def test_the_map_says_what_is_on_it(app):
@@ -51,12 +51,3 @@ def test_the_view_belongs_to_the_plot_and_holds_all_of_it(tmp_path):
     west, south, east, north = first["bounds"]
     lonlat = plot.grid.lonlat()
     assert ((lonlat > [west, south]) & (lonlat < [east, north])).all()
-
-
-@pytest.mark.parametrize("page", [page for page in PAGES if page != "plots"])
-def test_the_map_shows_the_same_plot_on_every_page_with_its_plan_below_all_else(app, page):
-    place = map_of(app)["place"]
-    go(app, page)
-    assert map_of(app)["place"] == place
-    ids = [one["id"] for one in map_of(app)["layers"]]
-    assert ids[:4] == ["headland", "rows-ground", "aisles", "boundary"]

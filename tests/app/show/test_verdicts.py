@@ -44,6 +44,19 @@ def test_where_the_interval_holds_nothing_nobody_is_called_better():
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize("n", [1, 3])
+def test_of_strategies_that_come_to_the_same_none_is_called_best(n):
+    same = [outcome(BEST, [25.0] * n, found=[50.0] * n),
+            outcome(SECOND, [25.0] * n, [0.0] * n, found=[50.0] * n)]  # fmt: skip
+    said = apart(verdicts.sentence(same))
+    assert said == (
+        "**Dynamic · 12 h · 40 s, Naive · 12 h · 40 s** are even: 25 infested plant-days each."
+    )
+    worse = outcome(Strategy("bouncy", 12.0, 40.0), [30.0] * n, [5.0] * n, found=[50.0] * n)
+    assert verdicts.table([*same, worse])["verdict"].tolist()[:2] == ["even", "even"]
+    assert "even" not in verdicts.table([same[0], worse])["verdict"].tolist()
+
+
 def test_a_verdict_stands_beside_its_strategy_where_a_narrow_panel_shows_it():
     assert list(verdicts.table(ranked([1.0, 2.0, 3.0])))[:2] == ["strategy", "verdict"]
 

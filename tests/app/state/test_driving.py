@@ -39,9 +39,10 @@ def test_a_day_that_is_stopped_is_not_kept_and_can_begin_again(planned):
     run.stop()
     run._work()
     assert run.day is None
-    assert (run.problem, run.share) == (None, 0.0)
+    assert (run.problem, run.share, run.thrown_away) == (None, 0.0, True)
     run.start()
     run.wait(180)
+    assert not run.thrown_away
     assert any(one.found for one in run.day.trace.stops)
 
 

@@ -2,7 +2,7 @@
 
 import shutil
 from dataclasses import replace
-from datetime import time, timedelta
+from datetime import UTC, date, datetime, time, timedelta
 from itertools import pairwise
 
 import numpy as np
@@ -13,8 +13,9 @@ from app.state import estate, shared_plots
 from app.state.estate import PlotState
 from app.state.shared_plots import EstateCrew
 from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.estate_day import EstatePlot, share_estate
+from fieldmon.monitoring.estate_day import EstatePlot, not_begun, share_estate
 from fieldmon.planning.plan import plan_in
+from fieldmon.plot import local_clock as clocks
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.samplers import sampler
@@ -28,12 +29,18 @@ def plot(name, days):
 
 def test_due_is_what_was_not_seen_for_three_days_or_ever():
     plots = [plot("a", 0), plot("b", 2), plot("c", 3), plot("d", None)]
-    assert [one.name for one in shared_plots.due(plots)] == ["c", "d"]
+    due = shared_plots.due(plots)
+    assert [one.name for one in due] == ["c", "d"]
     assert shared_plots.due(plots[:2]) == []
-    left_out = [(one.plot, one.why) for one in shared_plots.not_due(plots)]
+    left_out = [(one.plot, one.why) for one in shared_plots.not_due(plots, due)]
     assert left_out == [
         ("a", "inspected today, not due"), ("b", "inspected 2 days ago, not due"),
     ]  # fmt: skip
+    waits = replace(plot("e", None), waits=not_begun(date(2026, 12, 1), date(2026, 11, 30)))
+    assert shared_plots.due([waits]) == shared_plots.due([waits], every=True) == []
+    wanted = shared_plots.due([*plots, waits], every=True)
+    (left,) = shared_plots.not_due([*plots, waits], wanted)
+    assert (left.plot, left.why) == ("e", "begins on Tue 1 Dec")
 
 
 def test_a_crew_has_names_and_hours():
@@ -71,7 +78,7 @@ def test_the_sample_s_plots_are_shared_by_two():
 
 @pytest.mark.usefixtures("session")
 def test_a_season_is_planned_by_what_it_knows_and_one_that_is_gone_is_said(
-    begun_file, seasons_folder, season
+    begun_file, seasons_folder, season, monkeypatch
 ):
     shutil.copy(begun_file, seasons_folder)
     project, settings = season(), season().settings
@@ -93,6 +100,12 @@ def test_a_season_is_planned_by_what_it_knows_and_one_that_is_gone_is_said(
     assert len(by_itself) > 10
     assert len(made.problems) == 1
     assert made.problems[0].plot == "gone"
+    # on the day before its first it has no part in the round
+    before = datetime.combine(settings.begins, time(), UTC) - timedelta(hours=12)
+    monkeypatch.setattr(clocks, "utc_now", lambda: before)
+    (own,), _ = estate.plots()
+    assert shared_plots.due([own]) == []
+    assert [one.why for one in shared_plots.not_due([own], [])] == ["begins on Mon 16 Nov"]
 
 
 @pytest.mark.usefixtures("session")

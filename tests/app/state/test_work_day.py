@@ -8,10 +8,9 @@ import pytest
 
 from app.state import work_day
 from app.state.work_day import Calendar
-from app.words import texts
 from fieldmon.monitoring import Season
 from fieldmon.plot import local_clock
-from tests.app.driving import PAGES, go, heading, opened, press, tap, texts_of
+from tests.app.driving import go, heading, opened, tap, texts_of
 
 TODAY = date(2026, 11, 16)
 
@@ -47,24 +46,6 @@ def test_a_season_opens_today_not_on_its_last_day(begun_file, seasons_folder):
     done = Season(seasons_folder / "Gate 2026.gpkg").history.inspections
     assert done.date.tolist() == [date(2026, 11, 22)]
     assert done.second.tolist() == [7 * 3600.0]
-
-
-def test_another_day_is_marked_on_every_page_and_one_click_from_today(season_app):
-    season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 20)).run()
-    for page in PAGES:
-        if page == "plots":
-            continue  # each plot has a today of its own there
-        go(season_app, page)
-        assert not season_app.exception
-        assert "**Fri 20 Nov**" in season_app.warning[0].value, page
-        assert "not today (Mon 16 Nov)" in season_app.warning[0].value
-        records = page in {"today", "scout", "record", "decide"}
-        assert ("is recorded for" in season_app.warning[0].value) == records, page
-    assert "2026-11-20" in season_app.query_params["day"]
-    press(season_app, texts.BACK_TO_TODAY)
-    assert not season_app.warning
-    assert season_app.date_input(key="day Gate 2026").value == TODAY
-    assert "day" not in season_app.query_params
 
 
 def test_the_address_leads_back_to_a_day_chosen_on_purpose(begun_file, seasons_folder):

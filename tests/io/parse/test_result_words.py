@@ -11,6 +11,7 @@ from fieldmon.io.parse.result_words import (
     NOT_INSPECTED,
     ResultWords,
     gone_note,
+    is_gone,
     meaning,
     says_gone,
 )
@@ -61,6 +62,13 @@ def test_a_note_says_that_a_plant_is_gone_in_the_words_that_people_use(note, is_
 )
 def test_a_word_is_known_in_any_case(word, says):
     assert meaning(word) == says
+
+
+def test_what_could_not_be_inspected_and_what_maps_of_ours_show_are_known():
+    skipped = "übersprungen sautée saltato pulado pominięto atlandı пропущено דולגה 跳过"
+    assert not {*skipped.split(), "could not inspect", "plant is gone"} - NOT_INSPECTED
+    assert is_gone("Plant is gone")
+    assert (meaning("found infested"), meaning("looked clean")) == (PRESENT, ABSENT)
 
 
 def test_words_of_ones_own_go_before_all_others():

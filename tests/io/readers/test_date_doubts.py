@@ -59,8 +59,7 @@ def test_a_day_to_come_amid_days_that_have_come_is_left_out_unless_it_is_taken()
     (said,) = (one for one in read.messages if one.feature == "record 2")
     assert said.severity == Severity.DOUBTFUL
     assert said.sentence == (
-        f"It is doubtful: its day, {days[1]}, has not come, but others of the file have; correct "
-        "it there."
+        f"It is doubtful: its day, {days[1]}, has not come, but others of the file have."
     )
     assert said.remedy.setting == "take_doubtful=yes"
     taken = read_inspections(file, rectangle(2, 5), InspectionOptions(take_doubtful=True))

@@ -47,6 +47,18 @@ def test_the_number_in_the_row_names_plants_before_one_that_counts_over_the_whol
     assert alike.value.plant.tolist() == ["0", "1", "2"]
 
 
+@pytest.mark.parametrize("faces", [["1", "2", "2", "1"], ["a", "B", "b", "A"]])
+def test_both_faces_of_plants_are_no_doubles_and_how_to_inspect_both_is_said(faces):
+    shapes = [Point(5.0 + k * 1e-5, 45.0) for k in (0, 0, 1, 1)]
+    imported = plants_of(layer_of(shapes, vine=[7, 7, 8, 8], face=faces), ANY)
+    assert imported.value.plant.tolist() == ["7", "8"]
+    assert "Column 'face' names both faces of 2 plants" in sentences(imported)
+    assert "Inspect both faces" in sentences(imported)
+    for others in (["1", "1", "1", "2"], ["north", "south", "north", "south"]):
+        with pytest.raises(ChoiceNeeded, match="No two plants may stand in one place"):
+            plants_of(layer_of(shapes, vine=[7, 7, 8, 8], face=others), ANY)
+
+
 def test_what_is_not_called_anything_has_no_label():
     plants = plants_of(table(lat=[45.0, 45.1], lon=[5.0, 5.1]), ANY).value
     assert plants.row.tolist() == plants.plant.tolist() == ["", ""]

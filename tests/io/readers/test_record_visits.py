@@ -44,6 +44,9 @@ def test_a_plant_of_which_a_robot_tells_often_in_one_visit_counts_once(
         ({"time": ["08:00", ""]}, 1, "one visit, which counts once"),
         ({"accuracy": [1.5, 1.5]}, 2, ""),
         ({"found": ["yes", "no"]}, 2, "1 record gives another count"),
+        ({"found": ["yes", "no"], "face": ["a", "b"]}, 2, "Column 'face' names faces of plants"),
+        ({"face": [1, 2]}, 2, "each counts for the whole plant"),
+        ({"face": ["a", ""]}, 2, "only in 'face': each counts"),
     ],
 )
 def test_what_a_file_says_of_something_else_or_of_no_known_plant_is_no_visit_again(

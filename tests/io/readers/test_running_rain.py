@@ -127,6 +127,17 @@ def test_a_name_that_says_counted_up_of_what_falls_all_day_is_said():
     assert read(np.zeros(48), "Daily Rain")[1] == ""
 
 
+def test_what_rises_each_hour_and_falls_at_midnight_only_is_doubted():
+    values = np.tile(np.arange(24) / 2, 3)
+    rain, said = read(values)
+    assert rain.tolist() == values.tolist()
+    assert "Rain (mm) rises all day and falls at one time of day only" in said
+    assert "rain_is=running" in said
+    assert read(values, told=RUNNING)[0].sum() == 3 * 11.5
+    assert read(values[:24])[1] == "", "one day tells nothing"
+    assert read(np.tile([0, 1, 0, 2, 3, 0, 0, 0], 9))[1] == "", "it falls within days"
+
+
 def test_whoever_says_what_it_is_is_believed():
     assert read(BY_DAY, told=EACH) == (pytest.approx(BY_DAY), "")
     rain, said = read([0, 2, 1, 3], told=RUNNING)

@@ -177,6 +177,18 @@ def test_days_that_could_be_months_are_asked_for(read):
     assert asked.value.option == "date_order"
 
 
+@pytest.mark.parametrize("clock", ["", " 00:00"])
+def test_days_with_points_are_read_day_first_and_that_is_said(read, clock):
+    june = read(f"date,temp (C)\n01.06.2026{clock},20\n02.06.2026{clock},21")
+    assert june.value.at[0].astype("datetime64[M]") >= np.datetime64("2026-05")
+    assert june.value.at[-1] - june.value.at[0] < np.timedelta64(3, "D")
+    said = " ".join(map(str, june.messages))
+    assert "Dates could be day or month first; read day first." in said
+    assert "date_order=mdy" in said
+    shown = read("date,temp (C)\n05.12.2026,20\n05.13.2026,21")
+    assert "could be day or month first" not in " ".join(map(str, shown.messages))
+
+
 def test_times_that_name_a_zone_are_taken_at_their_word(read):
     weather = read("time,temp (C)\n2026-11-18T00:00Z,1\n2026-11-18T01:00Z,2").value
     assert weather.at[0] == np.datetime64("2026-11-18T00:00:00")

@@ -103,7 +103,7 @@ def among_trees():
 def of_team():
     """Return the day of one of a team, with a time zone and what no other route can exceed."""
     plan = day(rectangle(6, 9), start=START.replace(tzinfo=ZoneInfo("Asia/Kathmandu")))
-    route = replace(plan.route, found_bound=plan.route.expected_found + 0.123456)
+    route = replace(plan.route, found_bound=plan.route.expected_finds + 0.123456)
     return HandoffPlan(route, replace(plan.notes, who="Дана & =1"))
 
 

@@ -54,7 +54,7 @@ def wanted(plan):
         "lon": route.stops_lonlat()[:, 0].round(8).tolist(),
         "lat": route.stops_lonlat()[:, 1].round(8).tolist(),
     }
-    if (grid.twin < 0).all() and grid.n_blocks == 1:  # else several rows share a line
+    if not grid.has_faces and grid.n_blocks == 1:  # else several rows share a line
         columns["number"] = (route.plant - grid.row_start[row] + 1).tolist()
     else:
         columns["face"] = np.where(route.plant < grid.twin[route.plant], 1, 2).tolist()
@@ -204,7 +204,7 @@ def said_of(plan):
         del told["row"]
     if grid.block is not None:
         told["block"] = (grid.block[grid.row[route.plant]] + 1).tolist()
-    if (grid.twin >= 0).any():
+    if grid.has_faces:
         told["face"] = np.where(route.plant < grid.twin[route.plant], 1, 2).tolist()
     return told | {name: [""] * len(route) for name in ("found", "count", "notes")} | {
         "who": [notes.who or ""] * len(route)

@@ -87,7 +87,7 @@ def test_every_format_is_read_back_by_another_program(tmp_path, name, make):
 @pytest.mark.parametrize("name", ["geojson", "gpkg", "shapefile", "kml", "gpx", "sheet"])
 def test_a_file_with_room_for_it_says_what_no_other_route_can_expect(name):
     plan = usual()
-    known = replace(plan, route=replace(plan.route, found_bound=2.0 * plan.route.expected_found))
+    known = replace(plan, route=replace(plan.route, found_bound=2.0 * plan.route.expected_finds))
     made = FORMATS[name].make(known)
     whole = b"".join(made.values())
     if name == "shapefile":

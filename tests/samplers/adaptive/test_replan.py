@@ -8,6 +8,7 @@ from fieldmon.plot.layout import rectangle
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers.adaptive import replan
 from fieldmon.samplers.adaptive.replan import first_price, plan_on, row_of
+from fieldmon.samplers.adaptive.rows import mark_changed
 from tests.samplers.adaptive.working import scene_with, times_of, workspace
 
 GRID = rectangle(8, 12)
@@ -36,6 +37,12 @@ def valued_along(travel, clock, work, state):
     at, end, price = state
     plan_on(travel, clock, work, (at, price, clock.seconds_left))
     _along(travel, clock, work[1], work[4], (at, end, price))
+
+
+@loop
+def believe(travel, work, plant, chance):
+    work[0].chance[plant] = chance
+    mark_changed(travel, work[1], plant)
 
 
 @loop
@@ -100,6 +107,28 @@ def test_the_price_follows_the_hours_left_in_steps_of_a_tenth(seed, at):
         else:
             assert steps < 0
         assert stretch.seconds == pytest.approx(seconds_at(scene, price, at))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_kept_of_the_price_before_is_what_would_be_worked_out_anew(seed):
+    scene, rng = scene_of(seed, 1.0), np.random.default_rng(seed)
+    travel, clock = scene.aisles.travel, scene.clock
+    kept, anew = workspace(scene, ONE_TIME), workspace(scene, ONE_TIME)
+    price = price_of(travel, clock, kept, GATE)
+    prices = [price]
+    for _ in range(60):
+        plant, chance = rng.integers(len(GRID)), rng.uniform(0.0, 0.3)
+        for work in (kept, anew):
+            believe(travel, work, plant, chance)
+        anew[1].stale[:] = anew[1].before.stale[:] = True
+        anew[1].before.price[:] = np.nan
+        state = int(rng.integers(GATE, len(GRID))), price, rng.choice([1200.0, 2400.0])
+        price, stretch = planned_on(travel, clock, kept, state)
+        assert (price, stretch) == planned_on(travel, clock, anew, state)
+        assert (kept[1].net == anew[1].net).all()
+        prices.append(price)
+    turns = np.sign(np.diff(prices))
+    assert (np.diff(turns[turns != 0]) != 0).sum() > 10, "the price went up and down"
 
 
 @pytest.mark.parametrize("at", range(0, len(GRID), 7))

@@ -45,7 +45,7 @@ def test_a_find_changes_nothing_before_tomorrow():
 
 
 def test_all_three_meet_the_same_insects_and_are_told_apart():
-    made = list(seasons(Scenario("A", Spread(0.3, "one")), range(2), hours=1.0))
+    made = list(seasons(Scenario("A", Spread(0.3, "one")), range(2), hours=0.5))
     assert [one.who for one in made] == [AS_IT_IS, MORNING, BEST] * 2
     assert [one.seed for one in made] == [0, 0, 0, 1, 1, 1]
     sentences = season_sentences(made)

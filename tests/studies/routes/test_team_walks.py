@@ -89,8 +89,8 @@ def test_two_in_one_row_at_one_step_are_seen_and_one_after_the_other_are_not():
 
 
 def test_on_a_published_family_a_team_is_near_its_bound():
-    reward = zipf((30, 60), 0.8, 1).reward
-    team = team_walks(reward, int(0.1 * full_budget(30, 60)), 3)
+    reward = zipf((20, 40), 0.8, 1).reward
+    team = team_walks(reward, int(0.1 * full_budget(20, 40)), 3)
     assert team.reward >= 0.97 * team.bound
 
 

@@ -33,10 +33,6 @@ def test_who_knows_the_truth_loses_least(made):
         assert loss[CLAIRVOYANT] == min(loss.values())
 
 
-def test_the_same_scenario_and_seed_give_the_same_outcomes(made):
-    assert outcomes(SMALL, 1) == made[-len(ALWAYS) :]
-
-
 def test_a_study_makes_the_outcomes_of_each_scenario_and_seed_whoever_works(made):
     study = study_of([SMALL], range(2))
     with executor.threads(2) as threads:

@@ -33,7 +33,7 @@ def test_every_contender_answers_and_the_same_seed_gives_the_same(answered):
 
 
 def test_a_verdict_is_right_where_the_truth_is_on_its_side(monkeypatch):
-    verdicts = ("treat", "do not treat", "look on")
+    verdicts = ("treat", "do not treat", "inspect more")
     monkeypatch.setattr(
         until_verdict, "_ANSWERS", {one: lambda *_, one=one: (one, 1) for one in verdicts}
     )

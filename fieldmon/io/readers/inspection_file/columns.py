@@ -16,6 +16,7 @@ from fieldmon.io.parse.columns import find, is_confidence, is_id, is_of_rows, pl
 from fieldmon.io.parse.result_words import tells_infestation
 from fieldmon.io.parse.values import is_missing, presence, told_number
 from fieldmon.plot.plant_columns import PLANT_WORDS
+from fieldmon.plot.plant_names import faces_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -74,6 +75,20 @@ def own_column(role: str, layer: Layer, taken: Iterable[str | None] = ()) -> str
     """Return the column of one of the roles that only inspections have."""
     known = {plain(name): name for name in reversed(list(layer.columns)) if name not in taken}
     return next((known[name] for name in _PLAIN[role] if name in known), None)
+
+
+def faces_named(layer: Layer) -> tuple[str, NDArray[np.int8]] | None:
+    """Return the column of a layer that names faces, and which each is ``(n,)``; None: none does.
+
+    Blank is the first. A column of other words may be of anything.
+    """
+    if (name := own_column("face", layer)) is None:
+        return None
+    cells = [text(v) for v in layer.column(name)]
+    face, blank = faces_called(cells), np.array([is_missing(cell) for cell in cells], np.bool_)
+    if not face.any() or ((face == 0) & ~blank).any():
+        return None
+    return name, np.where(blank, np.int8(1), face)
 
 
 def is_own(role: str, name: str) -> bool:

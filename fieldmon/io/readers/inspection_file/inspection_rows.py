@@ -6,8 +6,9 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
+
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 
@@ -21,6 +22,11 @@ UNSAID = -(2**31)
 def mark_in_table(digest: str) -> str:
     """Return a digest of a season's file as a table has it that a spreadsheet may open."""
     return f"{_IN_TABLE}{digest}"
+
+
+def is_mark(cell: str) -> bool:
+    """Return whether a cell is a digest of a season's file, or one as such a table has it."""
+    return bool(_DIGEST.fullmatch(cell.removeprefix(_IN_TABLE)))
 
 
 def mark_of(cell: str) -> str:
@@ -79,6 +85,8 @@ class InspectionRows:
     mark
         The digest by which a season's file knows it, where it was exported from one; else empty.
         None: all empty.
+    mark_called
+        What stands where a season's file has its digest, as the file has it. None: all empty.
     lacks
         Which columns of a season's inspections the file does not have, between commas.
     """
@@ -108,7 +116,13 @@ class InspectionRows:
     plot_called: NDArray[np.str_] | None = None
     plot_column: NDArray[np.str_] | None = None
     mark: NDArray[np.str_] | None = None
+    mark_called: NDArray[np.str_] | None = None
     lacks: NDArray[np.str_] | None = None
+
+    @property
+    def exported(self) -> NDArray[np.bool_]:
+        """Which of them a season has exported, ``(m,)``: those that have a digest."""
+        return np.zeros(len(self), np.bool_) if self.mark is None else self.mark != ""
 
     def __len__(self) -> int:
         """Return the number of records."""

@@ -17,7 +17,7 @@ from fieldmon.io.parse.named_positions import could_be_positions
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
-from fieldmon.plot.plant_names import FACES
+from fieldmon.plot.plant_names import FACES, faces_called
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,8 +46,7 @@ def named_plants(
         unsaid = (line == UNSAID) | (number == UNSAID)
         line[unsaid] = number[unsaid] = UNSAID
     if columns.face is not None:
-        words = [text(v).casefold() for v in layer.column(columns.face)]
-        face[:] = [FACES.get(word, 0) for word in words]
+        face[:] = faces_called(map(text, layer.column(columns.face)))
     if columns.plant is not None:
         plant = _whole(layer, columns.plant, -1)
     labels = columns.plant if columns.marks is None else columns.marks
@@ -66,7 +65,7 @@ def unknown_faces(layer: Layer, columns: InspectionColumns) -> NDArray[np.str_]:
     if columns.face is None:
         return np.full(len(layer), "", dtype=np.str_)
     cells = [text(v) for v in layer.column(columns.face)]
-    known = [cell.casefold() in FACES or is_missing(cell) for cell in cells]
+    known = (faces_called(cells) > 0) | [is_missing(cell) for cell in cells]
     return np.where(known, "", np.array(cells, dtype=np.str_))
 
 

@@ -92,7 +92,7 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
     layer = by_plant(by_day(_without_undone(layer), options), options)
     columns = columns_of(layer, options)
     results = results_in(layer, columns, options)
-    said, notes, mark = results.said, _notes(layer, results), _marks(layer)
+    said, notes, (mark, mark_called) = results.said, _notes(layer, results), _marks(layer)
     erased = (mark != "") & ~(results.said | results.unread)
     messages += _about_erased(erased)
     messages += _about_silence(results, notes, erased, in_names=columns.marks is not None)
@@ -125,6 +125,7 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
         plot_called=texts_in(layer, plot := plot_column(layer, columns, options)),
         plot_column=np.full(len(layer), plot or ""),
         mark=mark,
+        mark_called=mark_called,
         lacks=np.full(len(layer), _lacking(layer, columns)),
     )
     kept = whole.take(said)
@@ -238,13 +239,16 @@ def _each_point(layer: Layer, messages: list[ImportMessage]) -> tuple[Layer, lis
     return replace(layer.take(which), geometry=each), [*messages, said]
 
 
-def _marks(layer: Layer) -> NDArray[np.str_]:
-    """Return by which digest a season's file knows each record ``(n,)``; empty: it is of none."""
+def _marks(layer: Layer) -> tuple[NDArray[np.str_], NDArray[np.str_]]:
+    """Return by which digest a season's file knows each record ``(n,)``, and what stands there.
+
+    Empty: it is of none.
+    """
     cells = texts_in(layer, _of_season("digest", layer))
     marks = np.array([mark_of(cell) for cell in cells.tolist()], np.str_)
     if _of_season("undone", layer) is None:  # only a table of `fieldmon export` says which it is
-        return marks
-    return np.where(marks == "", cells, marks)
+        return marks, cells
+    return np.where(marks == "", cells, marks), cells
 
 
 def _lacking(layer: Layer, columns: InspectionColumns) -> str:

@@ -27,6 +27,7 @@ from fieldmon.io.readers.date_doubts import (
     in_future,
     midnights_left_out,
     mixed_dates,
+    read_day_first,
     unread_days,
 )
 from fieldmon.io.readers.inspection_file.columns import arrivals_in, own_column, texts_in
@@ -143,10 +144,7 @@ def _about_times(
 ) -> list[ImportMessage]:
     messages = broken_times(broken)
     if is_ambiguous:
-        remedy = Remedy("date_order", "mdy", worded("Read month first"))
-        messages.append(
-            guessed(worded("Dates could be day or month first; read day first."), None, remedy)
-        )
+        messages.append(read_day_first())
     if n_utc:
         remedy = Remedy("zone", "+02:00", worded("Name the plot's time zone"))
         said = worded(

@@ -1003,8 +1003,11 @@ def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_
 
 def test_a_day_that_is_typed_counts_by_enter_and_by_tab(record_page):
     page = record_page
+    typed = page.get_by_test_id("stDateInput").first.get_by_role("spinbutton").last
+    typed.click()
+    rest(page)  # what was typed elsewhere before is taken
     for key, day in (("Enter", "20"), ("Tab", "22")):
-        page.get_by_test_id("stDateInput").first.get_by_role("spinbutton").last.click()
+        typed.click()
         page.keyboard.type(day)
         page.keyboard.press(key)
         page.wait_for_url(f"**day=2026-11-{day}*")

@@ -155,7 +155,7 @@ def test_a_correction_names_who_inspected_and_who_corrected(tmp_path):
     said = [(line["result"], line["who"], line["corrected_by"])
             for line in read(inspections_table(season))]  # fmt: skip
     assert said == [("clean", "Ben", ""), ("found", "Ben", "Eve"), ("clean", "Ben", "")]
-    table = next(_inspections(_PlotRecord.of(season, None, Units())))
+    table = next(_inspections(_PlotRecord.of(season, "North", None, Units())))
     assert table.rows[0][3] == "\u2068Ben\u2069, corrected by Eve"
 
 

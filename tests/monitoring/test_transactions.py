@@ -31,10 +31,10 @@ def test_a_process_killed_at_any_moment_leaves_a_whole_season(path):
     rng = random.Random(1)
     season = Season(path)
     season.plan(BEGINS)  # with loops that may have to be compiled first
-    started = time.monotonic()
+    began_s = time.monotonic()
     season.plan(BEGINS)
     season.record(three_results(), "to see how long it takes")
-    pace_s = time.monotonic() - started  # of this machine, now
+    pace_s = time.monotonic() - began_s  # of this machine, now
     before, grew = state(path), 0
     for kill in range(KILLS):
         process = started(day_by_day, path)

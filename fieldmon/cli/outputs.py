@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from fieldmon.compute.wording import counted, estimate
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -105,12 +105,12 @@ def day_in_words(route: Route, infested: float | None = None) -> str:
     A route goes by what can be seen: `infested` is how many of its plants are believed infested,
     those where it hides among them; None: nothing is known to hide.
     """
-    plants, seen = counted(len(route.aisles.grid), "plant"), estimate(route.expected_visible)
+    grid, seen = route.aisles.grid, estimate(route.expected_visible)
     among = f"about {seen} of them infested"
     if infested is not None and (all_of_them := estimate(infested)) != seen:
         among = f"about {all_of_them} of them infested, about {seen} so that it can be seen"
     said = (
-        f"{len(route):,} of {plants} in {route.end_s / 3600:.1f} h, "
+        f"{len(route):,} of {grid.counted(len(grid))} in {route.end_s / 3600:.1f} h, "
         f"{route.drive_m / 1000:.2f} km; {among}, "
         f"about {estimate(route.expected_finds)} of these would be found."
     )

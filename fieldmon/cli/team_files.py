@@ -10,7 +10,7 @@ import typer
 
 from fieldmon.cli.outputs import ROUTE, write_route
 from fieldmon.cli.times import clock
-from fieldmon.compute.wording import counted, estimate
+from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
@@ -125,9 +125,9 @@ def files_of_each(outputs: list[Path] | None, members: tuple[TeamMember, ...]) -
 
 def tell_member(name: str, start: datetime, route: Route) -> None:
     """Say what one of a team is to do."""
-    plants = counted(len(route), "plant")
+    stops = route.aisles.grid.counted(len(route))
     typer.echo(
-        f"{name}: from {start:%H:%M}, {plants} in {route.end_s / 3600:.1f} h, "
+        f"{name}: from {start:%H:%M}, {stops} in {route.end_s / 3600:.1f} h, "
         f"{route.drive_m / 1000:.2f} km; about {estimate(route.expected_finds)} finds."
     )
     for said in route.ways_said:

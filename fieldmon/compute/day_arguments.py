@@ -136,12 +136,12 @@ def time_in(given: Any) -> Any:  # noqa: ANN401 - as above
 
     Examples
     --------
-    >>> time_in("07:00"), time_in("at seven")
-    (datetime.time(7, 0), 'at seven')
+    >>> time_in("07:00"), time_in("7:00"), time_in("at seven")
+    (datetime.time(7, 0), datetime.time(7, 0), 'at seven')
     """
     if isinstance(given, str):
         with suppress(ValueError):
-            read = time.fromisoformat(given)
+            read = time.fromisoformat(given.zfill(5) if ":" in given else given)
             return given if read.tzinfo else read
     return given
 

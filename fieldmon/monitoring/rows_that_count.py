@@ -210,7 +210,7 @@ def undo_same(db: sqlite3.Connection, inspection: int) -> list[int]:
     found = [
         (fid, batch)
         for fid, batch, other in db.execute(same, (TAKEN_BACK, inspection)).fetchall()
-        if not key or person_key(other or "") in {"", key}
+        if person_key(other or "") in {"", key}
     ]
     taken = [(TAKEN_BACK, fid) for fid, _ in found]
     db.executemany("UPDATE inspections SET undone = ? WHERE fid = ?", taken)

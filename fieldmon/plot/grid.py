@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from shapely import MultiPolygon
     from shapely.geometry.base import BaseGeometry
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.plot.polylines import Polylines
     from fieldmon.plot.projection import Frame
 
@@ -353,6 +354,10 @@ class PlantGrid:
         [False, True]
         """
         return bool((self.twin >= 0).any())
+
+    def counted(self, n: int) -> Worded:
+        """Return in words so many plants of it, or faces where both of a plant are inspected."""
+        return counted(n, "face") if self.has_faces else counted(n, "plant")
 
     @cached_property
     def vine(self) -> NDArray[np.intp]:

@@ -27,9 +27,7 @@ def headline(route: Route, day: str) -> str:
     line = plant_numbers(route.aisles.grid, route.plant).line
     low, high = row_ends(route.aisles.grid, line)
     rows, finds = worded(words.ROW, low=low), route.expected_finds
-    stops = counted(len(route), "plant")
-    if route.aisles.grid.has_faces:
-        stops = counted(len(route), "face")
+    stops = route.aisles.grid.counted(len(route))
     if not route.aisles.grid.in_rows:
         rows = worded(words.NO_ROWS)
     elif low != high:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shapely import MultiPolygon, box
 
 from fieldmon.cli.options import WorkerOptions
 from fieldmon.cli.team_files import files_of_each, members_of, tell_member
@@ -13,6 +14,9 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season, settings_log
 from fieldmon.planning.members import TeamMember
+from fieldmon.plot.field import Field
+from fieldmon.plot.planting import Planting
+from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot, scout
 from tests.cli.estate import BEGINS, MITES, ZIP, filled_in
 
@@ -157,12 +161,16 @@ def test_names_that_are_one_in_file_names_are_refused():
         files_of_each(None, (TeamMember("a b"), TeamMember("A/b")))
 
 
-def test_of_each_it_is_said_where_its_way_leaves_the_plot(capsys):
+@pytest.mark.parametrize(("faces", "stops"), [(1, "2 plants"), (2, "2 faces")])
+def test_of_each_it_is_said_where_its_way_leaves_the_plot(faces, stops, capsys):
+    field = Field("home", MultiPolygon([box(35.15, 30.36, 35.151, 30.361)]), row_bearing_deg=90.0)
+
     class Leaving(list):
+        aisles = Plot.of(field, Planting(faces=faces)).aisles
         expected_finds, end_s, drive_m = 1.0, 3600.0, 500.0
         ways_said = ("5 m of the way lie outside.", "The body reaches over.")
 
     tell_member("Ann", datetime(2026, 11, 18, 6), Leaving([1, 2]))
     first, *said = capsys.readouterr().out.splitlines()
-    assert first.startswith("Ann: from 06:00, 2 plants in 1.0 h, 0.50 km")
+    assert first.startswith(f"Ann: from 06:00, {stops} in 1.0 h, 0.50 km")
     assert said == [f"Ann: {one}" for one in Leaving.ways_said]

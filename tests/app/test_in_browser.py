@@ -1116,26 +1116,37 @@ def test_in_a_low_window_or_a_zoomed_one_all_tools_of_the_map_can_be_pressed(scr
     page.evaluate("document.getElementById('lid').remove()")
 
 
-def test_on_the_map_of_all_none_is_behind_the_legend_and_each_of_those_under_one_dot_can_be_opened(
-    page, address, served_seasons
-):
+def test_no_plot_lies_behind_the_legend_of_the_map_of_all(page, address, served_seasons):
     # the farthest away of all seasons that other tests keep: the map of all has it in its corner
-    places = {"North-west": (34.0, 32.0), "South-east": (37.0, 28.9),
-              "Last year": (36.0, 31.0), "This year": (36.0, 31.0)}  # fmt: skip
-    files = []
-    for name, (lon, lat) in places.items():
+    files = [served_seasons / f"{name}.gpkg" for name in ("North-west", "South-east")]
+    for file, (lon, lat) in zip(files, ((34.0, 32.0), (37.0, 28.9)), strict=True):
         area = shapely.MultiPolygon([box(lon, lat, lon + 0.0005, lat + 0.0005)])
-        files.append(served_seasons / f"{name}.gpkg")
-        Season.create(files[-1], Plot.of(Field(f"{lat}", area)), begins=date(2026, 11, 16))
+        Season.create(file, Plot.of(Field(file.stem, area)), begins=date(2026, 11, 16))
     try:
         page.goto(f"{address}/plots")
         rest(page)
-        corner, place = pixels(view(page), [[37.0, 28.9], [36.00025, 31.00025]])
+        (place,) = pixels(view(page), [[37.0, 28.9]])
         legend = page.locator(f"{MAP} .legend").bounding_box()
         top = page.locator(MAP).bounding_box()["y"]
-        behind = corner[0] > legend["x"] and top + corner[1] > legend["y"]
-        assert not behind, f"it is at {corner}, the legend at {legend}"
+        behind = place[0] > legend["x"] and top + place[1] > legend["y"]
+        assert not behind, f"it is at {place}, the legend at {legend}"
+    finally:
+        for file in files:
+            file.unlink()
+
+
+def test_plots_under_one_dot_are_counted_on_it_and_each_can_be_opened(
+    page, address, served_seasons
+):
+    area = shapely.MultiPolygon([box(36.0, 31.0, 36.0005, 31.0005)])
+    files = [served_seasons / f"{name}.gpkg" for name in ("Last year", "This year")]
+    for file in files:
+        Season.create(file, Plot.of(Field("East", area)), begins=date(2026, 11, 16))
+    try:
+        page.goto(f"{address}/plots")
+        rest(page)
         page.locator(f"{MAP} .label.plots", has_text="2").wait_for()
+        (place,) = pixels(view(page), [[36.00025, 31.00025]])
         click(page, place)
         page.locator(f"{MAP} .choice button", has_text="This year").click()
         box_of_plots = page.locator(".st-key-season input")

@@ -133,6 +133,8 @@ def _of_export(season: Season, file: Path, who: str, *, confirmed: bool) -> int:
         with Terminal().answering():
             edited = edited_copy(season, file, options, Path(folder))
         n = season.take_corrections(edited.path, file.name, who, confirmed=confirmed)
+    if edited.of_others:
+        typer.echo(f"Left out: {edited.of_others}")
     if edited.n_added:
         s = "s" if edited.n_added > 1 else ""
         typer.echo(f"{edited.n_added} inspection{s} added there can be taken with: fieldmon record")

@@ -24,6 +24,7 @@ from fieldmon.io.options import source_name
 from fieldmon.io.readers.inspection_file.inspection_rows import is_mark
 from fieldmon.monitoring import inspection_table, repeated_recordings
 from fieldmon.monitoring.rows_that_count import COUNTS
+from fieldmon.monitoring.season_copies import own_names
 from fieldmon.monitoring.transactions import connect, copy_season
 
 if TYPE_CHECKING:
@@ -294,13 +295,15 @@ class EditedCopy(NamedTuple):
     """A copy of a season, changed as a file exported from it; and how many the file has more.
 
     Inspections and notes that were added or changed there, which `record` takes, and times that
-    differ in seconds that the file may not show.
+    differ in seconds that the file may not show. And what to say of records that name another plot
+    or season, and were left out; empty where none do.
     """
 
     path: Path
     n_added: int
     n_notes: int
     n_seconds: int
+    of_others: str
 
 
 def edited_copy(
@@ -314,11 +317,15 @@ def edited_copy(
     Raises
     ------
     ObservationError
-        If the file holds no inspections exported from a season, or what cannot be read for certain.
+        If the file holds no inspections exported from a season, or names other plots alone, or
+        holds what cannot be read for certain.
     FileProblem
         If some are of another season, or count no longer in this one.
     """
-    rows, name = _exported_rows(season, source, options), source_name(source)
+    name = source_name(source)
+    rows, of_others = _of_this_season(
+        season, _exported_rows(season, source, options), options, name
+    )
     edits = edits_in(season, rows, options)
     _refuse_uncertain(edits, name)
     copy = folder / "export.gpkg"
@@ -329,7 +336,31 @@ def edited_copy(
             sets = ", ".join(f"{column} = ?" for column in says)
             db.execute(f"UPDATE inspections SET {sets} WHERE fid = ?", (*says.values(), row))  # noqa: S608 - ours
         db.execute("COMMIT")
-    return EditedCopy(copy, int((~rows.exported).sum()), edits.n_notes, edits.n_seconds)
+    n_added = int((~rows.exported).sum())
+    return EditedCopy(copy, n_added, edits.n_notes, edits.n_seconds, of_others)
+
+
+def _of_this_season(
+    season: Season, rows: InspectionRows, options: InspectionOptions, name: str
+) -> tuple[InspectionRows, str]:
+    """Return the rows that name no other plot or season, and what to say of the others.
+
+    Digests do not tell: those of two seasons that say the same are the same.
+    """
+    from fieldmon.io.readers.other_plots import left_out, of_this_plot  # noqa: PLC0415 - as above
+
+    here, said = of_this_plot(rows, season.plot.grid, own_names(season), options)
+    of_others = left_out(said)
+    if not here.exported.any():
+        raise ObservationError(
+            worded(
+                "What was corrected in an export must be of this season, {plot} ({file}), but of "
+                "{name}: {said} Correct the season that it names; if it is this one, called "
+                "otherwise then, empty that column. Nothing was taken.",
+                plot=season.plot.field.name, file=season.path.stem, name=name, said=of_others,
+            )
+        )  # fmt: skip
+    return here, of_others
 
 
 def _exported_rows(season: Season, source: Source, options: InspectionOptions) -> InspectionRows:

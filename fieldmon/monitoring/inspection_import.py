@@ -14,6 +14,7 @@ from fieldmon.io.options import Upload, source_name
 from fieldmon.monitoring import findings, repeated_recordings
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.exported_inspections import edits_in, read_exported
+from fieldmon.monitoring.season_copies import own_names
 from fieldmon.monitoring.transactions import MAGIC, connect, copy_season, is_season
 
 if TYPE_CHECKING:
@@ -106,6 +107,7 @@ def read_brought(
     """
     # what reads files is half a second to import
     from fieldmon.io.read import read_inspection_rows, read_phone_file  # noqa: PLC0415
+    from fieldmon.io.readers.other_plots import of_this_plot  # noqa: PLC0415
     from fieldmon.io.readers.phone_file import is_phone_file  # noqa: PLC0415
 
     name = source_name(source)
@@ -127,7 +129,8 @@ def read_brought(
     read = _dated_on_plot(season, rows, options)
     n_changed = 0
     if copy is None:
-        edits = edits_in(season, rows.value, options)
+        here, _ = of_this_plot(rows.value, season.plot.grid, own_names(season), options)
+        edits = edits_in(season, here, options)
         n_changed = sum(one.is_seen_otherwise for one in edits.changed) + len(edits.unsure)
     messages = (*read.messages, *treated, *_about_changed(n_changed))
     return BroughtFile(name, read.value, messages, None, copy, len(corrected), n_changed)
@@ -165,9 +168,7 @@ def _dated_on_plot(
 ) -> Imported[Inspections]:
     from fieldmon.io.readers.inspections import dated, on_plot  # noqa: PLC0415 - as above
 
-    name, file = season.plot.field.name, season.path.stem
-    called = (name, file, f"{name} ({file})")  # the last in tables of several, see `called_apart`
-    return dated(on_plot(rows, season.plot.grid, options, called))
+    return dated(on_plot(rows, season.plot.grid, options, own_names(season)))
 
 
 def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:

@@ -192,6 +192,13 @@ def called_apart(seasons: Sequence[SeasonCopies]) -> tuple[str, ...]:
     return tuple(called)
 
 
+def own_names(season: SeasonCopies) -> tuple[str, ...]:
+    """Return what tables may call a season's plot: its name, its file, and as `called_apart`."""
+    name, file = season.plot.field.name, season.path.stem
+    folder = season.path.absolute().parent.name
+    return name, file, f"{name} ({file})", f"{name} ({folder}/{file})"
+
+
 def of_one_plot(
     seasons: Iterable[SeasonCopies], named: Callable[[str], str] = str
 ) -> tuple[Worded, ...]:

@@ -242,6 +242,27 @@ def test_a_table_that_cannot_be_taken_is_refused_and_says_what_to_do(varied, tmp
             from_spreadsheet(varied, said, tmp_path)
 
 
+def test_what_another_season_of_the_plot_says_in_one_table_is_none_of_this(varied, tmp_path):
+    name, file = varied.plot.field.name, varied.path.stem
+    lines = [{"plot": f"{name} ({file})"} | line for line in a_table(varied)]
+    theirs = [line | {"plot": f"{name} (thrips)"} for line in lines]
+    (one,) = (line for line in theirs if line["who"] + line["date"] == "Ann2026-05-04")
+    one.update(result="clean", count="")
+    assert from_spreadsheet(varied, lines + theirs, tmp_path) == (0, 0, 0)
+    table = tmp_path / "table" / "edited.csv"
+    edited = edited_copy(varied, table, OPTIONS, tmp_path / "table")
+    assert f"of 1 other plot: {name} (thrips)." in edited.of_others
+    (tmp_path / "read").mkdir()
+    assert read_brought(varied, table, OPTIONS, tmp_path / "read").changed == 0
+    with pytest.raises(ObservationError, match="must be of this season"):
+        from_spreadsheet(varied, theirs, tmp_path)
+    folder = varied.path.absolute().parent.name
+    mine = [
+        line | {"plot": f"{name} ({folder}/{file})"} for line in theirs
+    ]  # of files called alike
+    assert from_spreadsheet(varied, mine, tmp_path) == (1, 0, 0)
+
+
 def test_an_edit_that_makes_an_inspection_like_another_is_none_that_was_taken_already(
     path, tmp_path
 ):

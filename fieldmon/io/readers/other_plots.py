@@ -4,6 +4,8 @@ Decisions
 ---------
 - A position says more than a name: only records without one are told apart by name. Those that
   name another plot and lie on this one are taken, with a doubt.
+- Not so in a table exported from seasons, where a name is a season's own: two seasons may be of
+  one plot, and a plant that only doubtfully is the one meant may be of a plot far away.
 - Where some record names this plot, those that name others are left out. Where none does, the
   names may be another way to call it: that is a doubt, and one can say that they are its own.
 - Of blocks and of places wider than a plot (`_NOT_ONLY_PLOTS`) a name is one of a plot only beside
@@ -49,7 +51,7 @@ def of_this_plot(
         return rows, []
     if not ours and options.column("plot") is None and _may_be_else(str(rows.plot_column[0])):
         return rows, []
-    placed = np.isfinite(rows.lonlat).all(axis=1)
+    placed = np.isfinite(rows.lonlat).all(axis=1) & ~rows.exported.any()
     kept, said = _by_name(rows, others & ~placed, called[0], options, is_named=bool(ours))
     return kept, [*said, *_lying_here(rows, others & placed, grid)]
 
@@ -119,11 +121,22 @@ def _ours(names: set[str], called: tuple[str, ...]) -> list[str]:
     A number alone is, where it is the only name and the one number in this plot's.
     """
     keys = {_key(name) for name in called}
-    ours = [name for name in names if _key(name) in keys]
+    ours = [
+        name
+        for name in names
+        if _key(name) in keys or any(_is_of_code_page(name, own) for own in called)
+    ]
     if not ours and len(names) == 1 and (only := next(iter(names))).isdecimal():
         digits = "".join(c for c in called[0] if c.isdecimal())
         return [only] if digits and int(digits) == int(only) else []
     return ours
+
+
+def _is_of_code_page(name: str, own: str) -> bool:
+    """Return whether a name is one of this plot's, with ``?`` for what an old code page lacks."""
+    return len(name) == len(own) and all(
+        new == old or (new == "?" and not old.isascii()) for new, old in zip(name, own, strict=True)
+    )
 
 
 def _key(name: str) -> str:

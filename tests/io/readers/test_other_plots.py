@@ -84,3 +84,17 @@ def test_where_a_record_lies_says_more_than_the_plot_it_names_and_it_is_doubted(
     assert imported.value.plant.tolist() == [7]
     doubts = [one.sentence for one in imported.of(Severity.DOUBTFUL) if "another" in one.sentence]
     assert [one.split(":")[0] for one in doubts] == ([doubt] if doubt else [])
+
+
+@pytest.mark.parametrize(("names", "plants"), [(("Gate", "Pond"), [1]), (("Pond", "Wadi"), [])])
+def test_of_an_export_a_name_says_more_than_where_a_record_lies(names, plants):
+    (lon, lat), far, mark = GRID.lonlat([7])[0], ("10.0", "20.0"), f"i{'0' * 24}"
+    lines = [
+        f"{name},1,{k},{x},{y},found,{mark}"
+        for name in names
+        for k, x, y in ((2, "", ""), (8, lon, lat), (9, *far))
+        if (name == "Gate") == (k == 2)
+    ]
+    table = "\n".join(["plot,row,plant,lon,lat,result,digest", *lines])
+    options = InspectionOptions(take_doubtful="Gate" in names)
+    assert read_inspections(upload(table), GRID, options, ("Gate",)).value.plant.tolist() == plants

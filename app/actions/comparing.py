@@ -74,7 +74,7 @@ def _season(
     instead of asked for.
     """
     show, (first, apart, second, *third) = widget_memory.show, columns
-    own_share, own_rate = believed(choices)
+    own_share, own_rate = chosen_day.believed(choices)
     if choices.season is not None:
         said = texts.AS_BELIEVED if pest is None else texts.START_AS_BELIEVED
         st.caption(said.format(day=choices.units.said_day(choices.day)))
@@ -99,14 +99,3 @@ def _say_visits(n_days: int, visit_every: int) -> None:
     days = [f"{day}" for day in range(1, n_days + 1, visit_every)]
     few = days if len(days) <= _SOME else [*days[: _SOME - 2], "…", days[-1]]
     st.caption(texts.VISITS_ON.format(visits=len(days), days=n_days, on=listed(few)))
-
-
-def believed(choices: Choices) -> tuple[float, float]:
-    """Return the share infested and the spread a night that a season believes, both in percent."""
-    if choices.season is None:
-        return 2.0, 10.0
-    share = 100.0 * float(chosen_day.chance(choices).mean())
-    return (
-        min(max(round(share, 1), 0.1), 50.0),
-        100.0 * choices.season.settings.belief.spread.rate_per_day,
-    )

@@ -9,11 +9,11 @@ import streamlit as st
 
 from fieldmon.drive.simulated_robots import CHARGED, MUJOCO, MadeUp
 
-from ..state import cached_simulations, widget_memory
+from ..state import cached_simulations, chosen_day, widget_memory
 from ..words import texts
 from ..words.language import of_error
 from ..words.units import hours
-from . import background_work, comparing
+from . import background_work
 
 if TYPE_CHECKING:
     from fieldmon.drive.trace import Trace
@@ -30,7 +30,7 @@ def run(choices: Choices, scene: Scene, key: str) -> DriveRun:
         st.segmented_control, texts.DRIVE_ROBOT, kinds, key="drive_robot", default=CHARGED,
         required=True, format_func=texts.DRIVE_ROBOTS.__getitem__,
     )  # fmt: skip
-    believed, _ = comparing.believed(choices)
+    believed, _ = chosen_day.believed(choices)
     share = widget_memory.show(
         st.number_input, texts.DRIVE_SHARE, 0.1, 50.0, step=0.5, key=f"drive_share {believed:g}",
         default=believed,

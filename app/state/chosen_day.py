@@ -127,6 +127,17 @@ def chance(choices: Choices) -> cached.Array:
     return evening(choices, choices.day)
 
 
+def believed(choices: Choices) -> tuple[float, float]:
+    """Return the share infested and the spread a night that a season believes, both in percent."""
+    if choices.season is None:
+        return 2.0, 10.0
+    share = 100.0 * float(chance(choices).mean())
+    return (
+        min(max(round(share, 1), 0.1), 50.0),
+        100.0 * choices.season.settings.belief.spread.rate_per_day,
+    )
+
+
 def evening(choices: Choices, day: str) -> cached.Array:
     """Return ``(n,)`` what a season believes on the evening of a day (ISO)."""
     return cached.evening(choices.key, choices.revision, day, choices.open_season)

@@ -204,20 +204,18 @@ def _checked(function: Any) -> Any:  # noqa: ANN401 - any function, with its own
 
     @wraps(function)
     def wrapper(*args: Any, **keywords: Any) -> Any:  # noqa: ANN401 - as above
-        if times:
-            told = zip(in_order, args, strict=False)
-            in_place = [time_in(given) if name in times else given for name, given in told]
-            args = (*in_place, *args[len(in_place) :])
-            keywords = {k: time_in(v) if k in times else v for k, v in keywords.items()}
-        if days:
+        if days or times:
             asked = args[0] if args and not isinstance(args[0], type) else None
             local = getattr(asked, "plot_time", None)
-            told = zip(in_order, args, strict=False)
-            in_place = [day_in(given, local) if name in days else given for name, given in told]
+
+            def read(name: str, given: Any) -> Any:  # noqa: ANN401 - as above
+                if name in days:
+                    return day_in(given, local)
+                return time_in(given) if name in times else given
+
+            in_place = [read(*told) for told in zip(in_order, args, strict=False)]
             args = (*in_place, *args[len(in_place) :])
-            keywords = {
-                k: day_in(given, local) if k in days else given for k, given in keywords.items()
-            }
+            keywords = {name: read(name, given) for name, given in keywords.items()}
         for name, given in chain(zip(in_order, args, strict=False), keywords.items()):
             annotation = named.get(name, "")
             if annotation and not kind_of(annotation).fits(given):

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Mapping, Sequence
 
+    from fieldmon.monitoring.drafts import Draft
+    from fieldmon.monitoring.repeated_recordings import Addition
     from fieldmon.plot.grid import PlantGrid
 
 _TABLE_OF = {
@@ -187,13 +189,10 @@ def more_in_words(noted: int, filled: int = 0, seen_by_another: int = 0) -> str:
     return joined(", ", said)
 
 
-def n_more(more: Sequence[tuple[bool, bool]]) -> dict[str, int]:
-    """Return what `Recorded` counts of those known that say more.
-
-    Given of each whether it is a note, and whether it fills what was left open.
-    """
-    noted = sum(is_note for is_note, _ in more)
-    filled = sum(fills and not is_note for is_note, fills in more)
+def n_more(more: Sequence[Addition | Draft]) -> dict[str, int]:
+    """Return what `Recorded` counts of those known that say more."""
+    noted = sum(one.is_note for one in more)
+    filled = sum(one.fills and not one.is_note for one in more)
     return {"noted": noted, "filled": filled, "seen_by_another": len(more) - noted - filled}
 
 

@@ -340,8 +340,8 @@ def edited_copy(
     return EditedCopy(copy, n_added, edits.n_notes, edits.n_seconds, of_others)
 
 
-def _of_this_season(
-    season: Season, rows: InspectionRows, options: InspectionOptions, name: str
+def own_rows(
+    season: Season, rows: InspectionRows, options: InspectionOptions
 ) -> tuple[InspectionRows, str]:
     """Return the rows that name no other plot or season, and what to say of the others.
 
@@ -350,7 +350,14 @@ def _of_this_season(
     from fieldmon.io.readers.other_plots import left_out, of_this_plot  # noqa: PLC0415 - as above
 
     here, said = of_this_plot(rows, season.plot.grid, own_names(season), options)
-    of_others = left_out(said)
+    return here, left_out(said)
+
+
+def _of_this_season(
+    season: Season, rows: InspectionRows, options: InspectionOptions, name: str
+) -> tuple[InspectionRows, str]:
+    """Return what `own_rows` does; refuse an export of other plots or seasons alone."""
+    here, of_others = own_rows(season, rows, options)
     if not here.exported.any():
         raise ObservationError(
             worded(

@@ -13,7 +13,7 @@ from fieldmon.io.import_report import doubtful
 from fieldmon.io.options import Upload, source_name
 from fieldmon.monitoring import findings, repeated_recordings
 from fieldmon.monitoring.batches import Recorded
-from fieldmon.monitoring.exported_inspections import edits_in, read_exported
+from fieldmon.monitoring.exported_inspections import edits_in, own_rows, read_exported
 from fieldmon.monitoring.season_copies import own_names
 from fieldmon.monitoring.transactions import MAGIC, connect, copy_season, is_season
 
@@ -107,7 +107,6 @@ def read_brought(
     """
     # what reads files is half a second to import
     from fieldmon.io.read import read_inspection_rows, read_phone_file  # noqa: PLC0415
-    from fieldmon.io.readers.other_plots import of_this_plot  # noqa: PLC0415
     from fieldmon.io.readers.phone_file import is_phone_file  # noqa: PLC0415
 
     name = source_name(source)
@@ -128,8 +127,8 @@ def read_brought(
         rows = read_inspection_rows(source, options)
     read = _dated_on_plot(season, rows, options)
     n_changed = 0
-    if copy is None:
-        here, _ = of_this_plot(rows.value, season.plot.grid, own_names(season), options)
+    if copy is None and rows.value.exported.any():
+        here, _ = own_rows(season, rows.value, options)
         edits = edits_in(season, here, options)
         n_changed = sum(one.is_seen_otherwise for one in edits.changed) + len(edits.unsure)
     messages = (*read.messages, *treated, *_about_changed(n_changed))

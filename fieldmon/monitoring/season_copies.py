@@ -182,17 +182,16 @@ def _recorded_twice(counting: Sequence[KeptTreatment], taken: MergedCopy) -> lis
 
 def called_apart(seasons: Sequence[SeasonCopies]) -> tuple[str, ...]:
     """Return what the plot of each season is called, with its file where two are called alike."""
-    names = [season.plot.field.name for season in seasons]
-    files = [season.path.stem for season in seasons]
-    twice = Counter(zip(names, files, strict=True))
-    often, called = Counter(names), []
-    for season, name, file in zip(seasons, names, files, strict=True):
-        at = f"{season.path.absolute().parent.name}/{file}" if twice[name, file] > 1 else file
-        called.append(f"{name} ({at})" if often[name] > 1 else name)
-    return tuple(called)
+    named = [own_names(season) for season in seasons]
+    often = Counter(name for name, *_ in named)
+    twice = Counter((name, file) for name, file, *_ in named)
+    return tuple(
+        by_folder if twice[name, file] > 1 else by_file if often[name] > 1 else name
+        for name, file, by_file, by_folder in named
+    )
 
 
-def own_names(season: SeasonCopies) -> tuple[str, ...]:
+def own_names(season: SeasonCopies) -> tuple[str, str, str, str]:
     """Return what tables may call a season's plot: its name, its file, and as `called_apart`."""
     name, file = season.plot.field.name, season.path.stem
     folder = season.path.absolute().parent.name

@@ -260,10 +260,9 @@ class SeasonInspections(SeasonCorrections):
         by = ", ".join(sorted({*map(str, news.who), *map(str, told.who)} - {""}))
         batches.name(db, batch, by)
         batches.end(db, batch, len(news) + len(more), grows=into is not None)
-        said_more = [(one.is_note, one.fills) for one in more]
         done = Recorded(
             batch if len(news) or more else None, len(news), len(inspections) - len(news),
-            **batches.n_more(said_more),
+            **batches.n_more(more),
         )  # fmt: skip
         self._log_seen(db, news, (source, by), done, who)
         return done, news
@@ -451,8 +450,7 @@ class SeasonInspections(SeasonCorrections):
         news = drafts.keep(db, taken, *said)
         batches.end(db, batch, len(taken))
         known = [one for one in taken if one.known is not None]
-        said_more = [(one.is_note, one.fills) for one in known]
-        done = Recorded(batch, len(news), len(known), **batches.n_more(said_more))
+        done = Recorded(batch, len(news), len(known), **batches.n_more(known))
         self._log_seen(db, news, (drafts.SOURCE, ""), done)
         # there are as many rows as before: all is read again
         days = [one.inspection.date[0].item() for one in taken if one.inspection is not None]

@@ -452,6 +452,28 @@ def test_a_glove_that_bounces_says_nothing_of_the_next_plant(season, line, phone
     assert [one["plant"] for one in kept(phone.page).records] == [plant]
 
 
+def test_nothing_is_called_sent_between_the_tap_and_the_sending(season, line, phone):
+    invited(phone, line, season, "Hal")
+    page = phone.page
+    page.locator(SENT).wait_for()
+    page.evaluate(_BARS)
+    told_now(page, "clean")
+    page.wait_for_function("() => bars.some(([state]) => state === 'sending')")
+    bars = page.evaluate("() => bars")
+    before = bars[: next(k for k, (state, _) in enumerate(bars) if state == "sending")]
+    assert before, "the bar says at once that one waits"
+    assert {left for _, left in before} == {"1"}
+    page.locator(SENT).wait_for()
+
+
+#: what the bar says, each time that it is drawn
+_BARS = """() => {
+  window.bars = [];
+  const sync = document.querySelector("#sync");
+  new MutationObserver(() => bars.push([sync.dataset.state, sync.dataset.left])).observe(sync, { attributes: true });
+}"""
+
+
 def test_by_keyboard_alone(season, line, phone):
     invited(phone, line, season, "Gil")
     page = phone.page

@@ -121,8 +121,7 @@ export class Page {
       this.#draw();
     }
     this.#drawLast();
-    this.#drawBar();
-    this.left = await this.store.left();
+    this.left = await this.store.left(); // before the bar is drawn: it would say that all is sent
     this.#drawBar();
   }
 

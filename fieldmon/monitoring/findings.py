@@ -31,10 +31,10 @@ from fieldmon.monitoring import (
     season_log,
 )
 from fieldmon.monitoring.geopackage import beside_plot, insert, point_blobs, touch
-from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import as_written
 from fieldmon.monitoring.scouts import Scout
 from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.settings_log import settings_of
 from fieldmon.monitoring.told_detection import said_now
 from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text

@@ -65,5 +65,5 @@ def _rules() -> str:
     """Return a name for the programs that work it out: others do so anew."""
     rooms = (fieldmon.compute, fieldmon.infestation, fieldmon.plot)
     folders = [Path(str(room.__file__)).parent for room in rooms]
-    files = [file.read_bytes() for folder in folders for file in sorted(folder.glob("*.py"))]
+    files = [file.read_bytes() for folder in folders for file in sorted(folder.rglob("*.py"))]
     return digest(shapely.__version__, np.__version__, *files)

@@ -193,7 +193,7 @@ def _learnt_before(first: Belief) -> bytes:
 def rules() -> str:
     """Return a name for the program that works mornings out: another one begins at the first."""
     rooms = [Path(room.__path__[0]) for room in (fieldmon.infestation, fieldmon.pests)]
-    files = [file for room in rooms for file in sorted(room.glob("*.py"))]
+    files = [file for room in rooms for file in sorted(room.rglob("*.py"))]
     files.append(Path(causes_of_a_morning.__file__))
     return digest(*(file.read_bytes() for file in files))
 

@@ -36,6 +36,7 @@ from fieldmon.monitoring.mornings import Mornings
 from fieldmon.monitoring.mornings import keep as keep_mornings
 from fieldmon.monitoring.mornings import take as take_mornings
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, seconds
+from fieldmon.monitoring.settings_log import settings_of
 from fieldmon.monitoring.shift_work import Besides, Shift
 from fieldmon.monitoring.told_detection import told_at_first, told_detection
 from fieldmon.monitoring.transactions import Store, get_meta
@@ -645,11 +646,6 @@ def _mean_told(settings: MonitoringSettings) -> float:
     """Return what inspections are told to find; of a team that all find alike, that exactly."""
     told = [one.robot.detects for one in settings.team] or [settings.robot.detects]
     return told[0] if len({*told}) == 1 else float(np.mean(told))
-
-
-def settings_of(db: sqlite3.Connection) -> MonitoringSettings:
-    """Return what is chosen for a season, as a transaction sees it."""
-    return from_json(settings_log.now(db))
 
 
 def newest_day(db: sqlite3.Connection) -> int:

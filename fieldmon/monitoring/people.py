@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.monitoring.open_season import settings_of
+from fieldmon.monitoring.settings_log import settings_of
 from fieldmon.planning.members import person_key
 
 if TYPE_CHECKING:

@@ -18,8 +18,8 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import AccessError, SettingError
 from fieldmon.monitoring import logged_days, phone_tables
 from fieldmon.monitoring.geopackage import insert, touch
-from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import written_in
+from fieldmon.monitoring.settings_log import settings_of
 from fieldmon.monitoring.transactions import glance
 from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import utc_text

@@ -8,10 +8,10 @@ from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import batches, copy_corrections, corrections, outside_changes, season_log
-from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import written_in
 from fieldmon.monitoring.season_copies import SeasonCopies
 from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.settings_log import settings_of
 from fieldmon.monitoring.transactions import Store
 from fieldmon.plot.local_clock import local_clock
 

@@ -33,12 +33,12 @@ from fieldmon.monitoring.open_season import (
     SeasonContents,
     newest_day,
     nothing_yet,
-    settings_of,
 )
 from fieldmon.monitoring.people import written_in
 from fieldmon.monitoring.season_frames import SeasonFrames
 from fieldmon.monitoring.season_plans import SeasonPlans
 from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json, settings_from
+from fieldmon.monitoring.settings_log import settings_of
 from fieldmon.monitoring.transactions import Store, set_meta
 from fieldmon.planning.assumptions import assumed_by, assumed_by_team
 from fieldmon.planning.members import refuse_far_gates, refuse_too_wide, ways_of

@@ -35,9 +35,9 @@ from fieldmon.monitoring.contradictions import (
     known_before,
     said_before,
 )
-from fieldmon.monitoring.open_season import settings_of
 from fieldmon.monitoring.people import as_written, names_written, written_in
 from fieldmon.monitoring.season_corrections import SeasonCorrections
+from fieldmon.monitoring.settings_log import settings_of
 from fieldmon.monitoring.told_detection import said_now
 from fieldmon.pests.weather import DAY_S
 from fieldmon.plot.local_clock import local_clock

@@ -25,8 +25,9 @@ from fieldmon.monitoring.applications import Application
 from fieldmon.monitoring.batches import Recorded
 from fieldmon.monitoring.cautions import RulesToKeep
 from fieldmon.monitoring.early_entries import early_entries
-from fieldmon.monitoring.open_season import OpenSeason, settings_of
+from fieldmon.monitoring.open_season import OpenSeason
 from fieldmon.monitoring.people import written_in
+from fieldmon.monitoring.settings_log import settings_of
 from fieldmon.monitoring.treatment import Treatment
 from fieldmon.monitoring.treatments import KeptTreatment, TreatedPlace, by_vine
 from fieldmon.monitoring.waiting_periods import end_of

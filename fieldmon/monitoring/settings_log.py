@@ -43,6 +43,11 @@ _UNTIL = (
 )
 
 
+def settings_of(db: sqlite3.Connection) -> MonitoringSettings:
+    """Return what is chosen for a season, as a transaction sees it."""
+    return from_json(now(db))
+
+
 def at(db: sqlite3.Connection, moment: str) -> Parts:
     """Return what counted at a moment (UTC, as `utc_text` has it); before the first, the first."""
     return dict(db.execute("SELECT name, value" + _UNTIL, (moment,)).fetchall())

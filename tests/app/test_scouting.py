@@ -470,7 +470,8 @@ def test_nothing_is_called_sent_between_the_tap_and_the_sending(season, line, ph
 _BARS = """() => {
   window.bars = [];
   const sync = document.querySelector("#sync");
-  new MutationObserver(() => bars.push([sync.dataset.state, sync.dataset.left])).observe(sync, { attributes: true });
+  const drawn = new MutationObserver(() => bars.push([sync.dataset.state, sync.dataset.left]));
+  drawn.observe(sync, { attributes: true });
 }"""
 
 

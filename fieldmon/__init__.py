@@ -50,13 +50,13 @@ if TYPE_CHECKING:
         read_weather,
     )
     from fieldmon.io.plot_request import PlantingChoices
-    from fieldmon.monitoring.advice_settings import AdviceSettings
-    from fieldmon.monitoring.applications import Application
-    from fieldmon.monitoring.belief_settings import BeliefSettings
-    from fieldmon.monitoring.monitor import Monitor, MonitorDay, PlantToInspect
-    from fieldmon.monitoring.season_file import Season
-    from fieldmon.monitoring.settings import MonitoringSettings
-    from fieldmon.monitoring.status import Status
+    from fieldmon.monitoring.estimates.monitor import Monitor, MonitorDay, PlantToInspect
+    from fieldmon.monitoring.estimates.status import Status
+    from fieldmon.monitoring.season.season_file import Season
+    from fieldmon.monitoring.settings.advice_settings import AdviceSettings
+    from fieldmon.monitoring.settings.belief_settings import BeliefSettings
+    from fieldmon.monitoring.settings.settings import MonitoringSettings
+    from fieldmon.monitoring.treating.applications import Application
     from fieldmon.pests.pest import Citation, Entry, Increase, Movement, Pest, Stage
     from fieldmon.pests.weather import Weather
     from fieldmon.planning import routes
@@ -112,11 +112,11 @@ _MODULES = {
         "read_records",
         "read_weather",
     ),
-    "monitoring.applications": ("Application",),
-    "monitoring.belief_settings": ("BeliefSettings",),
-    "monitoring.monitor": ("Monitor", "MonitorDay", "PlantToInspect"),
-    "monitoring.season_file": ("Season",),
-    "monitoring.settings": ("MonitoringSettings",),
+    "monitoring.treating.applications": ("Application",),
+    "monitoring.settings.belief_settings": ("BeliefSettings",),
+    "monitoring.estimates.monitor": ("Monitor", "MonitorDay", "PlantToInspect"),
+    "monitoring.season.season_file": ("Season",),
+    "monitoring.settings.settings": ("MonitoringSettings",),
     "pests.pest": ("Citation", "Entry", "Increase", "Movement", "Pest", "Stage"),
     "pests.weather": ("Weather",),
     "planning.plan": ("DayPlan", "plan_day"),
@@ -134,8 +134,8 @@ _MODULES = {
     "infestation.forecast": ("Forecast",),
     "infestation.plot_estimate": ("PlotEstimate",),
     "infestation.prior_settings": ("PriorSettings",),
-    "monitoring.advice_settings": ("AdviceSettings",),
-    "monitoring.status": ("Status",),
+    "monitoring.settings.advice_settings": ("AdviceSettings",),
+    "monitoring.estimates.status": ("Status",),
     "planning.members": ("TeamMember", "Teamwork", "team_of"),
     "planning.team": ("TeamPlan", "plan_team"),
     "planning.wishes": ("Wishes",),

@@ -21,9 +21,10 @@ from fieldmon.infestation.earlier_season import Believed, EarlierSeason
 from fieldmon.infestation.origins import N_ORIGINS
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.io.readers.team import SETTINGS, read_team
-from fieldmon.monitoring import MonitoringSettings, schema
-from fieldmon.monitoring.settings import as_json, from_json
-from fieldmon.monitoring.settings_words import changed, differences, taken_back
+from fieldmon.monitoring import MonitoringSettings
+from fieldmon.monitoring.file import schema
+from fieldmon.monitoring.settings.settings import as_json, from_json
+from fieldmon.monitoring.settings.settings_words import changed, differences, taken_back
 from fieldmon.pests.pest import Citation, Increase, Pest, Stage
 from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.planning.members import TeamMember, Teamwork
@@ -341,7 +342,7 @@ def test_a_new_setting_raises_the_version_of_a_season_s_file():
     names = [path for path, _ in within(kept())]
     known = (FORMATS / f"settings_of_format_{schema.VERSION}.txt").read_text().split("\n")[:-1]
     assert sorted({*names}) == known, (
-        "Raise VERSION in fieldmon/monitoring/schema.py, and list the names of the new version."
+        "Raise VERSION in fieldmon/monitoring/file/schema.py, and list the names of the new one."
     )
 
 

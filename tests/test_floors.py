@@ -29,6 +29,10 @@ FLOORS = [
 FLOOR = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
 #: likewise within the app
 APP_FLOORS = ["words", "state", "show", "actions", "api", "views", "startup", "streamlit_app"]
+#: likewise within a season, but for types: what stands on a lower floor may be handed a season.
+#: Modules that stand in no room of it are above all
+SEASON_FLOORS = ["file", "settings", "treating", "inspecting", "changes", "estimates", "advice",
+                 "phones", "days", "merging", "season"]  # fmt: skip
 #: libraries that only some rooms may know
 ALONE = {
     "pyproj": {"plot", "io"},
@@ -104,6 +108,12 @@ def app_floor(module: str) -> int:
     return APP_FLOORS.index(inner[0]) if inner else -1
 
 
+def season_floor(module: str) -> int:
+    """Return the floor of a module of a season."""
+    inner = module.split(".")[2:]
+    return SEASON_FLOORS.index(inner[0]) if inner else len(SEASON_FLOORS)
+
+
 def breaches(here: str, tree: ast.Module) -> list[str]:
     """Return what a module imports although its floor does not allow it."""
     found = []
@@ -117,7 +127,26 @@ def breaches(here: str, tree: ast.Module) -> list[str]:
             continue
         if FLOOR[room(name)] >= FLOOR[room(here)]:
             found.append(f"{here} imports {name}")
+    if room(here) == "monitoring":
+        found += breaches_within_a_season(here, tree)
     return found
+
+
+def breaches_within_a_season(here: str, tree: ast.Module) -> list[str]:
+    """Return what a module of a season imports from floors of it above its own."""
+    types = {name for node in ast.walk(tree) if isinstance(node, ast.If) and is_for_types(node)
+             for name in imports(node, here)}  # fmt: skip
+    others = (name for name in imports(tree, here) if name not in types)
+    return [
+        f"{here} imports {name}"
+        for name in others
+        if room(name) == "monitoring" and season_floor(name) > season_floor(here)
+    ]
+
+
+def is_for_types(node: ast.If) -> bool:
+    """Return whether a branch is read by type checkers alone."""
+    return isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
 
 
 OF_APP = [module for module in MODULES if room(module) == "app"]
@@ -190,6 +219,11 @@ def test_a_circle_is_noticed_where_a_type_alone_closes_it():
     assert sorted(set(circle(graph))) == ["fieldmon.plot.grid", "fieldmon.plot.travel"]
 
 
+def test_what_stands_lower_may_be_handed_a_season():
+    line = "if TYPE_CHECKING:\n    from fieldmon.monitoring import Season"
+    assert breaches("fieldmon.monitoring.days.day_ahead", ast.parse(line)) == []
+
+
 @pytest.mark.parametrize(
     ("here", "line"),
     [
@@ -201,6 +235,8 @@ def test_a_circle_is_noticed_where_a_type_alone_closes_it():
         ("fieldmon.io.read", "import streamlit"),
         ("fieldmon.io.writers.gpx", "def f():\n    from fieldmon.planning import plan"),
         ("fieldmon.cli.main", "from app import maps"),
+        ("fieldmon.monitoring.file.schema", "from fieldmon.monitoring.changes import season_log"),
+        ("fieldmon.monitoring.days.day_ahead", "from fieldmon.monitoring import Season"),
         ("fieldmon.io.read", "from fieldmon import plan_day"),
         ("app.state.choices", "from ..show import field_map"),
         ("app.words.texts", "from . import units\nfrom ..state.cached import plots"),

@@ -7,9 +7,10 @@ import pytest
 
 from fieldmon.cli.status import status as status_command
 from fieldmon.compute.units import Units
-from fieldmon.monitoring import Season, transactions
-from fieldmon.monitoring.advice_settings import AdviceSettings
-from fieldmon.monitoring.certifier_tables import treatments_table
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.changes import transactions
+from fieldmon.monitoring.inspecting.certifier_tables import treatments_table
+from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 from fieldmon.reports.advice import advice_report
 from fieldmon.reports.certification import certification_report
 from fieldmon.reports.day import DayFacts

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.monitoring import photos_asked
+from fieldmon.monitoring.phones import photos_asked
 
 from ..show import plant_history
 from ..state import notices, wishes
@@ -15,7 +15,7 @@ from ..words import texts
 from ..words.language import plant_in_words
 
 if TYPE_CHECKING:
-    from fieldmon.monitoring.photos_asked import AskedPhoto
+    from fieldmon.monitoring.phones.photos_asked import AskedPhoto
 
     from ..state.choices import Choices
 

@@ -9,7 +9,7 @@ import streamlit as st
 
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 
 from ..show.assumed import of_rows
 from ..state import (

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
-from fieldmon.monitoring.settings_words import changed, taken_back, telling_anew
+from fieldmon.monitoring.settings.settings_words import changed, taken_back, telling_anew
 from fieldmon.plot.robot import Robot, scout
 
 from ..state import chosen_day, notices

@@ -11,7 +11,7 @@ import streamlit as st
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.import_report import ImportMessage, Severity
 from fieldmon.io.parse.geometry import area_m2
-from fieldmon.monitoring.settings import MOST_DAYS
+from fieldmon.monitoring.settings.settings import MOST_DAYS
 from fieldmon.pests.pest import seen_by_pest
 from fieldmon.plot import robot as robots
 from fieldmon.plot.local_clock import local_clock

@@ -17,7 +17,7 @@ from . import acting
 if TYPE_CHECKING:
     from datetime import date, time
 
-    from fieldmon.monitoring.numbered_inspections import NumberedInspection
+    from fieldmon.monitoring.inspecting.numbered_inspections import NumberedInspection
 
     from ..state.choices import Choices
 

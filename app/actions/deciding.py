@@ -27,8 +27,8 @@ from .treating import Zoned
 
 if TYPE_CHECKING:
     from fieldmon.decisions.thresholds import Threshold
-    from fieldmon.monitoring.advice import Advice
-    from fieldmon.monitoring.advice_settings import AdviceSettings
+    from fieldmon.monitoring.advice.advice import Advice
+    from fieldmon.monitoring.settings.advice_settings import AdviceSettings
     from fieldmon.reports.content import Report
 
     from ..state.choices import Choices

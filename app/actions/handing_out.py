@@ -11,7 +11,8 @@ import streamlit as st
 
 from fieldmon.io.writers import FORMATS, HandoffPlan
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring import day_ahead, scouts
+from fieldmon.monitoring.days import day_ahead
+from fieldmon.monitoring.phones import scouts
 
 from ..show import qr_code
 from ..state import chosen_day, morning_steps, notices, phone_address, wishes

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.monitoring import scouts
-from fieldmon.monitoring.scouts_out import scouts_out
+from fieldmon.monitoring.days.scouts_out import scouts_out
+from fieldmon.monitoring.phones import scouts
 from fieldmon.planning.members import person_key
 from fieldmon.plot.named_rows import rows_meant
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import SettingError
-from fieldmon.monitoring import scouts
+from fieldmon.monitoring.phones import scouts
 
 from ..state import notices, plot_source, seasons_folder, widget_memory, work_day
 from ..words import texts

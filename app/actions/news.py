@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.monitoring import scouts
+from fieldmon.monitoring.phones import scouts
 
 from ..state import chosen_day
 

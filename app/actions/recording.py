@@ -17,8 +17,8 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.options import Upload
 from fieldmon.io.parse import result_words
 from fieldmon.io.writers.day_file import faces
-from fieldmon.monitoring.inspection_import import read_brought, record_saved
-from fieldmon.monitoring.transactions import MAGIC
+from fieldmon.monitoring.changes.transactions import MAGIC
+from fieldmon.monitoring.season.inspection_import import read_brought, record_saved
 from fieldmon.plot.grid import plant_at, plant_numbers
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.named_rows import plant_meant
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from fieldmon.io.import_report import ImportMessage
-    from fieldmon.monitoring.batches import Batch, BatchContents, Recorded
-    from fieldmon.monitoring.inspection_import import BroughtFile
+    from fieldmon.monitoring.inspecting.batches import Batch, BatchContents, Recorded
+    from fieldmon.monitoring.season.inspection_import import BroughtFile
 
     from ..state.choices import Choices
 

@@ -9,7 +9,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.infestation.inspections import FOUND, Inspections
-from fieldmon.monitoring.settings import seconds
+from fieldmon.monitoring.settings.settings import seconds
 
 from ..show import recorded_batches
 from ..state import chosen_day, notices

@@ -14,7 +14,7 @@ import streamlit as st
 from streamlit.delta_generator import DeltaGenerator
 
 from fieldmon.io.writers.geojson import route_geojson
-from fieldmon.monitoring.estate_routes import PLAN_TABLE, PlotLeftOut, plan_table, stems
+from fieldmon.monitoring.days.estate_routes import PLAN_TABLE, PlotLeftOut, plan_table, stems
 from fieldmon.plot.local_clock import grid_clock
 
 from ..state import shared_plots, widget_memory

@@ -9,7 +9,7 @@ from typing import Any
 
 from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.io.readers import phone_file
-from fieldmon.monitoring import findings, photos
+from fieldmon.monitoring.phones import findings, photos
 
 #: findings in one request
 MOST_FINDINGS = 500

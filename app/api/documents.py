@@ -20,18 +20,18 @@ from fieldmon.infestation.inspections import RESULT_NAMES
 from fieldmon.infestation.records import ABSENT, PRESENT
 from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring import kept_open
-from fieldmon.monitoring.day_ahead import (
+from fieldmon.monitoring.days.day_ahead import (
     DayAhead,
     WorkPart,
     planned_again,
     route_ahead,
     work_hours,
 )
-from fieldmon.monitoring.derived_layers import spot_area
-from fieldmon.monitoring.findings import taken_back, taken_back_before
-from fieldmon.monitoring.history import say_gone
-from fieldmon.monitoring.photos import photos_of
-from fieldmon.monitoring.plant_states import hot_spots_on, shown_apart
+from fieldmon.monitoring.estimates.derived_layers import spot_area
+from fieldmon.monitoring.estimates.history import say_gone
+from fieldmon.monitoring.estimates.plant_states import hot_spots_on, shown_apart
+from fieldmon.monitoring.phones.findings import taken_back, taken_back_before
+from fieldmon.monitoring.phones.photos import photos_of
 from fieldmon.planning.skips import left_out
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
 
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.scouts import Scout
+    from fieldmon.monitoring.phones.scouts import Scout
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot

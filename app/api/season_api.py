@@ -30,9 +30,9 @@ from fieldmon.errors import (
     SettingError,
 )
 from fieldmon.io.readers.phone_file import day
-from fieldmon.monitoring import findings, photos, photos_asked, scouts
-from fieldmon.monitoring.file_problems import FileHeld
-from fieldmon.monitoring.transactions import waiting_at_most
+from fieldmon.monitoring.changes.transactions import waiting_at_most
+from fieldmon.monitoring.file.file_problems import FileHeld
+from fieldmon.monitoring.phones import findings, photos, photos_asked, scouts
 
 from ..state import last_heard, opened_seasons, seasons_folder
 from . import description, documents, reading
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.scouts import Scout
+    from fieldmon.monitoring.phones.scouts import Scout
 
     Answer = Callable[[Request], Awaitable[Response]]
 

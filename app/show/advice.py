@@ -26,7 +26,7 @@ from .maps import colours, legends
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.monitoring.advice import Advice
+    from fieldmon.monitoring.advice.advice import Advice
     from fieldmon.plot.grid import PlantGrid
 
     from ..state.choices import Choices

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.monitoring.cautions import harvest_unsaid
-from fieldmon.monitoring.closures import closed_in_words, closed_plants, is_all_closed
+from fieldmon.monitoring.treating.cautions import harvest_unsaid
+from fieldmon.monitoring.treating.closures import closed_in_words, closed_plants, is_all_closed
 from fieldmon.planning.skips import left_out_in_words
 
 from ..state import chosen_day
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.monitoring import Caution, Season
-    from fieldmon.monitoring.advice import Advice
+    from fieldmon.monitoring.advice.advice import Advice
     from fieldmon.planning.plan import DayPlan
 
     from ..state.choices import Choices

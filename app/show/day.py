@@ -13,7 +13,7 @@ import streamlit as st
 from fieldmon.compute.wording import chance_figure
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.io.writers.day_file import faces
-from fieldmon.monitoring.day_figures import flagged_said
+from fieldmon.monitoring.estimates.day_figures import flagged_said
 from fieldmon.planning.bound_wording import PROVED, share_above
 from fieldmon.planning.explain import explain
 from fieldmon.planning.skips import nothing_left_in_words

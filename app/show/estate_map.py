@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from pydeck import Layer
 
-from fieldmon.monitoring.estate_day import DUE_DAYS
+from fieldmon.monitoring.days.estate_day import DUE_DAYS
 
 from ..words import texts
 from ..words.language import about, listed

@@ -15,7 +15,7 @@ from fieldmon.compute.wording import chance_figure
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.io.writers.day_file import faces
-from fieldmon.monitoring import photos
+from fieldmon.monitoring.phones import photos
 from fieldmon.pests.weather import DAY_S
 from fieldmon.plot.grid import plant_at, plant_numbers
 from fieldmon.plot.named_rows import plant_meant
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from pydeck import Layer
 
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.monitoring.treatments import KeptTreatment
+    from fieldmon.monitoring.treating.treatments import KeptTreatment
     from fieldmon.plot.grid import PlantGrid
 
     from ..state.choices import Choices

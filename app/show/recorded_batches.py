@@ -11,7 +11,7 @@ from ..words import texts
 from ..words.language import in_words, number
 
 if TYPE_CHECKING:
-    from fieldmon.monitoring.batches import Batch, BatchContents
+    from fieldmon.monitoring.inspecting.batches import Batch, BatchContents
 
     from ..state.choices import Choices
 

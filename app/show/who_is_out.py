@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fieldmon.monitoring.scouts_out import scouts_out
+from fieldmon.monitoring.days.scouts_out import scouts_out
 
 from ..state import last_heard
 from ..words import texts
@@ -16,7 +16,7 @@ from ..words import texts
 if TYPE_CHECKING:
     from datetime import datetime, timedelta
 
-    from fieldmon.monitoring.scouts_out import ScoutOut
+    from fieldmon.monitoring.days.scouts_out import ScoutOut
 
     from ..state.choices import Choices
     from ..state.last_heard import LastHeard

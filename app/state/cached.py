@@ -18,8 +18,9 @@ from fieldmon.infestation import hotspots
 from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior import prior_chance
 from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.monitoring import day_ahead, estate_day, worked_route
-from fieldmon.monitoring.plant_states import hot_spots_on
+from fieldmon.monitoring import worked_route
+from fieldmon.monitoring.days import day_ahead, estate_day
+from fieldmon.monitoring.estimates.plant_states import hot_spots_on
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed
 from fieldmon.reports import season as reports
 
@@ -42,12 +43,12 @@ if TYPE_CHECKING:
     from fieldmon.infestation.prior_settings import PriorSettings
     from fieldmon.infestation.records import Records
     from fieldmon.monitoring import DayFigures, KeptMessage, PlannedAndDone, Progress, Season
-    from fieldmon.monitoring.advice import Advice
-    from fieldmon.monitoring.advice_settings import AdviceSettings
-    from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn
-    from fieldmon.monitoring.found_again import FoundAgain
-    from fieldmon.monitoring.told_detection import ToldOtherwise
-    from fieldmon.monitoring.treatment_effect import TreatmentEffect
+    from fieldmon.monitoring.advice.advice import Advice
+    from fieldmon.monitoring.days.estate_day import EstatePlot, EstateTurn
+    from fieldmon.monitoring.estimates.found_again import FoundAgain
+    from fieldmon.monitoring.estimates.told_detection import ToldOtherwise
+    from fieldmon.monitoring.estimates.treatment_effect import TreatmentEffect
+    from fieldmon.monitoring.settings.advice_settings import AdviceSettings
     from fieldmon.planning.route import Route
     from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.plot import Plot

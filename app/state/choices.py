@@ -7,7 +7,7 @@ from datetime import date
 from typing import TYPE_CHECKING
 
 from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.monitoring import photos_asked
+from fieldmon.monitoring.phones import photos_asked
 from fieldmon.planning.plan import PlanSettings
 from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.local_clock import LocalClock, local_clock

@@ -12,8 +12,9 @@ import numpy as np
 from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.level_range import first_level_range
 from fieldmon.infestation.records import usable
-from fieldmon.monitoring import day_was_worked, plant_states
-from fieldmon.monitoring.shift_work import made_by
+from fieldmon.monitoring import day_was_worked
+from fieldmon.monitoring.estimates import plant_states
+from fieldmon.monitoring.settings.shift_work import made_by
 from fieldmon.planning import day_bound
 from fieldmon.plot.local_clock import grid_clock
 
@@ -29,8 +30,8 @@ if TYPE_CHECKING:
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.infestation.records import Records
     from fieldmon.monitoring import DayFigures, PlannedAndDone, Progress
-    from fieldmon.monitoring.found_again import FoundAgain
-    from fieldmon.monitoring.told_detection import ToldOtherwise
+    from fieldmon.monitoring.estimates.found_again import FoundAgain
+    from fieldmon.monitoring.estimates.told_detection import ToldOtherwise
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
     from fieldmon.plot.plot import Plot

@@ -8,7 +8,7 @@ import streamlit as st
 
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.thresholds import in_order_for, published
-from fieldmon.monitoring.advice_settings import AdviceSettings
+from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 
 from . import cached, widget_memory
 from .chosen_units import units
@@ -16,8 +16,8 @@ from .unit_boxes import DECIDE_BY_AREA, DECIDE_LENGTHS
 
 if TYPE_CHECKING:
     from fieldmon.decisions.thresholds import Threshold
-    from fieldmon.monitoring.advice import Advice
-    from fieldmon.monitoring.treatment_effect import TreatmentEffect
+    from fieldmon.monitoring.advice.advice import Advice
+    from fieldmon.monitoring.estimates.treatment_effect import TreatmentEffect
 
     from .choices import Choices
 

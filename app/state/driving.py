@@ -10,8 +10,8 @@ from fieldmon.drive.recording import Recording
 from fieldmon.drive.simulated_robots import simulated_robot
 from fieldmon.drive.trace import Trace, believed_on_the_way, trace_of, trace_of_bag, trace_of_stops
 from fieldmon.errors import FieldmonError
-from fieldmon.monitoring.belief_settings import BeliefSettings
-from fieldmon.monitoring.monitor import Monitor
+from fieldmon.monitoring.estimates.monitor import Monitor
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 
 from .background_work import BackgroundWork
 

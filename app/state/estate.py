@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.errors import FieldmonError
 from fieldmon.io.options import PlotOptions
-from fieldmon.monitoring.estate_day import days_since, not_begun
+from fieldmon.monitoring.days.estate_day import days_since, not_begun
 from fieldmon.plot.local_clock import local_clock
 
 from ..words.language import of_error

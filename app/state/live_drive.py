@@ -11,7 +11,7 @@ import numpy as np
 from fieldmon.drive.trace import Trace
 from fieldmon.drive.vda5050.mqtt import Wire
 from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard, RobotWatcher
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 
 from .background_work import BackgroundWork
 from .driving import DayInTime

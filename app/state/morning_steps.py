@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.monitoring import scouts
+from fieldmon.monitoring.phones import scouts
 
 from . import chosen_day
 

@@ -54,7 +54,7 @@ def invitation(address: str, season: str, key: str, day: str = "", language: str
     address
         Of the app, as phones reach it: ``"https://192.168.1.5:8501"``.
     season, key
-        Name of the season, and somebody's key, see `fieldmon.monitoring.scouts.let_in`.
+        Name of the season, and somebody's key, see `fieldmon.monitoring.phones.scouts.let_in`.
     day
         ISO, where it is not to be today.
     language

@@ -15,7 +15,7 @@ from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
 from fieldmon.monitoring import Store, is_season
-from fieldmon.monitoring.inspection_import import season_copied
+from fieldmon.monitoring.season.inspection_import import season_copied
 
 from ..words import texts
 

@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
-from fieldmon.monitoring import estate_day, season_copies
-from fieldmon.monitoring.closures import closed_plants
-from fieldmon.monitoring.estate_day import EstatePlot
-from fieldmon.monitoring.estate_routes import (
+from fieldmon.monitoring.days import estate_day
+from fieldmon.monitoring.days.estate_day import EstatePlot
+from fieldmon.monitoring.days.estate_routes import (
     EstateRoute,
     NamedPlot,
     PlotLeftOut,
     too_far,
     walked,
 )
+from fieldmon.monitoring.season import season_copies
+from fieldmon.monitoring.treating.closures import closed_plants
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.plot.local_clock import local_clock
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from fieldmon.compute.wording import Worded
-    from fieldmon.monitoring.estate_day import EstateTurn
+    from fieldmon.monitoring.days.estate_day import EstateTurn
     from fieldmon.planning.plan import DayPlan
 
     from .estate import PlotState

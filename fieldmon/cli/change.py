@@ -28,7 +28,7 @@ from fieldmon.samplers import EVERY
 
 if TYPE_CHECKING:
     from fieldmon.monitoring import MonitoringSettings, Season
-    from fieldmon.monitoring.belief_settings import BeliefSettings
+    from fieldmon.monitoring.settings.belief_settings import BeliefSettings
     from fieldmon.planning.members import TeamMember
     from fieldmon.plot.field import Field
 
@@ -125,7 +125,7 @@ class ChangeOptions:
 
     def _must_be_alike(self, team: tuple[TeamMember, ...]) -> None:
         """Refuse what is said of everybody where members of a team differ, or find by a table."""
-        from fieldmon.monitoring.settings_words import worker_in_words
+        from fieldmon.monitoring.settings.settings_words import worker_in_words
 
         told = self.worker.look is not None and any(one.robot.detection is not None for one in team)
         if len({one.robot for one in team}) == 1 and not told:
@@ -200,7 +200,7 @@ def change(options: ChangeOptions) -> None:
     Example: fieldmon change season.gpkg --pest spider-mite --weather station.csv
     """
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.settings_words import telling_anew
+    from fieldmon.monitoring.settings.settings_words import telling_anew
 
     season = Season(options.season)
     seen = season.settings
@@ -218,7 +218,7 @@ def change(options: ChangeOptions) -> None:
 
 def _tell_day_of_before(season: Season) -> None:
     """Print how the last recorded day comes to be planned by what was changed, if it is over."""
-    from fieldmon.monitoring.settings_words import changed
+    from fieldmon.monitoring.settings.settings_words import changed
 
     if not len(recorded := season.inspections.date):
         return

@@ -120,8 +120,8 @@ def _of_export(season: Season, file: Path, who: str, *, confirmed: bool) -> int:
     """Take what was changed in a file exported from the season as corrections; return how many."""
     from fieldmon.cli.messages import Terminal
     from fieldmon.io.readers.inspection_options import InspectionOptions
-    from fieldmon.monitoring.exported_inspections import edited_copy
-    from fieldmon.monitoring.transactions import is_season
+    from fieldmon.monitoring.changes.transactions import is_season
+    from fieldmon.monitoring.season.exported_inspections import edited_copy
 
     if is_season(file):
         raise SettingError(

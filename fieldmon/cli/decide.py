@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from fieldmon.decisions.thresholds import Threshold
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.advice import Advice
+    from fieldmon.monitoring.advice.advice import Advice
 
 _OF_PLANTS = "share of plants"
 _LEAVES_OF_PLANTS = (
@@ -235,7 +235,7 @@ def decide(
     """
     from fieldmon.decisions.thresholds import threshold_of
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.advice_settings import AdviceSettings
+    from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 
     threshold = threshold_of(asked.threshold, _own(asked.thresholds))
     for path in files.output or []:

@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from fieldmon.drive.vda5050.fleet import Vda5050Robot
     from fieldmon.drive.vda5050.mqtt import RobotName
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.monitoring.settings.settings import MonitoringSettings
     from fieldmon.planning.members import TeamMember
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
@@ -186,7 +186,7 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
     Example: fieldmon drive estate.zip --feature Gate --rover --robot mujoco --steering ackermann
     Example: fieldmon drive season.gpkg --robot vda5050 --broker farm.local --serial robot1
     """
-    from fieldmon.monitoring.transactions import is_season
+    from fieldmon.monitoring.changes.transactions import is_season
 
     with told_to_end(as_at_ctrl_c):
         if options.plot is None or not is_season(options.plot):
@@ -208,7 +208,7 @@ def _plot(options: DriveOptions) -> None:
     from fieldmon.drive.day import DrivenDay, drive_day
     from fieldmon.infestation.prior import prior_chance
     from fieldmon.infestation.prior_settings import PriorSettings
-    from fieldmon.monitoring.monitor import Monitor
+    from fieldmon.monitoring.estimates.monitor import Monitor
     from fieldmon.planning.assumptions import assumed_by
     from fieldmon.plot.local_clock import local_clock, utc_now
 

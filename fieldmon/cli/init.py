@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.records import Records
     from fieldmon.monitoring import MonitoringSettings
-    from fieldmon.monitoring.belief_settings import BeliefSettings
+    from fieldmon.monitoring.settings.belief_settings import BeliefSettings
     from fieldmon.planning.members import TeamMember
 
 
@@ -104,7 +104,7 @@ class InitOptions:
     ) -> MonitoringSettings:
         """Return how the season is worked."""
         from fieldmon.monitoring import MonitoringSettings, Season
-        from fieldmon.monitoring.belief_settings import BeliefSettings
+        from fieldmon.monitoring.settings.belief_settings import BeliefSettings
         from fieldmon.planning.members import Teamwork
 
         if self.spread is not None and pest_in_weather is not None:

@@ -30,8 +30,8 @@ def log(
     Example: fieldmon log season.gpkg
     """
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.outside_changes import refuse_unlike_log
-    from fieldmon.monitoring.season_log import lines
+    from fieldmon.monitoring.changes.outside_changes import refuse_unlike_log
+    from fieldmon.monitoring.changes.season_log import lines
     from fieldmon.plot.local_clock import local_clock
 
     kept = Season(season)

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from fieldmon.infestation.records import Records
     from fieldmon.io.prepared_plots import Laid, SourceMessage
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.settings import MonitoringSettings
-    from fieldmon.monitoring.treatments import KeptTreatment
+    from fieldmon.monitoring.settings.settings import MonitoringSettings
+    from fieldmon.monitoring.treating.treatments import KeptTreatment
     from fieldmon.plot.assumed import Assumed
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot

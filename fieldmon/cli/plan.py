@@ -63,7 +63,7 @@ def plan(context: typer.Context, options: PlanOptions) -> None:
     With --all, columns robot (robot or scout), hours, speed_km_h and look_s of the plot file say
     who works on each plot. Options given here override them.
     """
-    from fieldmon.monitoring.transactions import is_season
+    from fieldmon.monitoring.changes.transactions import is_season
 
     if not options.every_plot:
         check_outputs(options.output, options.chance_map)

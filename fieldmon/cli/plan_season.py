@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from fieldmon.cli.plan_options import PlanOptions
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.settings import MonitoringSettings
+    from fieldmon.monitoring.settings.settings import MonitoringSettings
     from fieldmon.planning.plan import DayPlan
 
 # times are told to the minute
@@ -84,7 +84,7 @@ def _plan_alone(
     settings: MonitoringSettings,
 ) -> None:
     """Plan what is left of a day for who works alone, and write the route."""
-    from fieldmon.monitoring.day_ahead import plan_ahead
+    from fieldmon.monitoring.days.day_ahead import plan_ahead
     from fieldmon.planning.day_bound import with_bound
     from fieldmon.planning.route import with_forecast
 
@@ -187,7 +187,11 @@ class _LeftOff(NamedTuple):
     def of(cls, season: Season, on: date, days: tuple[tuple[str, DayPlan], ...]) -> _LeftOff:
         """Return it of the plans of those named."""
         from fieldmon.compute.units import Units
-        from fieldmon.monitoring.closures import closed_in_words, closed_plants, is_all_closed
+        from fieldmon.monitoring.treating.closures import (
+            closed_in_words,
+            closed_plants,
+            is_all_closed,
+        )
 
         grid = season.plot.grid
         each = [(season.closed(on, who, today.scene.seconds_left), today) for who, today in days]
@@ -238,7 +242,7 @@ def _tell_skipped(days: tuple[DayPlan, ...]) -> None:
 
 def _tell_settings_of_then(season: Season, on: date, settings: MonitoringSettings) -> None:
     """Print by what a past day is planned, where something else counts now."""
-    from fieldmon.monitoring.settings_words import changed
+    from fieldmon.monitoring.settings.settings_words import changed
 
     if said := changed(settings, season.settings):
         typer.echo(
@@ -267,7 +271,7 @@ def _plan_team(
     settings: MonitoringSettings,
 ) -> None:
     """Plan what is left of a day for each of a team; write a file for each."""
-    from fieldmon.monitoring.day_ahead import WorkPart, by_the_clock
+    from fieldmon.monitoring.days.day_ahead import WorkPart, by_the_clock
     from fieldmon.planning.route import with_forecast
 
     team = settings.team
@@ -305,7 +309,7 @@ def _tell_routes(
     season: Season, options: PlanOptions, on: date, named: Sequence[tuple[str, DayPlan]]
 ) -> None:
     """Print what was done of a day, when each of a team begins, and the bound if it is asked."""
-    from fieldmon.monitoring.shift_work import Besides
+    from fieldmon.monitoring.settings.shift_work import Besides
     from fieldmon.planning.team import bound_of_days
 
     names = tuple(name for name, _ in named)

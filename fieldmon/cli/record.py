@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.inspection_import import BroughtFile
+    from fieldmon.monitoring.season.inspection_import import BroughtFile
 
 FindingFiles = Annotated[
     list[Path],
@@ -123,7 +123,7 @@ def _read(
 ) -> list[BroughtFile]:
     """Return what is in files, all of them before any is recorded: nothing is left half-done."""
     from fieldmon.io.readers.other_plots import left_out
-    from fieldmon.monitoring.inspection_import import read_brought
+    from fieldmon.monitoring.season.inspection_import import read_brought
 
     read = []
     for k, file in enumerate(files):
@@ -190,7 +190,7 @@ def _record(season: Season, read: list[BroughtFile], flags: RecordFlags) -> date
 
 def _take_saved(season: Season, name: str, saved: PhoneFile, who: str) -> None:
     """Record what a phone saved, as what it sends."""
-    from fieldmon.monitoring.inspection_import import record_saved
+    from fieldmon.monitoring.season.inspection_import import record_saved
 
     done, said = record_saved(season, _saved_of(who, season, saved, name), who)
     typer.echo(f"{name}: {done.new} new, {done.known} known already")
@@ -203,7 +203,7 @@ def _of(who: str, read: Inspections, file: str) -> Inspections:
     import numpy as np
 
     from fieldmon.compute.wording import counted
-    from fieldmon.monitoring.shift_work import made_by
+    from fieldmon.monitoring.settings.shift_work import made_by
 
     if not (who := who.strip()):
         return read

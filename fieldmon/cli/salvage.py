@@ -19,7 +19,7 @@ def salvage(
 
     Example: fieldmon salvage season.gpkg --output rescued.gpkg
     """
-    from fieldmon.monitoring.salvage import salvage as save
+    from fieldmon.monitoring.season.salvage import salvage as save
 
     done = save(season, output)
     for name, rows in done.rows.items():

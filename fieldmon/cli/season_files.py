@@ -37,7 +37,7 @@ def opened(files: Iterable[Path]) -> list[Season]:
     where two seasons are of one plot.
     """
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.season_copies import of_one_plot
+    from fieldmon.monitoring.season.season_copies import of_one_plot
 
     seasons = [Season(file) for file in files]
     for one, other in combinations(seasons, 2):
@@ -223,7 +223,7 @@ def _results_in(file: Path, season: Season) -> tuple[Inspections, str]:
     """
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.io.readers.other_plots import left_out
-    from fieldmon.monitoring.inspection_import import read_findings
+    from fieldmon.monitoring.season.inspection_import import read_findings
 
     try:
         read = read_findings(season, file)

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from datetime import date, time
 
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.estate_day import EstatePlot, EstateTurn
-    from fieldmon.monitoring.estate_routes import EstateRoutes, NamedPlot, PlotLeftOut
+    from fieldmon.monitoring.days.estate_day import EstatePlot, EstateTurn
+    from fieldmon.monitoring.days.estate_routes import EstateRoutes, NamedPlot, PlotLeftOut
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.plan import DayPlan
 
@@ -126,7 +126,7 @@ def _members(
     options: ShareOptions, seasons: Sequence[Season]
 ) -> tuple[tuple[TeamMember, ...], time]:
     """Return who works, and when the first of them starts: the seasons' robot, if not told."""
-    from fieldmon.monitoring.estate_day import one_robot, robots_of
+    from fieldmon.monitoring.days.estate_day import one_robot, robots_of
 
     worker, told = options.worker, options.robots or "1"
     robot = None if worker.scout or worker.rover else one_robot(seasons)
@@ -182,8 +182,8 @@ def _due(
     seasons: Sequence[Season], told: date | None, *, every: bool
 ) -> tuple[list[tuple[Season, EstatePlot]], list[PlotLeftOut]]:
     """Return the seasons that share the day, with their plots; and those that are left out."""
-    from fieldmon.monitoring.estate_day import EstatePlot, days_since, due, not_begun, not_due
-    from fieldmon.monitoring.estate_routes import PlotLeftOut
+    from fieldmon.monitoring.days.estate_day import EstatePlot, days_since, due, not_begun, not_due
+    from fieldmon.monitoring.days.estate_routes import PlotLeftOut
 
     begun, left_out = [], list[PlotLeftOut]()
     for season in seasons:
@@ -213,7 +213,7 @@ def _assumed(season: Season, members: tuple[TeamMember, ...]) -> str:
 
 
 def _named(season: Season, plot: EstatePlot) -> NamedPlot:
-    from fieldmon.monitoring.estate_routes import NamedPlot
+    from fieldmon.monitoring.days.estate_routes import NamedPlot
 
     return NamedPlot(_name(season), season.settings.sampler, plot)
 
@@ -222,8 +222,8 @@ def _planned(
     plots: Sequence[NamedPlot], members: Sequence[TeamMember], starts: time, move_s: float
 ) -> EstateRoutes:
     """Return what comes of the day; say the routes, what is left off, and who is free."""
-    from fieldmon.monitoring.estate_day import share_estate
-    from fieldmon.monitoring.estate_routes import too_far, walked
+    from fieldmon.monitoring.days.estate_day import share_estate
+    from fieldmon.monitoring.days.estate_routes import too_far, walked
 
     shared = share_estate([one.known for one in plots], members, starts, move_s)
     with progress("Routes", len(shared.turns)) as bar:
@@ -251,7 +251,7 @@ def _write(
 ) -> None:
     """Write the routes and their table."""
     from fieldmon.io.atomic_write import write_whole
-    from fieldmon.monitoring.estate_routes import PLAN_TABLE, plan_table, stems
+    from fieldmon.monitoring.days.estate_routes import PLAN_TABLE, plan_table, stems
 
     folder.mkdir(parents=True, exist_ok=True)
     files, routes = {}, [one for _, one in made.turns]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.monitoring import Season, Status
-    from fieldmon.monitoring.batches import BatchContents
+    from fieldmon.monitoring.inspecting.batches import BatchContents
 
 #: batches of which it is listed what they say
 _DETAILED = 100
@@ -169,7 +169,7 @@ def _of_inspections(season: Season, now: Status) -> Iterator[str]:
 def _of_infestation(now: Status) -> Iterator[str]:
     """Yield how many are believed infested still, and which share of them was found."""
     from fieldmon.compute.wording import chance_figure, estimate
-    from fieldmon.monitoring.day_figures import flagged_said
+    from fieldmon.monitoring.estimates.day_figures import flagged_said
 
     still, ahead = now.infested, now.estimate
     yield (
@@ -237,7 +237,7 @@ def _of_pest(season: Season, now: Status) -> Iterator[str]:
 
 def _gone(season: Season, now: Status) -> Iterator[str]:
     """Yield how many plants do not stand there any more, if any."""
-    from fieldmon.monitoring.plant_states import gone_by_note_alone
+    from fieldmon.monitoring.estimates.plant_states import gone_by_note_alone
 
     if n := int(season.history.gone(now.day).sum()):
         stand = "does not stand there any more: plans leave it out" if n == 1 else (
@@ -290,7 +290,7 @@ def _planned_only(season: Season, until: date) -> Iterator[str]:
 
 def of_treatments(season: Season, now: Status) -> Iterator[str]:
     """Yield what treatments ask for, and whether they worked, line by line."""
-    from fieldmon.monitoring.cautions import harvest_unsaid
+    from fieldmon.monitoring.treating.cautions import harvest_unsaid
 
     if (first := season.harvest_from(now.on)) is not None:
         from_when = f"from {first[0]} on, after the treatment of {first[1].on}"

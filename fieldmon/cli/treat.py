@@ -134,7 +134,7 @@ def treat(options: TreatOptions) -> None:
     """
     from fieldmon.io.read import read_treated
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.day_figures import flagged_said
+    from fieldmon.monitoring.estimates.day_figures import flagged_said
     from fieldmon.plot.named_rows import plants_in_rows
 
     if options.area is not None and options.rows is not None:
@@ -167,7 +167,7 @@ def treat(options: TreatOptions) -> None:
 
 def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
     """Print what a treatment asks for: waiting periods and warnings."""
-    from fieldmon.monitoring.cautions import harvest_unsaid, label_of, waits
+    from fieldmon.monitoring.treating.cautions import harvest_unsaid, label_of, waits
 
     (one,) = (treatment for treatment in kept.treatments() if treatment.batch == batch)
     if learnt:

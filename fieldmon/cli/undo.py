@@ -50,7 +50,7 @@ def undo(
     from fieldmon.monitoring import Season
 
     if change:
-        from fieldmon.monitoring.settings_words import taken_back, telling_anew
+        from fieldmon.monitoring.settings.settings_words import taken_back, telling_anew
 
         kept = Season(season)
         settings = kept.settings

@@ -5,15 +5,15 @@ from __future__ import annotations
 from datetime import date, datetime, time, timedelta
 from typing import TYPE_CHECKING, Protocol
 
-from fieldmon.monitoring.shift_work import BEGINS_OTHERWISE_S
+from fieldmon.monitoring.settings.shift_work import BEGINS_OTHERWISE_S
 from fieldmon.pests.weather import DAY_S
 from fieldmon.plot.local_clock import grid_clock, utc_now
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from fieldmon.monitoring.season_file import Season
-    from fieldmon.monitoring.shift_work import Besides
+    from fieldmon.monitoring.season.season_file import Season
+    from fieldmon.monitoring.settings.shift_work import Besides
     from fieldmon.plot.local_clock import LocalClock
 
 # a last result may be so much ahead of the clock: files hold whole seconds

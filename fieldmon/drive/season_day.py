@@ -10,10 +10,10 @@ import numpy as np
 from fieldmon.drive.day_clock import second_now, time_of
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.monitoring.day_ahead import DayAhead, through
-from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspect
-from fieldmon.monitoring.scouts import inside
-from fieldmon.monitoring.shift_work import Besides
+from fieldmon.monitoring.days.day_ahead import DayAhead, through
+from fieldmon.monitoring.estimates.monitor import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.monitoring.phones.scouts import inside
+from fieldmon.monitoring.settings.shift_work import Besides
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
 from fieldmon.planning.wishes import Wishes
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
     from datetime import date, time
 
-    from fieldmon.monitoring.season_file import Season
+    from fieldmon.monitoring.season.season_file import Season
     from fieldmon.planning.plan import DayPlan
 
 #: a robot that is so much later or earlier than planned is planned for anew

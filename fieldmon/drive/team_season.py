@@ -17,7 +17,7 @@ from fieldmon.drive.season_day import (
     left_of_plan,
 )
 from fieldmon.errors import SettingError
-from fieldmon.monitoring.monitor import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.monitoring.estimates.monitor import AskedDay, PlantToInspect, plant_to_inspect
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.travel import GATE, travel_s
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
     from datetime import date
 
-    from fieldmon.monitoring.season_file import Season
+    from fieldmon.monitoring.season.season_file import Season
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.travel import Aisles

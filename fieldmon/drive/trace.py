@@ -16,7 +16,7 @@ from fieldmon.drive.day import place_m, way_m
 from fieldmon.drive.day_tables import STOP_COLUMNS
 from fieldmon.drive.recording import Noted, Recording
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.travel import GATE
 

@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.batches import Batch, Recorded
-from fieldmon.monitoring.cautions import Caution
-from fieldmon.monitoring.contradictions import Contradictions
-from fieldmon.monitoring.day_figures import DayFigures, PlannedAndDone, Progress
-from fieldmon.monitoring.merging.merge import Merged
-from fieldmon.monitoring.outside_changes import OutsideChange
-from fieldmon.monitoring.season_file import Season
-from fieldmon.monitoring.season_log import LogEntry
-from fieldmon.monitoring.settings import MonitoringSettings
-from fieldmon.monitoring.status import Status
-from fieldmon.monitoring.tables import KeptMessage
-from fieldmon.monitoring.transactions import (
+from fieldmon.monitoring.changes.outside_changes import OutsideChange
+from fieldmon.monitoring.changes.season_log import LogEntry
+from fieldmon.monitoring.changes.transactions import (
     Store,
     copy_season,
     is_season,
     kept_open,
     wait_until_free,
 )
-from fieldmon.monitoring.treatment_effect import TreatmentEffect
-from fieldmon.monitoring.treatments import KeptTreatment
-from fieldmon.monitoring.worked_route import day_was_worked, worked_route
+from fieldmon.monitoring.days.worked_route import day_was_worked, worked_route
+from fieldmon.monitoring.estimates.day_figures import DayFigures, PlannedAndDone, Progress
+from fieldmon.monitoring.estimates.status import Status
+from fieldmon.monitoring.estimates.treatment_effect import TreatmentEffect
+from fieldmon.monitoring.file.tables import KeptMessage
+from fieldmon.monitoring.inspecting.batches import Batch, Recorded
+from fieldmon.monitoring.inspecting.contradictions import Contradictions
+from fieldmon.monitoring.merging.merge import Merged
+from fieldmon.monitoring.season.season_file import Season
+from fieldmon.monitoring.settings.settings import MonitoringSettings
+from fieldmon.monitoring.treating.applications import Application
+from fieldmon.monitoring.treating.cautions import Caution
+from fieldmon.monitoring.treating.treatments import KeptTreatment
 
 __all__ = [
     "Application",

@@ -10,7 +10,7 @@ from fieldmon.compute.wording import chance_figure, estimate, figure, share_figu
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.records import PRESENT
 from fieldmon.io.spray_rate import litres_figure
-from fieldmon.monitoring.plant_states import shown_apart
+from fieldmon.monitoring.estimates.plant_states import shown_apart
 from fieldmon.plot.grid import plant_numbers, row_ends
 from fieldmon.reports import words
 from fieldmon.reports.content import (
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.units import Units
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.advice import Advice
+    from fieldmon.monitoring.advice.advice import Advice
 
 
 def advice_report(

@@ -19,8 +19,8 @@ import numpy as np
 from fieldmon.compute.wording import KeptText, counted, figure, joined, worded
 from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring.cautions import groups, label_of, waits
-from fieldmon.monitoring.season_copies import called_apart
+from fieldmon.monitoring.season.season_copies import called_apart
+from fieldmon.monitoring.treating.cautions import groups, label_of, waits
 from fieldmon.plot.named_rows import place_in_words
 from fieldmon.reports import words
 from fieldmon.reports.content import (
@@ -41,8 +41,8 @@ if TYPE_CHECKING:
     from fieldmon.compute.units import Units
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Caution, KeptTreatment, LogEntry, Season
-    from fieldmon.monitoring.applications import Application
-    from fieldmon.monitoring.treatment_effect import TreatmentEffect
+    from fieldmon.monitoring.estimates.treatment_effect import TreatmentEffect
+    from fieldmon.monitoring.treating.applications import Application
 
 # as many letters as a value beside its name may have, and a line of sentences; millimetres that
 # lines, titles and a page take up, a little more than they do

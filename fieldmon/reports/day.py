@@ -12,10 +12,10 @@ from fieldmon.compute.wording import chance_figure, estimate, figure, hours_figu
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
-from fieldmon.monitoring.cautions import label_of, waits
-from fieldmon.monitoring.closures import closed_in_words
-from fieldmon.monitoring.day_ahead import WorkPart, plan_ahead
-from fieldmon.monitoring.plant_states import hot_spots_on, shown_apart
+from fieldmon.monitoring.days.day_ahead import WorkPart, plan_ahead
+from fieldmon.monitoring.estimates.plant_states import hot_spots_on, shown_apart
+from fieldmon.monitoring.treating.cautions import label_of, waits
+from fieldmon.monitoring.treating.closures import closed_in_words
 from fieldmon.planning.members import person_key
 from fieldmon.planning.skips import left_out_in_words
 from fieldmon.plot.grid import plant_numbers
@@ -49,8 +49,8 @@ if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.monitoring import PlannedAndDone, Season
-    from fieldmon.monitoring.closures import Closure
-    from fieldmon.monitoring.treatments import KeptTreatment
+    from fieldmon.monitoring.treating.closures import Closure
+    from fieldmon.monitoring.treating.treatments import KeptTreatment
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
 

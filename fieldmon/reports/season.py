@@ -14,8 +14,8 @@ from fieldmon.compute.wording import chance_figure, counted, estimate, figure, j
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import DayFigures
-from fieldmon.monitoring.day_figures import flagged_said, found_pct
-from fieldmon.monitoring.plant_states import finds_apart
+from fieldmon.monitoring.estimates.day_figures import flagged_said, found_pct
+from fieldmon.monitoring.estimates.plant_states import finds_apart
 from fieldmon.plot.grid import plant_numbers, rows_listed
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.reports import words
@@ -57,7 +57,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.units import Units
     from fieldmon.monitoring import Season, Status
-    from fieldmon.monitoring.batches import Batch, BatchContents
+    from fieldmon.monitoring.inspecting.batches import Batch, BatchContents
 
 _LATE_DAYS = 7
 # as many as a page has room for beside its map

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import Worded, chance_figure, figure, joined, worded
 from fieldmon.io.import_report import Severity
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.reports import words
 from fieldmon.reports.content import Listing, Table

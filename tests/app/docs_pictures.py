@@ -23,8 +23,8 @@ import fieldmon as fm
 from app.state import seasons_folder
 from app.state.scout_page import invitation
 from app.words import texts
-from fieldmon.monitoring import scouts
-from fieldmon.monitoring.photos_asked import ask_photo
+from fieldmon.monitoring.phones import scouts
+from fieldmon.monitoring.phones.photos_asked import ask_photo
 from fieldmon.plot.local_clock import local_clock
 from tests.app import pictures
 from tests.app.scouting import Line, PhoneBrowser

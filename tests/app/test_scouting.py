@@ -18,10 +18,11 @@ from app.api import documents
 from app.state.scout_page import invitation
 from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND
-from fieldmon.monitoring import Season, photos, scouts
-from fieldmon.monitoring.day_ahead import WorkPart, planned_again, route_ahead
-from fieldmon.monitoring.findings import take
-from fieldmon.monitoring.photos_asked import ask_photo, photos_asked
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.days.day_ahead import WorkPart, planned_again, route_ahead
+from fieldmon.monitoring.phones import photos, scouts
+from fieldmon.monitoring.phones.findings import take
+from fieldmon.monitoring.phones.photos_asked import ask_photo, photos_asked
 from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.local_clock import utc_now
 from tests.app.driving import until

@@ -30,16 +30,12 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.infestation.spread import Spread, night
-from fieldmon.monitoring import (
-    MonitoringSettings,
-    Season,
-    batches,
-    inspection_table,
-    schema,
-    season_log,
-)
-from fieldmon.monitoring.derived_layers import map_digest
-from fieldmon.monitoring.geopackage import insert
+from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.monitoring.changes import season_log
+from fieldmon.monitoring.estimates.derived_layers import map_digest
+from fieldmon.monitoring.file import schema
+from fieldmon.monitoring.file.geopackage import insert
+from fieldmon.monitoring.inspecting import batches, inspection_table
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot

@@ -17,7 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from fieldmon.infestation.records import Records
-from fieldmon.monitoring import MonitoringSettings, Season, transactions
+from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.monitoring.changes import transactions
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import Plot
 from tests.app.driving import go, opened

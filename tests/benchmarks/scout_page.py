@@ -33,7 +33,8 @@ from shapely import MultiPolygon, box
 
 from app.state.scout_page import invitation
 from fieldmon.infestation.records import Records
-from fieldmon.monitoring import MonitoringSettings, Season, scouts
+from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.monitoring.phones import scouts
 from fieldmon.plot.field import Field
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import scout

@@ -9,7 +9,7 @@ from fieldmon.cli.status import lines
 from fieldmon.compute.wording import estimate
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from tests.cli.estate import ZIP
 from tests.monitoring.seasons import a_season
 

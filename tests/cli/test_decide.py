@@ -9,7 +9,7 @@ import pytest
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Application, Season
-from fieldmon.monitoring.advice_settings import AdviceSettings
+from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 from tests.cli.estate import BEGINS
 
 CHEAP = ["--per-ha", "1", "--per-zone", "0", "--least-on", "0", "--section-rows", "1"]

@@ -12,7 +12,7 @@ from fieldmon.drive.one_drive import one_drive
 from fieldmon.drive.season_day import SeasonDay
 from fieldmon.errors import ObservationError
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.scouts import let_in
+from fieldmon.monitoring.phones.scouts import let_in
 from tests.cli.estate import BEGINS, ZIP, filled_in, table
 
 PLOT = ("drive", ZIP, "--feature", "Nursery", "--hours", "0.3", "--date", BEGINS)

@@ -3,9 +3,12 @@
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import Season, batches, season_file, season_log
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.changes import season_log
+from fieldmon.monitoring.inspecting import batches
+from fieldmon.monitoring.season import season_file
 from tests.cli.estate import BEGINS
-from tests.monitoring.test_season_log import by_hand
+from tests.monitoring.changes.test_season_log import by_hand
 
 
 def test_the_log_is_shown_and_a_changed_past_is_refused(run, season):

@@ -3,9 +3,10 @@
 import shutil
 
 from fieldmon.decisions.labels import ProductLabel
-from fieldmon.monitoring import Season, scouts
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.phones import scouts
 from tests.cli.estate import BEGINS, ZIP, begin_next_year, filled_in
-from tests.monitoring.test_outside_changes import outside
+from tests.monitoring.changes.test_outside_changes import outside
 
 
 def worked(run, season, route, finds, who):

@@ -20,7 +20,7 @@ from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.records import PRESENT, Records
 from fieldmon.io.import_report import Remedy, guessed
 from fieldmon.io.prepared_plots import Laid, SourceMessage
-from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.settings.settings import MonitoringSettings
 from fieldmon.planning.members import team_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.field import Field

@@ -13,7 +13,7 @@ from fieldmon.cli.status import lines
 from fieldmon.io.packaged import pest_names
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.settings.settings import MonitoringSettings
 from tests.cli.estate import BEGINS, MITES, ZIP
 from tests.monitoring.seasons import a_season
 

@@ -10,9 +10,10 @@ import pytest
 from fieldmon.compute.wording import written
 from fieldmon.errors import ImportDoubt
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
-from fieldmon.monitoring import Season, scouts
-from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.day_ahead import WorkPart, route_ahead, work_hours
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.days.day_ahead import WorkPart, route_ahead, work_hours
+from fieldmon.monitoring.phones import scouts
+from fieldmon.monitoring.treating.applications import Application
 from fieldmon.reports.day import DayFacts
 from tests.cli.estate import BEGINS, ZIP, filled_in
 

@@ -11,7 +11,7 @@ import shapely
 
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, ZIP, filled_in
-from tests.monitoring.test_outside_changes import outside
+from tests.monitoring.changes.test_outside_changes import outside
 
 
 def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(

@@ -8,7 +8,7 @@ from time import monotonic
 import pytest
 
 from fieldmon.cli import progress
-from fieldmon.monitoring import transactions
+from fieldmon.monitoring.changes import transactions
 
 COMMANDS = {
     "plan": (),

@@ -11,7 +11,7 @@ from fieldmon.cli.status import lines
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.local_clock import LocalClock, local_clock
 from tests.cli.estate import BEGINS

@@ -12,7 +12,8 @@ from fieldmon.cli.options import WorkerOptions
 from fieldmon.cli.team_files import files_of_each, members_of, tell_member
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.monitoring import Season, settings_log
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.settings import settings_log
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.field import Field
 from fieldmon.plot.planting import Planting

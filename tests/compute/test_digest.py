@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from shapely import MultiPolygon, Point, box
 
 from fieldmon.compute.digest import digest
-from fieldmon.monitoring.geopackage import blob
+from fieldmon.monitoring.file.geopackage import blob
 
 AREA = MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)])
 

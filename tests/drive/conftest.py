@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.monitoring.monitor import Monitor
+from fieldmon.monitoring.estimates.monitor import Monitor
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting

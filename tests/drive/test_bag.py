@@ -14,7 +14,7 @@ from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.recording import Recording
 from fieldmon.errors import SettingError
-from fieldmon.monitoring.monitor import Monitor
+from fieldmon.monitoring.estimates.monitor import Monitor
 
 BEGINS = datetime(2026, 4, 6, 3, tzinfo=UTC)
 

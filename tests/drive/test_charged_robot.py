@@ -8,8 +8,8 @@ from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.insects import Insects
 from fieldmon.infestation.spread import Spread
-from fieldmon.monitoring.belief_settings import BeliefSettings
-from fieldmon.monitoring.monitor import Monitor
+from fieldmon.monitoring.estimates.monitor import Monitor
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.simulation.season import SimulationSettings, simulated_days

@@ -11,7 +11,7 @@ from fieldmon.drive.team_season import TeamSeason
 from fieldmon.drive.vda5050.fleet import Vda5050Robot
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.settings.settings import MonitoringSettings
 from fieldmon.planning.members import team_of
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.robot import Robot

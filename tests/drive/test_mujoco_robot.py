@@ -25,7 +25,7 @@ from tests.drive.models import TRACTOR, urdf
 
 @pytest.fixture(scope="module")
 def driven(plot, robot):
-    from fieldmon.monitoring.monitor import Monitor
+    from fieldmon.monitoring.estimates.monitor import Monitor
 
     chance = np.random.default_rng(3).uniform(0.005, 0.3, len(plot.grid))
     robot, track = replace(robot, hours=0.5, turn_180_s=0.0), Track()
@@ -70,7 +70,7 @@ def test_the_track_runs_by_every_plant_and_back_to_the_gate(driven):
 
 def test_a_robot_too_wide_for_its_way_touches_plants_and_is_stuck(plot, robot):
     """The fault of planning for a point: it is seen, and the day ends there."""
-    from fieldmon.monitoring.monitor import Monitor
+    from fieldmon.monitoring.estimates.monitor import Monitor
 
     wide = replace(robot, width_m=2.9, length_m=2.9)
     driver = MujocoRobot(wide, lambda stop: False)  # noqa: ARG005
@@ -82,7 +82,7 @@ def test_a_robot_too_wide_for_its_way_touches_plants_and_is_stuck(plot, robot):
 
 
 def a_short_day(plot, robot, body, ground=None, planned=None):
-    from fieldmon.monitoring.monitor import Monitor
+    from fieldmon.monitoring.estimates.monitor import Monitor
 
     robot = replace(robot, hours=0.12, turn_180_s=0.0, look_s=20.0)
     planned = robot if planned is None else replace(planned, hours=0.12)

@@ -13,10 +13,11 @@ from fieldmon.drive.day import drive_day
 from fieldmon.drive.season_day import SeasonDay, as_inspection
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
-from fieldmon.monitoring import Season, scouts
-from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.settings import MonitoringSettings
-from fieldmon.monitoring.shift_work import made_by
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.phones import scouts
+from fieldmon.monitoring.settings.settings import MonitoringSettings
+from fieldmon.monitoring.settings.shift_work import made_by
+from fieldmon.monitoring.treating.applications import Application
 from fieldmon.plot.robot import Robot, scout
 
 ON = date(2026, 4, 6)

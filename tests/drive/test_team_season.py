@@ -11,9 +11,9 @@ from fieldmon.drive.team_season import TeamSeason
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.settings import MonitoringSettings
-from fieldmon.monitoring.shift_work import made_by
+from fieldmon.monitoring.settings.settings import MonitoringSettings
+from fieldmon.monitoring.settings.shift_work import made_by
+from fieldmon.monitoring.treating.applications import Application
 from fieldmon.planning.members import team_of
 from fieldmon.plot.robot import Robot, scout
 from tests.drive.test_season_day import ON, must_check_what_it_is_told, noted

@@ -19,8 +19,8 @@ from fieldmon.drive.trace import (
     trace_of_stops,
 )
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring.belief_settings import BeliefSettings
-from fieldmon.monitoring.monitor import Monitor
+from fieldmon.monitoring.estimates.monitor import Monitor
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 
 
 @pytest.fixture(scope="module")

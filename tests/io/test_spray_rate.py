@@ -8,7 +8,7 @@ from shapely import MultiPolygon
 
 from fieldmon.errors import SettingError
 from fieldmon.io.writers.treatment_map import TreatmentMap
-from fieldmon.monitoring.advice_settings import AdviceSettings
+from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 
 
 @pytest.mark.parametrize("rate", [0.0, -1.0, 100_000.0, np.nan, np.inf, "300", None])

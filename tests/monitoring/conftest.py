@@ -6,7 +6,8 @@ from contextlib import closing
 
 import pytest
 
-from fieldmon.monitoring import Season, schema
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.file import schema
 from tests.monitoring.seasons import BEGINS, a_season, some_results
 
 

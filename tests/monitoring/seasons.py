@@ -11,8 +11,9 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.infestation.prior import start_infested
 from fieldmon.infestation.records import Records
 from fieldmon.infestation.spread import night
-from fieldmon.monitoring import MonitoringSettings, Season, season_log
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.monitoring.changes import season_log
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot import local_clock
 from fieldmon.plot.field import Field

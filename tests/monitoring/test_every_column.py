@@ -11,9 +11,10 @@ from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, Inspections
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspections import read_inspections
-from fieldmon.monitoring import Season, outside_changes, season_log
-from fieldmon.monitoring.certifier_tables import csv_bytes, inspections_table
-from fieldmon.monitoring.inspection_table import time_text
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.changes import outside_changes, season_log
+from fieldmon.monitoring.inspecting.certifier_tables import csv_bytes, inspections_table
+from fieldmon.monitoring.inspecting.inspection_table import time_text
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 DAY = np.datetime64(BEGINS)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.pests.pest import Entry, Increase, Movement, Pest, Stage
 from fieldmon.plot.robot import Robot, Viewpoints
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.monitoring.closures import Closure, open_to_people
+from fieldmon.monitoring.treating.closures import Closure, open_to_people
 from fieldmon.planning.explain import explain
 from fieldmon.planning.plan import plan_from, plan_in
 from fieldmon.planning.skips import (

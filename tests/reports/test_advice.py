@@ -2,7 +2,7 @@
 
 from fieldmon.compute.units import Units
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
-from fieldmon.monitoring.advice_settings import AdviceSettings
+from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 from fieldmon.reports.advice import advice_report
 from fieldmon.reports.content import Table
 from fieldmon.reports.html import html_text

@@ -21,8 +21,8 @@ from fieldmon.reports.content import Listing, Table
 from fieldmon.reports.html import html_text
 from fieldmon.reports.pdf import pdf_bytes
 from fieldmon.reports.season import season_report
+from tests.monitoring.changes.test_season_log import by_hand
 from tests.monitoring.seasons import BEGINS, a_season, some_results
-from tests.monitoring.test_season_log import by_hand
 from tests.reports.reading import texts
 
 REASON = "Spider mites on 6 % of the plants, above the threshold of 5 %; no predators on 30 leaves"

@@ -10,7 +10,7 @@ from fieldmon.compute.units import Units
 from fieldmon.compute.wording import estimate
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import PlannedAndDone
-from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring.treating.applications import Application
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.robot import Robot

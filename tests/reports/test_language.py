@@ -11,7 +11,7 @@ from fieldmon.decisions.doses import Dose
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.decisions.sprayer import TreatmentCosts
 from fieldmon.monitoring import Application
-from fieldmon.monitoring.advice_settings import AdviceSettings
+from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 from fieldmon.reports import words
 from fieldmon.reports.advice import advice_report
 from fieldmon.reports.certification import certification_report

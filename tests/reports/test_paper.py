@@ -12,7 +12,7 @@ from app.words.language import for_reports
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import LANGUAGES
 from fieldmon.decisions.sprayer import TreatmentCosts
-from fieldmon.monitoring.advice_settings import AdviceSettings
+from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 from fieldmon.reports.advice import advice_report
 from fieldmon.reports.certification import certification_report
 from fieldmon.reports.content import Paragraph, Report, Sheet, Table

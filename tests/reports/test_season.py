@@ -15,8 +15,8 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import Application, Season
-from fieldmon.monitoring.belief_settings import BeliefSettings
-from fieldmon.monitoring.plant_states import finds_apart
+from fieldmon.monitoring.estimates.plant_states import finds_apart
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.grid import plant_numbers
 from fieldmon.reports import season as season_module
 from fieldmon.reports import sentences

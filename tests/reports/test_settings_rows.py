@@ -11,7 +11,7 @@ from fieldmon.infestation.pest_in_weather import PestInWeather
 from fieldmon.infestation.prior_settings import PriorSettings
 from fieldmon.infestation.spread import Spread
 from fieldmon.io.readers.pest_file import shipped_pest
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.pests.pest import Pest
 from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.assumed import Assumed

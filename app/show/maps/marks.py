@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.records import Records
-    from fieldmon.monitoring.treatments import KeptTreatment
+    from fieldmon.monitoring.treating.treatments import KeptTreatment
     from fieldmon.plot.field import Field
     from fieldmon.plot.grid import PlantGrid
 

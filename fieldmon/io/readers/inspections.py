@@ -11,7 +11,8 @@ Decisions
 - Records of several leaves of a plant in one visit are one inspection, found if any leaf is.
 - Of the inspections of one visit (`visits`) that are the same but for their notes, one is taken,
   with the notes of all. At clearly other times of a day each is a look of its own, as the belief
-  has it. What a season holds already is told there (`fieldmon.monitoring.inspection_table`).
+  has it. What a season holds already is told there: see
+  `fieldmon.monitoring.inspecting.inspection_table`.
 """
 
 from __future__ import annotations

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from fieldmon.monitoring import phone_tables, repeated_recordings, schema, treatments
-from fieldmon.monitoring.batches import close_if_empty, more_in_words
+from fieldmon.monitoring.file import phone_tables, schema
+from fieldmon.monitoring.inspecting import repeated_recordings
+from fieldmon.monitoring.inspecting.batches import close_if_empty, more_in_words
 from fieldmon.monitoring.merging import (
     merged_batches,
     merged_choices,
@@ -16,6 +17,7 @@ from fieldmon.monitoring.merging import (
     merged_treatments,
     same_season,
 )
+from fieldmon.monitoring.treating import treatments
 
 if TYPE_CHECKING:
     import sqlite3

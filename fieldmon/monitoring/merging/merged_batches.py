@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.monitoring import rows_that_count, schema
+from fieldmon.monitoring.file import rows_that_count, schema
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merged_rows import key_of
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Hashable
 
+    from fieldmon.monitoring.file.rows_that_count import Corrected
     from fieldmon.monitoring.merging.merged_rows import Numbers, TableRows
-    from fieldmon.monitoring.rows_that_count import Corrected
-    from fieldmon.monitoring.treatments import Row
+    from fieldmon.monitoring.treating.treatments import Row
 
 #: what a batch is known by in every copy
 _KNOWN_BY = ("at", "source", "who", "kind")

@@ -7,15 +7,17 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import first_few
-from fieldmon.monitoring import schema, season_log, settings_log, settings_words
+from fieldmon.monitoring.changes import season_log
+from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merged_rows import key_of
+from fieldmon.monitoring.settings import settings_log, settings_words
 
 if TYPE_CHECKING:
     import sqlite3
 
     from fieldmon.monitoring.merging.merged_rows import TableRows
-    from fieldmon.monitoring.treatments import Row
+    from fieldmon.monitoring.treating.treatments import Row
 
 _KNOWN_BY = ("changed", "name", "value")
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fieldmon.infestation import inspection_columns
-from fieldmon.monitoring import schema
+from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merged_recordings import recordings_of_both
 
 if TYPE_CHECKING:
     import sqlite3
 
+    from fieldmon.monitoring.file.rows_that_count import Corrected
     from fieldmon.monitoring.merging.merged_rows import Numbers
-    from fieldmon.monitoring.rows_that_count import Corrected
 
 #: what rows of the same inspections say, beside what makes them the same; numbers may be none
 _BESIDE = tuple(

@@ -9,16 +9,17 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from fieldmon.infestation import inspection_columns
-from fieldmon.monitoring import repeated_recordings, rows_that_count
+from fieldmon.monitoring.file import rows_that_count
+from fieldmon.monitoring.file.rows_that_count import COUNTS, STANDS_BACK, TAKEN_BACK
+from fieldmon.monitoring.inspecting import repeated_recordings
 from fieldmon.monitoring.merging.merged_rows import key_of
-from fieldmon.monitoring.rows_that_count import COUNTS, STANDS_BACK, TAKEN_BACK
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterator
 
+    from fieldmon.monitoring.file.rows_that_count import Corrected
     from fieldmon.monitoring.merging.merged_rows import Numbers
-    from fieldmon.monitoring.rows_that_count import Corrected
-    from fieldmon.monitoring.treatments import Row
+    from fieldmon.monitoring.treating.treatments import Row
 
 
 def recordings_of_both(

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fieldmon.monitoring import logged_days, schema
+from fieldmon.monitoring.changes import logged_days
+from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merged_rows import key_of
 from fieldmon.planning.members import person_key
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable
 
     from fieldmon.monitoring.merging.merged_rows import TableRows
-    from fieldmon.monitoring.treatments import Row
+    from fieldmon.monitoring.treating.treatments import Row
 
 
 #: what a route is known by in every copy: also how often it had been given out by then

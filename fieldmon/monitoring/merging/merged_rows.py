@@ -8,15 +8,15 @@ from __future__ import annotations
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.monitoring import schema
-from fieldmon.monitoring.geopackage import touch
+from fieldmon.monitoring.file import schema
+from fieldmon.monitoring.file.geopackage import touch
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Hashable, Iterable
 
-    from fieldmon.monitoring.geopackage import GeoPackageTable
-    from fieldmon.monitoring.treatments import Row
+    from fieldmon.monitoring.file.geopackage import GeoPackageTable
+    from fieldmon.monitoring.treating.treatments import Row
 
 #: rows of a copy by the names of their tables
 TableRows = dict[str, list["Row"]]

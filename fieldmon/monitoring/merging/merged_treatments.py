@@ -6,17 +6,18 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from fieldmon.decisions.labels import plain_name
-from fieldmon.monitoring import schema, treatments
+from fieldmon.monitoring.file import schema
+from fieldmon.monitoring.file.rows_that_count import COUNTS, TAKEN_BACK
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merged_recordings import recordings_of_both
-from fieldmon.monitoring.rows_that_count import COUNTS, TAKEN_BACK
+from fieldmon.monitoring.treating import treatments
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterator
 
     from fieldmon.monitoring.merging.merged_rows import Numbers, TableRows
-    from fieldmon.monitoring.treatments import Row
+    from fieldmon.monitoring.treating.treatments import Row
 
 #: digests and batches of now of the treatments that a copy had
 Held = set[tuple[str | None, int | None]]

@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import schema, settings_log, treatments
+from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.merging.merged_inspections import counting
+from fieldmon.monitoring.settings import settings_log
+from fieldmon.monitoring.treating import treatments
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterator
 
     from fieldmon.compute.wording import Worded
-    from fieldmon.monitoring.geopackage import GeoPackageTable
+    from fieldmon.monitoring.file.geopackage import GeoPackageTable
 
 _NAMED_PLOTS = 3
 

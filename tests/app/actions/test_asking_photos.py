@@ -3,8 +3,8 @@
 import base64
 
 from app.words import texts
-from fieldmon.monitoring import findings, photos, scouts
-from fieldmon.monitoring.photos_asked import photos_asked
+from fieldmon.monitoring.phones import findings, photos, scouts
+from fieldmon.monitoring.phones.photos_asked import photos_asked
 from tests.app.actions.test_picking import select, stops
 from tests.app.driving import press, texts_of
 from tests.monitoring.phone import JPEG, NOW, a_finding

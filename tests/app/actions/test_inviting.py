@@ -10,8 +10,8 @@ from app.show import qr_code
 from app.state import last_heard, scout_page
 from app.words import texts
 from fieldmon.errors import AccessError
-from fieldmon.monitoring import scouts
-from fieldmon.monitoring.day_ahead import WorkPart, route_ahead
+from fieldmon.monitoring.days.day_ahead import WorkPart, route_ahead
+from fieldmon.monitoring.phones import scouts
 from fieldmon.planning.members import team_of
 from tests.app.driving import go, opened, press, tap
 

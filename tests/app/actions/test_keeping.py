@@ -3,7 +3,8 @@
 from app.actions import keeping
 from app.state import seasons_folder as folder
 from app.words import texts
-from fieldmon.monitoring import Season, scouts
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.phones import scouts
 from tests.app.chosen import in_season
 from tests.app.driving import go, tap, texts_of
 from tests.monitoring.seasons import a_season

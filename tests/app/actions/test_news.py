@@ -5,7 +5,7 @@ import streamlit as st
 
 from app.actions import news
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.monitoring import scouts
+from fieldmon.monitoring.phones import scouts
 from tests.app.chosen import in_season
 from tests.monitoring.seasons import BEGINS, a_season
 

@@ -24,8 +24,8 @@ from fieldmon.plot.grid import plant_at, plant_numbers
 from tests.app.actions.test_scouting import of_two
 from tests.app.chosen import a_plot, in_season
 from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
+from tests.monitoring.changes.test_outside_changes import moved_to, outside
 from tests.monitoring.seasons import a_season
-from tests.monitoring.test_outside_changes import moved_to, outside
 
 
 def test_one_plant_is_recorded_and_undone(season_app, season):

@@ -16,7 +16,7 @@ from app.actions import sharing_plots
 from app.state import estate, shared_plots
 from app.state.shared_plots import EstateCrew
 from app.words import texts
-from fieldmon.monitoring.estate_routes import PlotLeftOut
+from fieldmon.monitoring.days.estate_routes import PlotLeftOut
 from tests.app.driving import go, layer, map_of, press, texts_of
 
 

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from fieldmon.monitoring import Season, scouts
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.phones import scouts
 from tests.monitoring.seasons import BEGINS, a_season, some_results
 
 

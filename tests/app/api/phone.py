@@ -7,7 +7,7 @@ import uuid
 from datetime import UTC, datetime
 
 from app.api.season_api import application
-from fieldmon.monitoring import transactions
+from fieldmon.monitoring.changes import transactions
 from tests.app.api.asking import Cut, exchange, of_season, scope_of
 
 #: how a request may end

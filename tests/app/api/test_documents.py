@@ -23,12 +23,12 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.io.writers.csv import route_csv
 from fieldmon.io.writers.day_file import HandoffPlan
-from fieldmon.monitoring import scouts
-from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.belief_settings import BeliefSettings
-from fieldmon.monitoring.day_ahead import WorkPart, route_ahead
-from fieldmon.monitoring.findings import take
-from fieldmon.monitoring.scouts_out import scouts_out
+from fieldmon.monitoring.days.day_ahead import WorkPart, route_ahead
+from fieldmon.monitoring.days.scouts_out import scouts_out
+from fieldmon.monitoring.phones import scouts
+from fieldmon.monitoring.phones.findings import take
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
+from fieldmon.monitoring.treating.applications import Application
 from fieldmon.planning.members import team_of
 from fieldmon.planning.skips import left_out_in_words
 from fieldmon.plot.local_clock import local_clock

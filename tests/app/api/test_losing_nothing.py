@@ -9,7 +9,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from fieldmon.monitoring import Season, photos, scouts
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.phones import photos, scouts
 from tests.app.api.asking import in_own_loop
 from tests.app.api.phone import ENDINGS, Phone
 from tests.monitoring.phone import told

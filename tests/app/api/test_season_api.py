@@ -13,7 +13,9 @@ import pytest
 from app.api import description, season_api
 from app.api.season_api import application
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring import Season, photos, schema, scouts
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.file import schema
+from fieldmon.monitoring.phones import photos, scouts
 from tests.app.api.asking import Cut, as_sent, ask, exchange, in_own_loop, of_season, scope_of
 from tests.monitoring.phone import JPEG, a_finding, told
 from tests.monitoring.seasons import BEGINS

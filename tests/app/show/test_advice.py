@@ -13,8 +13,8 @@ from fieldmon.compute.wording import share_figure
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.infestation.pairs import PairApproximation
 from fieldmon.io.spray_rate import litres_figure
-from fieldmon.monitoring.advice import advice
-from fieldmon.monitoring.advice_settings import AdviceSettings
+from fieldmon.monitoring.advice.advice import advice
+from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.reports import words

@@ -11,11 +11,11 @@ from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
+from fieldmon.monitoring.treating.applications import Application
 from tests.app.chosen import in_season
+from tests.monitoring.inspecting.test_drafts import add
 from tests.monitoring.seasons import BEGINS, a_season
-from tests.monitoring.test_drafts import add
 
 
 class Shown:

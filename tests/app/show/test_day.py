@@ -13,7 +13,7 @@ from app.state import chosen_day
 from app.state.chosen_day import DayRoute
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.grid import plant_numbers
 from tests.app.chosen import a_plot, chosen, in_season, records_at
 from tests.app.driving import apart, go, row_box, tap, texts_of

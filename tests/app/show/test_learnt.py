@@ -12,7 +12,7 @@ from app.words.units import UnitsInLanguage
 from fieldmon.compute.wording import worded
 from fieldmon.infestation.learnt import Learnt
 from fieldmon.infestation.records import Records
-from fieldmon.monitoring.told_detection import ToldOtherwise
+from fieldmon.monitoring.estimates.told_detection import ToldOtherwise
 from tests.app.driving import apart
 
 DETECTION = Learnt("detection", 0.84, 0.71, 0.94)

@@ -10,10 +10,10 @@ from app.show import who_is_out
 from app.state import last_heard
 from app.words import texts
 from app.words.units import UnitsInLanguage
-from fieldmon.monitoring import scouts
-from fieldmon.monitoring.day_ahead import DayAhead, WorkPart, route_ahead
-from fieldmon.monitoring.findings import take
-from fieldmon.monitoring.scouts_out import ScoutOut
+from fieldmon.monitoring.days.day_ahead import DayAhead, WorkPart, route_ahead
+from fieldmon.monitoring.days.scouts_out import ScoutOut
+from fieldmon.monitoring.phones import scouts
+from fieldmon.monitoring.phones.findings import take
 from fieldmon.plot.local_clock import local_clock, utc_now
 from tests.monitoring.phone import a_finding
 from tests.monitoring.seasons import BEGINS, a_season

@@ -3,7 +3,7 @@
 import pytest
 
 from app.state import deciding
-from fieldmon.monitoring.advice_settings import AdviceSettings
+from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 
 
 @pytest.mark.usefixtures("session")

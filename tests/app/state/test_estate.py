@@ -12,7 +12,7 @@ from app.state.estate import PlotState
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
-from fieldmon.monitoring.belief_settings import BeliefSettings
+from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.local_clock import local_clock
 from tests.app.chosen import a_plot
 from tests.app.driving import broken, go, map_of

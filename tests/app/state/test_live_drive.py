@@ -12,7 +12,7 @@ from app.state.map_store import STORE
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.vda5050.fleet import live_robot
 from fieldmon.drive.vda5050.stand_in import StandIn
-from fieldmon.monitoring.monitor import Monitor
+from fieldmon.monitoring.estimates.monitor import Monitor
 from tests.app.driving import until
 from tests.drive.conftest import plot, robot  # noqa: F401
 from tests.drive.vda5050.conftest import ROBOT, _soon, broker, broker_program  # noqa: F401

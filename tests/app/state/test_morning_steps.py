@@ -7,7 +7,7 @@ import pytest
 
 from app.state import chosen_day, morning_steps
 from fieldmon.infestation.inspections import SKIPPED, Inspections
-from fieldmon.monitoring import scouts
+from fieldmon.monitoring.phones import scouts
 from tests.app.chosen import DAY, a_plot, chosen, in_season
 from tests.monitoring.seasons import BEGINS, Insects, a_season, all_on
 

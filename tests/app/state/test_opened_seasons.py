@@ -10,8 +10,8 @@ from app.state import cached, opened_seasons
 from app.state.opened_seasons import opened
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import FOUND
+from tests.monitoring.inspecting.test_drafts import PLANT, add
 from tests.monitoring.seasons import a_plot, a_season
-from tests.monitoring.test_drafts import PLANT, add
 
 
 def test_all_who_ask_get_the_same_until_the_file_is_another(tmp_path):

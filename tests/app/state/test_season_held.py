@@ -12,7 +12,7 @@ from app.state import estate, season_held, seasons_folder
 from app.views import plots as plots_view
 from app.words import texts
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import transactions
+from fieldmon.monitoring.changes import transactions
 from tests.app.driving import broken, go, press, texts_of
 from tests.pages import Page
 

@@ -12,8 +12,8 @@ import shapely
 from app.state import estate, shared_plots
 from app.state.estate import PlotState
 from app.state.shared_plots import EstateCrew
-from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.estate_day import EstatePlot, not_begun, share_estate
+from fieldmon.monitoring.days.estate_day import EstatePlot, not_begun, share_estate
+from fieldmon.monitoring.treating.applications import Application
 from fieldmon.planning.plan import plan_in
 from fieldmon.plot import local_clock as clocks
 from fieldmon.plot.local_clock import local_clock

@@ -4,7 +4,7 @@ import pytest
 
 from app.state import chosen_language, deciding, unit_boxes, widget_memory
 from app.words.units import UnitsInLanguage
-from fieldmon.monitoring.advice_settings import AdviceSettings
+from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 
 
 @pytest.mark.usefixtures("session")

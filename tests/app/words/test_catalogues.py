@@ -132,7 +132,7 @@ _ELSEWHERE = {
     "cli", "compute", "drive", "samplers", "simulation", "studies",
     "decisions/leaves.py", "decisions/taylor.py", "infestation/belief.py",
     "infestation/hotspots.py", "infestation/inspections.py", "infestation/kernels.py",
-    "infestation/records.py", "infestation/spread.py", "monitoring/monitor.py",
+    "infestation/records.py", "infestation/spread.py", "monitoring/estimates/monitor.py",
     "planning/routes", "plot/frames.py", "plot/positions.py",
 }  # fmt: skip
 _SAYS = {"seen", "repaired", "guessed", "dropped", "doubtful", "ask_for_crs"}

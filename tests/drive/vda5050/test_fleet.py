@@ -23,8 +23,8 @@ from fieldmon.drive.vda5050.stand_in import StandIn
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import SKIPPED
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.monitor import Monitor
-from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.estimates.monitor import Monitor
+from fieldmon.monitoring.settings.settings import MonitoringSettings
 from tests.drive.test_season_day import ON
 from tests.drive.vda5050.bodies import STATE
 from tests.drive.vda5050.conftest import ROBOT

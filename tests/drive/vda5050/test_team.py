@@ -15,7 +15,7 @@ from fieldmon.drive.vda5050.team import drive_team
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.settings.settings import MonitoringSettings
 from fieldmon.planning.members import TeamMember, Teamwork, team_of
 from fieldmon.plot.robot import Robot, scout
 from tests.drive.test_season_day import ON

@@ -14,7 +14,7 @@ from fieldmon.drive.vda5050.fleet import live_robot
 from fieldmon.drive.vda5050.stand_in import StandIn
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.settings.settings import MonitoringSettings
 from fieldmon.plot.robot import Robot
 from tests.drive.test_season_day import ON
 from tests.drive.vda5050.conftest import ROBOT

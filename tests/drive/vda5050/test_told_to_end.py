@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from fieldmon.cli.main import app
 from fieldmon.drive.vda5050.stand_in import StandIn
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.settings import MonitoringSettings
+from fieldmon.monitoring.settings.settings import MonitoringSettings
 from fieldmon.plot.local_clock import local_clock
 from tests.drive.vda5050.conftest import ROBOT
 

@@ -15,24 +15,18 @@ import numpy as np
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
-from fieldmon.monitoring import (
-    batches,
-    findings,
-    inspection_table,
-    label_table,
-    phone_tables,
-    photos,
-    schema,
-    season_log,
-    settings_log,
-)
-from fieldmon.monitoring.applications import Application
-from fieldmon.monitoring.findings import Finding, _SentFindings
+from fieldmon.monitoring.changes import season_log
+from fieldmon.monitoring.file import label_table, phone_tables, schema
+from fieldmon.monitoring.inspecting import batches, inspection_table
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merge import merge_copies
-from fieldmon.monitoring.photos import Photo
-from fieldmon.monitoring.scouts import Scout
-from fieldmon.monitoring.settings import MonitoringSettings, as_json, from_json
+from fieldmon.monitoring.phones import findings, photos
+from fieldmon.monitoring.phones.findings import Finding, _SentFindings
+from fieldmon.monitoring.phones.photos import Photo
+from fieldmon.monitoring.phones.scouts import Scout
+from fieldmon.monitoring.settings import settings_log
+from fieldmon.monitoring.settings.settings import MonitoringSettings, as_json, from_json
+from fieldmon.monitoring.treating.applications import Application
 from fieldmon.plot import local_clock
 from fieldmon.plot.grid import plant_numbers
 from tests.monitoring.phone import JPEG

@@ -4,7 +4,8 @@ from collections import Counter
 
 import pytest
 
-from fieldmon.monitoring import batches, inspection_table, season_log
+from fieldmon.monitoring.changes import season_log
+from fieldmon.monitoring.inspecting import batches, inspection_table
 from tests.monitoring.merging.copies import (
     PAIRS,
     apart,

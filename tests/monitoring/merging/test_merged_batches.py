@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.inspections import FOUND, Inspections
-from fieldmon.monitoring import Season, logged_days, season_log
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.changes import logged_days, season_log
 from fieldmon.monitoring.merging import merged_batches
 from fieldmon.plot import local_clock
 from tests.monitoring.merging.copies import (

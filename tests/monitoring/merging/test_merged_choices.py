@@ -5,9 +5,12 @@ from dataclasses import replace
 import pytest
 
 from fieldmon.decisions.labels import ProductLabel
-from fieldmon.monitoring import Season, label_table, season_log, settings_log
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.changes import season_log
+from fieldmon.monitoring.file import label_table
 from fieldmon.monitoring.merging.merge import merge_copies
-from fieldmon.monitoring.settings import from_json
+from fieldmon.monitoring.settings import settings_log
+from fieldmon.monitoring.settings.settings import from_json
 from tests.monitoring.merging.copies import PAIRS, apart, copied, copies_of, looks_for, merge
 
 IN_ORDER = {

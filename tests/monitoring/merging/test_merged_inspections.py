@@ -5,7 +5,7 @@ import sqlite3
 
 import pytest
 
-from fieldmon.monitoring import schema
+from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.merging import merged_inspections
 from fieldmon.monitoring.merging.merge import merge_copies
 from tests.monitoring.merging.copies import PAIRS, apart, content, copied, held, record

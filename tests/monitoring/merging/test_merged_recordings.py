@@ -7,7 +7,8 @@ from contextlib import closing
 import pytest
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
-from fieldmon.monitoring import Season, batches
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.inspecting import batches
 from fieldmon.monitoring.merging.merge import merge_copies
 from tests.monitoring.merging.copies import PAIRS, apart, copied, merge, result, that_count
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.day_ahead import WHOLE, DayAhead
+from fieldmon.monitoring.days.day_ahead import WHOLE, DayAhead
 from tests.monitoring.seasons import BEGINS
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fieldmon.monitoring import phone_tables, schema
+from fieldmon.monitoring.file import phone_tables, schema
 from fieldmon.monitoring.merging import merged_rows, same_season
 
 

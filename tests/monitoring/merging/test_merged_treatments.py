@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 
 from fieldmon.decisions.labels import ProductLabel
-from fieldmon.monitoring import Season, batches, treatments
-from fieldmon.monitoring.applications import Application
+from fieldmon.monitoring import Season
+from fieldmon.monitoring.inspecting import batches
 from fieldmon.monitoring.merging.merge import merge_copies
-from fieldmon.monitoring.treatment import Treatment
-from fieldmon.monitoring.treatments import TreatedPlace
+from fieldmon.monitoring.treating import treatments
+from fieldmon.monitoring.treating.applications import Application
+from fieldmon.monitoring.treating.treatment import Treatment
+from fieldmon.monitoring.treating.treatments import TreatedPlace
 from fieldmon.plot import local_clock
 from tests.monitoring.merging.copies import (
     FIRST,

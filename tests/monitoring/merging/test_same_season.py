@@ -12,9 +12,9 @@ from fieldmon.errors import FileProblem
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.merging import same_season
 from fieldmon.monitoring.merging.merge import merge_copies
+from tests.monitoring.changes.test_outside_changes import outside
 from tests.monitoring.merging.copies import begun_again, copied, copies_of, looks_for
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
-from tests.monitoring.test_outside_changes import outside
 
 
 def test_seasons_begun_apart_are_none_and_copies_of_another_pest_are_not_merged():

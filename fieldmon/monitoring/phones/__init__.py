@@ -1,0 +1,1 @@
+"""Who scouts, with which key, and what their phones send."""

@@ -1,0 +1,229 @@
+"""A file of findings brought to a season: what it says, and what is asked about it."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fieldmon.compute.wording import first_few, worded
+from fieldmon.infestation.inspections import Inspections
+from fieldmon.io.import_report import doubtful
+from fieldmon.io.options import Upload, source_name
+from fieldmon.monitoring.changes.transactions import MAGIC, connect, copy_season, is_season
+from fieldmon.monitoring.inspecting import repeated_recordings
+from fieldmon.monitoring.inspecting.batches import Recorded
+from fieldmon.monitoring.phones import findings
+from fieldmon.monitoring.season.exported_inspections import edits_in, own_rows, read_exported
+from fieldmon.monitoring.season.season_copies import own_names
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fieldmon.io.import_report import Imported, ImportMessage
+    from fieldmon.io.options import Source
+    from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+    from fieldmon.io.readers.phone_file import PhoneFile
+    from fieldmon.monitoring import Season
+
+
+@dataclass(frozen=True, eq=False)
+class BroughtFile:
+    """A file of findings as it was read; nothing of it is recorded yet.
+
+    `Season.record_all` takes corrections and then findings, and refuses what contradicts the season
+    unless that is confirmed.
+
+    Parameters
+    ----------
+    name
+        The file's.
+    findings
+        What is to be recorded; what a copy of the season says anew.
+    messages
+        What the import has to say.
+    saved
+        What a phone saved, instead of findings; `record_saved` takes it.
+    copy
+        A copy of the file to read where it is a season, else None.
+    corrections
+        How many inspections another program corrected or deleted in that copy. Who did is asked.
+    changed
+        How many inspections exported from the season say otherwise of their plant and day, or not
+        for sure of which: whether as corrections, or made again, no file says. See
+        `exported_inspections`.
+    """
+
+    name: str
+    findings: Inspections
+    messages: tuple[ImportMessage, ...] = ()
+    saved: PhoneFile | None = None
+    copy: Path | None = None
+    corrections: int = 0
+    changed: int = 0
+
+
+def counting_copy(season: Path, folder: Path, besides: Iterable[int] = ()) -> Path:
+    """Return a copy of a season with only the inspections that were not undone there.
+
+    Each says all that was said beside it. Rows `besides` them are left out too.
+    """
+    copy = folder / season.name
+    copy_season(season, copy)
+    with closing(connect(copy)) as db:
+        db.execute("BEGIN")
+        repeated_recordings.write_out(db)
+        db.execute("DELETE FROM inspections WHERE undone <> 0")
+        db.executemany("DELETE FROM inspections WHERE fid = ?", [(row,) for row in besides])
+        db.execute("COMMIT")
+    return copy
+
+
+def read_brought(
+    season: Season, source: Source, options: InspectionOptions, folder: Path
+) -> BroughtFile:
+    """Read a file brought to a season: a table, positions, a copy of it, or what a phone saved.
+
+    Inspections without a date are left out where others have one: they get the `work_day` of the
+    options only where the whole file names none. Of a copy, what was corrected there is no new
+    finding.
+
+    Parameters
+    ----------
+    season
+        The season.
+    source
+        The file.
+    options
+        How it is read.
+    folder
+        An empty one, for copies; it is needed until the file is recorded.
+
+    Raises
+    ------
+    FileProblem
+        If it is a season that looks for another pest, among others.
+    """
+    # what reads files is half a second to import
+    from fieldmon.io.read import read_inspection_rows, read_phone_file  # noqa: PLC0415
+    from fieldmon.io.readers.phone_file import is_phone_file  # noqa: PLC0415
+
+    name = source_name(source)
+    if is_phone_file(source):
+        saved = read_phone_file(source)
+        return BroughtFile(name, Inspections.none(), saved.messages, saved=saved.value)
+    copy = season_copied(source, folder)
+    if copy is not None:
+        season.refuse_another_pest(copy)
+    corrected = [] if copy is None else [one.row for one in season.corrections_in(copy)]
+    treated = [] if copy is None else _about_treatments(season, copy)
+    if copy is not None:
+        (folder / "new").mkdir()
+        source = counting_copy(copy, folder / "new", corrected)
+    if copy is None:
+        rows = read_exported(season, source, options)
+    else:
+        rows = read_inspection_rows(source, options)
+    read = _dated_on_plot(season, rows, options)
+    n_changed = 0
+    if copy is None and rows.value.exported.any():
+        here, _ = own_rows(season, rows.value, options)
+        edits = edits_in(season, here, options)
+        n_changed = sum(one.is_seen_otherwise for one in edits.changed) + len(edits.unsure)
+    messages = (*read.messages, *treated, *_about_changed(n_changed))
+    return BroughtFile(name, read.value, messages, None, copy, len(corrected), n_changed)
+
+
+def _about_changed(n: int) -> list[ImportMessage]:
+    """Return a doubt about so many inspections of the season itself that were changed."""
+    if not n:
+        return []
+    said = worded(
+        "{n} {n:inspection was|inspections were} exported from this season and changed: recorded, "
+        "{n:it counts|they count} beside what stands there. As corrections {n:it comes|they come} "
+        "with: fieldmon correct",
+        n=n,
+    )
+    return [doubtful(said)]
+
+
+def read_findings(
+    season: Season, source: Source, options: InspectionOptions | None = None
+) -> Imported[Inspections]:
+    """Return what a file says of a season's plants; what names another plot is left out.
+
+    Dates, and what is raised, as in `read_brought` and `read_inspections`.
+    """
+    from fieldmon.io.read import read_inspection_rows  # noqa: PLC0415 - as above
+    from fieldmon.io.readers.inspection_options import InspectionOptions  # noqa: PLC0415
+
+    options = options or InspectionOptions()
+    return _dated_on_plot(season, read_inspection_rows(source, options), options)
+
+
+def _dated_on_plot(
+    season: Season, rows: Imported[InspectionRows], options: InspectionOptions
+) -> Imported[Inspections]:
+    from fieldmon.io.readers.inspections import dated, on_plot  # noqa: PLC0415 - as above
+
+    return dated(on_plot(rows, season.plot.grid, options, own_names(season)))
+
+
+def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:
+    """Return a doubt about treatments of another season: it is asked for its findings alone."""
+    alone = season.treatments_alone_in(copy)
+    if not alone:
+        return []
+    named = [
+        worded(
+            "{product} on {day}",
+            product=product or worded("a product that nobody named"),
+            day=day,
+        )
+        for product, day in alone
+    ]
+    if season.is_copy(copy):
+        said = worded(
+            "{n} {n:treatment|treatments} of that copy {n:is|are} not taken ({some}), nor "
+            "{n:its|their} waiting periods. Take all that it holds with: fieldmon merge",
+            n=len(alone),
+            some=first_few(named),
+        )
+    else:
+        said = worded(
+            "{n} {n:treatment|treatments} of that season {n:is|are} not taken ({some}), nor "
+            "{n:its|their} waiting periods. Record {n:it|them} here, too.",
+            n=len(alone),
+            some=first_few(named),
+        )
+    return [doubtful(said)]
+
+
+def season_copied(source: Source, folder: Path) -> Path | None:
+    """Return a copy of a source that is a season, in a folder; None: it is none."""
+    if isinstance(source, Upload):
+        if not source.data.startswith(MAGIC):
+            return None
+        copy = folder / "copy.gpkg"
+        copy.write_bytes(source.data)
+        return copy if is_season(copy) else None
+    if not isinstance(source, str | Path) or not is_season(source):
+        return None
+    copy = folder / Path(source).name
+    copy_season(Path(source), copy)
+    return copy
+
+
+def record_saved(
+    season: Season, saved: PhoneFile, who: str = ""
+) -> tuple[Recorded, tuple[str, ...]]:
+    """Record what a phone saved, as what it sends; return what that did, and what there is to say.
+
+    `who` and what is raised as in `take_saved`.
+    """
+    taken = findings.take_saved(season, saved, who)
+    good = [one.new for one in taken if not one.problem]
+    said = *findings.of_others(season, saved), *sorted({one.problem for one in taken} - {""})
+    return Recorded(None, sum(good), len(good) - sum(good)), said

@@ -35,12 +35,12 @@ if TYPE_CHECKING:
     from fieldmon.infestation.belief import Learning
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.hotspots import HotSpots, HotSpotSettings, hot_spots
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.spread import Spread
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
-    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
     from fieldmon.infestation.records import Records
-    from fieldmon.infestation.spread import Spread
     from fieldmon.io.library import (
         read_inspections,
         read_pest,
@@ -99,11 +99,11 @@ _MODULES = {
     "decisions.library": ("read_labels",),
     "decisions.sprayer": ("Sprayer", "TreatmentCosts"),
     "infestation.belief": ("Learning",),
-    "infestation.pest_in_weather": ("PestInWeather",),
+    "infestation.insects.pest_in_weather": ("PestInWeather",),
     "infestation.hotspots": ("HotSpotSettings", "HotSpots", "hot_spots"),
     "infestation.inspections": ("Inspections",),
     "infestation.records": ("Records",),
-    "infestation.spread": ("Spread",),
+    "infestation.insects.spread": ("Spread",),
     "io.library": (
         "read_inspections",
         "read_pest",
@@ -133,7 +133,7 @@ _MODULES = {
     "decisions.map_verdict": ("MapVerdict",),
     "infestation.forecast": ("Forecast",),
     "infestation.plot_estimate": ("PlotEstimate",),
-    "infestation.prior_settings": ("PriorSettings",),
+    "infestation.prior.prior_settings": ("PriorSettings",),
     "monitoring.settings.advice_settings": ("AdviceSettings",),
     "monitoring.estimates.status": ("Status",),
     "planning.members": ("TeamMember", "Teamwork", "team_of"),

@@ -17,8 +17,8 @@ from fieldmon.cli.change import ChangeOptions, change
 from fieldmon.cli.options import OF_ROBOT, RobotOptions, TeamworkOptions, WorkerOptions
 from fieldmon.compute.units import Units
 from fieldmon.errors import FileProblem, SettingError
+from fieldmon.infestation.ancestry.origins import N_ORIGINS
 from fieldmon.infestation.earlier_season import Believed, EarlierSeason
-from fieldmon.infestation.origins import N_ORIGINS
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.io.readers.team import SETTINGS, read_team
 from fieldmon.monitoring import MonitoringSettings

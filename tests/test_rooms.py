@@ -13,7 +13,7 @@ LIBRARY, TESTS = ROOT / "fieldmon", ROOT / "tests"
 DECLARATIONS = {
     "__main__.py",
     "cli/stopped.py",
-    "infestation/ancestry_arrays.py",
+    "infestation/ancestry/ancestry_arrays.py",
     "samplers/adaptive/arrays.py",
     "studies/thesis/chapter5/fitted_choices.py",
 }

@@ -21,7 +21,7 @@ _SOME = 6
 if TYPE_CHECKING:
     from streamlit.delta_generator import DeltaGenerator
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
 
     from ..state.choices import Choices
 

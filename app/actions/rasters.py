@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import streamlit as st
 
-from fieldmon.infestation.raster_risk import RELATIVE
+from fieldmon.infestation.prior.raster_risk import RELATIVE
 
 from ..state import rasters, widget_memory
 from ..state.brought_files import brought

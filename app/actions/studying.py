@@ -8,7 +8,7 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.prior.prior import prior_chance
 from fieldmon.studies.thesis.chapter5.sites import Site
 
 from ..words import texts

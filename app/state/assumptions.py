@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.plot.assumed import Assumed
 

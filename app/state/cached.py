@@ -16,8 +16,8 @@ import streamlit as st
 
 from fieldmon.infestation import hotspots
 from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
-from fieldmon.infestation.prior import prior_chance
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.prior.prior import prior_chance
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.monitoring import worked_route
 from fieldmon.monitoring.days import day_ahead, estate_day
 from fieldmon.monitoring.estimates.plant_states import hot_spots_on
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
     from fieldmon.infestation.plot_estimate import PlotEstimate
-    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
     from fieldmon.infestation.records import Records
     from fieldmon.monitoring import DayFigures, KeptMessage, PlannedAndDone, Progress, Season
     from fieldmon.monitoring.advice.advice import Advice

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.pest_in_weather import seen_in_weather
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.pest_in_weather import seen_in_weather
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.samplers import sampler
 from fieldmon.simulation.metrics import SeasonMetrics, season_metrics
 from fieldmon.simulation.season import SimulatedDay, SimulationSettings, simulated_days

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from datetime import date
 from typing import TYPE_CHECKING
 
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.monitoring.phones import photos_asked
 from fieldmon.planning.plan import PlanSettings
 from fieldmon.planning.wishes import Wishes

@@ -9,8 +9,8 @@ import streamlit as st
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.pest_prior import prior_for
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.prior.pest_prior import prior_for
 from fieldmon.io.packaged import pest_names
 from fieldmon.io.readers.pest_file import read_pest, shipped_pest
 from fieldmon.io.readers.weather_options import WeatherOptions
@@ -22,7 +22,7 @@ from .brought_files import brought, messages_of, settled
 if TYPE_CHECKING:
     from datetime import date
 
-    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
     from fieldmon.io.import_report import Imported
     from fieldmon.pests.pest import Pest
     from fieldmon.pests.weather import Weather

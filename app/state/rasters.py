@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.raster_risk import RELATIVE, RiskSettings
+from fieldmon.infestation.prior.raster_risk import RELATIVE, RiskSettings
 from fieldmon.io.plot_request import CanopySource, RiskSource
 from fieldmon.io.rasters.values import RasterOptions
 

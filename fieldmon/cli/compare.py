@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.plot.plot import Plot
     from fieldmon.studies.teams.seasons import TeamOutcome, TeamScenario, TeamSetting
 
@@ -158,7 +158,7 @@ def robot_numbers(text: str) -> list[int]:
 
 def _scenarios(options: CompareOptions) -> list[TeamScenario]:
     """Return every plot with every spread."""
-    from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
+    from fieldmon.infestation.insects.spread import SIMULATED_PER_DAY, Spread
     from fieldmon.studies.teams.seasons import (
         TeamScenario,
         square_plot,

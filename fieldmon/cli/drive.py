@@ -206,8 +206,8 @@ def _plot(options: DriveOptions) -> None:
     import numpy as np
 
     from fieldmon.drive.day import DrivenDay, drive_day
-    from fieldmon.infestation.prior import prior_chance
-    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.prior.prior import prior_chance
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
     from fieldmon.monitoring.estimates.monitor import Monitor
     from fieldmon.planning.assumptions import assumed_by
     from fieldmon.plot.local_clock import local_clock, utc_now

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
     from fieldmon.io.plot_request import PlotRequest
     from fieldmon.io.prepared_plots import Estate, Prepared
 
@@ -39,7 +39,7 @@ def believed(known: Prepared, day: date, prior: PriorSettings) -> NDArray[np.flo
     """Return each plant's chance of infestation on a day; say which records tell nothing of it."""
     import numpy as np
 
-    from fieldmon.infestation.prior import prior_chance
+    from fieldmon.infestation.prior.prior import prior_chance
 
     plot, on = known.plot, np.datetime64(day, "D")
     tell_unusable(known.records, on, prior)

@@ -39,7 +39,7 @@ from fieldmon.samplers import USUAL_SAMPLER
 if TYPE_CHECKING:
     from datetime import datetime, time
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.infestation.records import Records
     from fieldmon.monitoring import MonitoringSettings
     from fieldmon.monitoring.settings.belief_settings import BeliefSettings

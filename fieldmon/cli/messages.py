@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
     from fieldmon.infestation.records import Records
     from fieldmon.io.prepared_plots import Laid, SourceMessage
     from fieldmon.monitoring import Season

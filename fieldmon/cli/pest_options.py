@@ -16,8 +16,8 @@ from fieldmon.io.packaged import pest_names
 if TYPE_CHECKING:
     from datetime import date
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather
-    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
     from fieldmon.pests.pest import Pest
     from fieldmon.pests.weather import Weather
     from fieldmon.plot.field import Field
@@ -100,7 +100,7 @@ class PestOptions:
 
     def in_weather(self, field: Field, begins: date) -> PestInWeather | None:
         """Return the pest in its weather from a day on; None: no pest was named."""
-        from fieldmon.infestation.pest_in_weather import PestInWeather
+        from fieldmon.infestation.insects.pest_in_weather import PestInWeather
 
         pest, weather = self.named(), self.met(field)
         if pest is None:
@@ -116,7 +116,7 @@ class PestOptions:
 
 def pest_in_weather_of(name: str | None) -> PestInWeather | None:
     """Return the pest that a study named, at the temperature of its figures; None: none was."""
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
 
     pest = PestOptions(name).named()
     if pest is None:
@@ -141,8 +141,8 @@ def prior_of(
 
     `background` is the chance of a plant of which nothing is known; None: the usual.
     """
-    from fieldmon.infestation.pest_prior import prior_for
-    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.prior.pest_prior import prior_for
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
 
     usual = PriorSettings()
     if background is not None:

@@ -13,7 +13,7 @@ from fieldmon.cli.option_ranges import within
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from fieldmon.infestation.raster_risk import RiskSettings
+    from fieldmon.infestation.prior.raster_risk import RiskSettings
     from fieldmon.io.plot_request import CanopySource, RiskSource
     from fieldmon.io.rasters.values import How, RasterOptions
 
@@ -102,7 +102,7 @@ def _options(given: dict[str, str]) -> tuple[RasterOptions, How | None]:
 
 def _risk_settings(given: dict[str, str]) -> RiskSettings | None:
     """Return what was said of the meaning, taken out of the options; None: nothing."""
-    from fieldmon.infestation.raster_risk import RiskSettings
+    from fieldmon.infestation.prior.raster_risk import RiskSettings
     from fieldmon.io.options import yes_or_no
 
     said: dict[str, Any] = {

@@ -35,7 +35,7 @@ from fieldmon.samplers.own import label_of
 if TYPE_CHECKING:
     from fieldmon.decisions.sprayer import TreatmentCosts
     from fieldmon.decisions.zones import Zones
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.simulation.season import SimulatedDay, SimulationSettings
@@ -97,7 +97,7 @@ class SimulateOptions:
 
     def season(self, pest_in_weather: PestInWeather | None) -> SimulationSettings:
         """Return what happens in the season."""
-        from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
+        from fieldmon.infestation.insects.spread import SIMULATED_PER_DAY, Spread
         from fieldmon.simulation.season import SimulationSettings
 
         self.pest_options.check_alone(spread=self.spread)

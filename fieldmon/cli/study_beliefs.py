@@ -15,7 +15,7 @@ from fieldmon.cli.study_output import can_be_folder, write_all
 from fieldmon.compute.ranges import SEASONS, AllowedRange
 
 if TYPE_CHECKING:
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.studies.samplers.calibration import Calibration
     from fieldmon.studies.samplers.scenarios import Scenario
 

@@ -162,8 +162,8 @@ def site_of(file: Path, feature: str | None, records: Path | None) -> Site:
     """Return a plot of a file; its records' chance map if there are any, on their last day."""
     import numpy as np
 
-    from fieldmon.infestation.prior import prior_chance
-    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.prior.prior import prior_chance
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
     from fieldmon.io.options import PlotOptions
     from fieldmon.io.plot_request import PlotRequest, PlotSources, RecordSource
     from fieldmon.studies.thesis.chapter5.sites import Site

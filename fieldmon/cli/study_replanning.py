@@ -30,7 +30,7 @@ def replanning(
 
     Example: fieldmon study replanning --seeds 20
     """
-    from fieldmon.infestation.spread import Spread
+    from fieldmon.infestation.insects.spread import Spread
     from fieldmon.studies.routes.seasons import OF_EACH_SEED, season_sentences, seasons
     from fieldmon.studies.samplers.scenarios import Scenario
 

@@ -220,7 +220,7 @@ def _tell_laid(fields: Sequence[Field], choices: PlantingChoices, terminal: Term
 
 def _tell_charged(robot_times: str) -> None:
     """Print what the robot's time rests on though nobody said it."""
-    from fieldmon.infestation.prior_settings import PriorSettings
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
     from fieldmon.planning.assumptions import assumed_by
     from fieldmon.plot.robot import Robot
 

@@ -22,7 +22,7 @@ from fieldmon.errors import SettingError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.studies.samplers.contenders import Added
     from fieldmon.studies.samplers.scenarios import Scenario
     from fieldmon.studies.samplers.seasons import SeasonOutcome

@@ -12,8 +12,8 @@ from fieldmon.compute.jit import loop
 from fieldmon.compute.wording import worded
 from fieldmon.decisions.sequential import INSPECT_MORE, LEAVE, TREAT
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
-from fieldmon.infestation.prior import scaled
+from fieldmon.infestation.pairs.pairs import Neighbourhood, pair_chances, update_neighbourhood
+from fieldmon.infestation.prior.prior import scaled
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -13,14 +13,14 @@ from fieldmon.compute.arrays import read_only
 from fieldmon.compute.wording import chance_figure, counted, joined, worded
 from fieldmon.decisions.sequential import INSPECT_MORE, LEAVE, TREAT, Verdict
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pairs import pairs_of
+from fieldmon.infestation.pairs.pairs import pairs_of
 from fieldmon.infestation.plot_estimate import doubted, draw_fields, known_infested
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.uninspected_days import Since
+    from fieldmon.infestation.pairs.uninspected_days import Since
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]

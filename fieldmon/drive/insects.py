@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.spread import Spread, night
+from fieldmon.infestation.insects.spread import Spread, night
 from fieldmon.planning.workday import draw_detections
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ from fieldmon.errors import SettingError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.spread import Spread
-    from fieldmon.infestation.tracing import Traces
-    from fieldmon.infestation.uninspected_days import Since
+    from fieldmon.infestation.insects.spread import Spread
+    from fieldmon.infestation.pairs.uninspected_days import Since
+    from fieldmon.infestation.tracing.tracing import Traces
     from fieldmon.pests.pest import Pest
 
 

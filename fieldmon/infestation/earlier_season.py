@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import SettingError
-from fieldmon.infestation.origins import (
+from fieldmon.infestation.ancestry.origins import (
     ANYWHERE,
     BY_ADJACENT,
     BY_EDGE,
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.compute.wording import Worded
-    from fieldmon.infestation.traced_pairs import TracedPairs
+    from fieldmon.infestation.tracing.traced_pairs import TracedPairs
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]

@@ -15,16 +15,16 @@ import numpy as np
 
 from fieldmon.compute.jit import routine
 from fieldmon.compute.random_streams import RandomStreams, coin
-from fieldmon.infestation.clustering import CLUSTERING
-from fieldmon.infestation.pairs import pair_chances
+from fieldmon.infestation.insects.spread import night
+from fieldmon.infestation.pairs.clustering import CLUSTERING
+from fieldmon.infestation.pairs.pairs import pair_chances
 from fieldmon.infestation.plot_estimate import PlotEstimate, draw_fields
-from fieldmon.infestation.spread import night
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Learning
-    from fieldmon.infestation.spread import Spread
+    from fieldmon.infestation.insects.spread import Spread
     from fieldmon.plot.grid import Csr, PlantGrid
 
 _FIELDS = 300
@@ -52,7 +52,7 @@ class Ensemble:
     def of(
         cls, grid: PlantGrid, chance: NDArray[np.float64], clustering: float = CLUSTERING
     ) -> Ensemble:
-        """Draw fields from a chance map, see :func:`fieldmon.infestation.pairs.pair_chances`."""
+        """Draw fields from a chance map, its neighbours alike as `pair_chances` has them."""
         fields = np.zeros((_FIELDS, len(grid)), np.bool_)
         believed = chance, pair_chances(chance, grid, clustering)
         draw_fields(believed, grid.adjacent, RandomStreams(0).key("fields"), fields)

@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.wording import counted
 from fieldmon.infestation.plot_estimate import estimate_of
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.insects.spread import Spread
     from fieldmon.infestation.plot_estimate import PlotEstimate
-    from fieldmon.infestation.spread import Spread
     from fieldmon.plot.grid import PlantGrid
 
     Floats = NDArray[np.float64]
@@ -139,8 +139,8 @@ def forecast(
     Examples
     --------
     >>> import numpy as np
-    >>> from fieldmon.infestation.spread import Spread
-    >>> from fieldmon.infestation.traced_pairs import TracedPairs
+    >>> from fieldmon.infestation.insects.spread import Spread
+    >>> from fieldmon.infestation.tracing.traced_pairs import TracedPairs
     >>> from fieldmon.plot.layout import rectangle
     >>> grid = rectangle(9, 9)
     >>> ahead = forecast(TracedPairs.of(grid, np.full(81, 0.02)), grid, [Spread(0.02)] * 14)

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import chance_figure, estimate, worded
-from fieldmon.infestation.jump_reach import kernel_means
-from fieldmon.infestation.origins import (
+from fieldmon.infestation.ancestry.origins import (
     ANYWHERE,
     AT_START,
     AT_START_ELSEWHERE,
@@ -18,10 +17,11 @@ from fieldmon.infestation.origins import (
     SIGMAS,
     Estimate,
 )
-from fieldmon.infestation.pest_in_weather import PestSpread
+from fieldmon.infestation.insects.jump_reach import kernel_means
+from fieldmon.infestation.insects.pest_in_weather import PestSpread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.infestation.plot_estimate import estimate_plot
-from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -147,7 +147,7 @@ def learnt_from(
     Examples
     --------
     >>> import numpy as np
-    >>> from fieldmon.infestation.traced_pairs import TracedPairs
+    >>> from fieldmon.infestation.tracing.traced_pairs import TracedPairs
     >>> from fieldmon.plot.layout import rectangle
     >>> at_first = TracedPairs.of(rectangle(9, 9), np.full(81, 0.02))
     >>> learnt_from(at_first, 0.84)[0].sentence()

@@ -9,8 +9,8 @@ import numpy as np
 
 from fieldmon.infestation.chance_bounds import MOST_CHANCE
 from fieldmon.infestation.plot_estimate import doubted_level, level_doubt, must_be_sure
-from fieldmon.infestation.prior import odds_ratio
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.prior.prior import odds_ratio
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

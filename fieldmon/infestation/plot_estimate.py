@@ -17,8 +17,8 @@ from fieldmon.compute.random_streams import coin
 from fieldmon.compute.wording import chance_figure, worded
 from fieldmon.errors import SettingError
 from fieldmon.infestation.chance_bounds import AS_GOOD_AS_CLEAN, KNOWN
-from fieldmon.infestation.pairs import pairs_of
-from fieldmon.infestation.uninspected_days import of_odds
+from fieldmon.infestation.pairs.pairs import pairs_of
+from fieldmon.infestation.pairs.uninspected_days import of_odds
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -110,7 +110,7 @@ def estimate_plot(
     ----------
     pair_chance
         Chance ``(e,)`` that two plants side by side are both infested (`Belief.pair_chance`);
-        without it they share their fate as `fieldmon.infestation.pairs.pair_chances` has it.
+        without it they share their fate as `fieldmon.infestation.pairs.pairs.pair_chances` has it.
         Taken as independent, the number would seem far surer than it is.
     sure
         Chance that the interval holds the number.
@@ -146,8 +146,8 @@ def estimate_of(
     Examples
     --------
     >>> import numpy as np
-    >>> from fieldmon.infestation.spread import Spread
-    >>> from fieldmon.infestation.traced_pairs import TracedPairs
+    >>> from fieldmon.infestation.insects.spread import Spread
+    >>> from fieldmon.infestation.tracing.traced_pairs import TracedPairs
     >>> from fieldmon.plot.layout import rectangle
     >>> grid = rectangle(20, 20)
     >>> tonight = TracedPairs.of(grid, np.full(400, 0.05))

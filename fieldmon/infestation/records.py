@@ -15,7 +15,7 @@ from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.plot.positions import lonlat_of
 
 if TYPE_CHECKING:

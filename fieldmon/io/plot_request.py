@@ -10,7 +10,7 @@ from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.plot.planting import Planting
 
 if TYPE_CHECKING:
-    from fieldmon.infestation.raster_risk import RiskSettings
+    from fieldmon.infestation.prior.raster_risk import RiskSettings
     from fieldmon.io.options import Source
     from fieldmon.io.rasters.values import How, RasterOptions
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M, robot_on
 from fieldmon.plot.robot import USUAL_TIMES, Robot, scout
@@ -26,7 +26,7 @@ def assumed_by(
 
     Examples
     --------
-    >>> from fieldmon.infestation.prior import PriorSettings
+    >>> from fieldmon.infestation.prior.prior import PriorSettings
     >>> from fieldmon.plot.robot import Robot
     >>> for each in assumed_by((), PriorSettings(background_chance=0.03), Robot(speed_m_s=0.5)):
     ...     print(each)

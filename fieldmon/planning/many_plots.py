@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.pests.pest import seen_by_pest
 from fieldmon.planning.day_bound import with_bound
 from fieldmon.planning.plan import PlanSettings, first_day

@@ -14,10 +14,10 @@ from fieldmon.compute.arrays import as_seen
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import SettingError
-from fieldmon.infestation.prior import prior_chance
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior import prior_chance
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import Records, must_be_records
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.io.readers.nearby import warn_of_left_out
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.planning.route import route_of

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.tracing import Traces
+    from fieldmon.infestation.tracing.tracing import Traces
     from fieldmon.planning.team_worker import TeamWorker
 
     #: what is believed after inspections: plants, whether each was a find, and its detection

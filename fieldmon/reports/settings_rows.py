@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from datetime import date
 
     from fieldmon.compute.units import Units
-    from fieldmon.infestation.pest_in_weather import PestInWeather
-    from fieldmon.infestation.prior_settings import PriorSettings
-    from fieldmon.infestation.spread import Spread
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.spread import Spread
+    from fieldmon.infestation.prior.prior_settings import PriorSettings
     from fieldmon.monitoring import Season
     from fieldmon.planning.members import TeamMember
     from fieldmon.plot.assumed import Assumed

@@ -16,7 +16,7 @@ from fieldmon.compute.arrays import as_compiled
 from fieldmon.compute.jit import inner_loop, loop
 from fieldmon.compute.random_streams import coin
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
+from fieldmon.infestation.pairs.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.plot.travel import Clock, in_time, travel_s
 from fieldmon.samplers.base import Sampler, Scene, Stops
 

@@ -14,7 +14,7 @@ from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.ranges import PAIRED, SHARE
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
-from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
+from fieldmon.infestation.insects.spread import SIMULATED_PER_DAY, Spread
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.checked_sampler import Checked

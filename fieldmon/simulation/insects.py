@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from fieldmon.infestation.colonies import Colonies
+from fieldmon.infestation.insects.colonies import Colonies
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather, Spell
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather, Spell
     from fieldmon.plot.grid import PlantGrid
 
     Night = Callable[[PlantGrid, NDArray[np.bool_], np.uint64], NDArray[np.bool_]]

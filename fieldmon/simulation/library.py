@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from fieldmon.compute.array_arguments import chances_of
 from fieldmon.compute.kinds import checked, must_be_of
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.pest_in_weather import seen_in_weather
+from fieldmon.infestation.insects.pest_in_weather import seen_in_weather
 from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler_or_name

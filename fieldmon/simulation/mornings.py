@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief, Learning
-    from fieldmon.infestation.spread import Spread
+    from fieldmon.infestation.insects.spread import Spread
     from fieldmon.planning.workday import Workday
 
 

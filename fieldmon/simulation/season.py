@@ -13,8 +13,8 @@ from fieldmon.compute.kinds import checked, must_be_of, must_hold_kinds
 from fieldmon.compute.ranges import DAYS, AllowedRange
 from fieldmon.errors import PlotError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.spread import Spread, night
-from fieldmon.infestation.traced_pairs import TracedPairs, in_sight
+from fieldmon.infestation.insects.spread import Spread, night
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs, in_sight
 from fieldmon.planning.workday import Workday, draw_detections, work_day
 from fieldmon.samplers.base import NEVER, Scene, resting_place
 from fieldmon.samplers.own import asked
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles

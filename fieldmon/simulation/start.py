@@ -9,7 +9,7 @@ from fieldmon.compute.array_arguments import must_be_chances, must_hold_shapes
 from fieldmon.compute.kinds import must_hold_kinds
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
-from fieldmon.infestation.prior import start_infested
+from fieldmon.infestation.prior.prior import start_infested
 
 if TYPE_CHECKING:
     import numpy as np

@@ -11,7 +11,7 @@ from fieldmon.compute.digest import digest
 if TYPE_CHECKING:
     import numpy as np
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.infestation.records import Records
     from fieldmon.plot.field import Field
     from fieldmon.plot.planting import Planting

@@ -7,11 +7,11 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.pest_in_weather import seen_in_weather
-from fieldmon.infestation.pest_prior import prior_for
-from fieldmon.infestation.prior import prior_chance
-from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.pest_in_weather import seen_in_weather
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.prior.pest_prior import prior_for
+from fieldmon.infestation.prior.prior import prior_chance
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.plot.plot import plot_of
 from fieldmon.plot.robot import USUAL_TIMES, Robot
 from fieldmon.samplers import sampler_or_name
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.plot.plot import Plot
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.study_plot import Combination, StudyPlot

@@ -20,8 +20,8 @@ from scipy.optimize import minimize
 
 from fieldmon.compute.wording import counted
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.dispersal import Dispersal
-from fieldmon.infestation.kernels import DistanceKernel
+from fieldmon.infestation.insects.dispersal import Dispersal
+from fieldmon.infestation.insects.kernels import DistanceKernel
 from fieldmon.studies.plant_maps import read_plant_maps
 
 if TYPE_CHECKING:

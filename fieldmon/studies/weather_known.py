@@ -15,8 +15,8 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.colonies import Colonies
-from fieldmon.infestation.pest_in_weather import PestInWeather, Spell, seen_in_weather
+from fieldmon.infestation.insects.colonies import Colonies
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather, Spell, seen_in_weather
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.pests.pest import Increase, Movement, Pest, Stage
 from fieldmon.pests.weather import DAY_S, weather_of

@@ -15,8 +15,8 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.cells import Cells
-from fieldmon.infestation.dispersal import Dispersal
-from fieldmon.infestation.kernels import DistanceKernel
+from fieldmon.infestation.insects.dispersal import Dispersal
+from fieldmon.infestation.insects.kernels import DistanceKernel
 from tests.benchmarks.scale import best_of, told
 
 SIDE, DAYS, MEAN_M, CELL_M = 91, 25, 6.0, 3.0

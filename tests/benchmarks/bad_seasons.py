@@ -13,7 +13,7 @@ import time
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.plot.layout import lay, rectangle
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.robot import Robot

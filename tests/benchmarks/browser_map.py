@@ -91,7 +91,7 @@ def serve():
     from streamlit.runtime.scriptrunner_utils.script_run_context import ScriptRunContext
 
     from app.startup import serve as app_server
-    from fieldmon.infestation import prior
+    from fieldmon.infestation.prior import prior
     from fieldmon.planning import plan as plan_module
 
     running = threading.local()

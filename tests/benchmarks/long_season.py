@@ -28,8 +28,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.insects.spread import Spread, night
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
-from fieldmon.infestation.spread import Spread, night
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.estimates.derived_layers import map_digest

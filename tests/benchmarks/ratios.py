@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.spread import Spread, night
+from fieldmon.infestation.insects.spread import Spread, night
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot

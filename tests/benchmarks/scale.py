@@ -22,12 +22,12 @@ import numpy as np
 from app.show.maps import colours, deck, plant_layers, route_layers
 from app.show.maps.plant_layers import PlantNotes
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.independent_plants import IndependentPlants, overnight
-from fieldmon.infestation.pairs import PairApproximation, pair_chances
-from fieldmon.infestation.prior import prior_chance, start_infested
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.insects.spread import Spread, night
+from fieldmon.infestation.pairs.independent_plants import IndependentPlants, overnight
+from fieldmon.infestation.pairs.pairs import PairApproximation, pair_chances
+from fieldmon.infestation.prior.prior import prior_chance, start_infested
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import ABSENT, PRESENT, Records
-from fieldmon.infestation.spread import Spread, night
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.plan import PlanSettings, plan_from

@@ -4,8 +4,8 @@ import shapely
 from shapely import MultiLineString
 
 from fieldmon.infestation.hotspots import hot_spots, record_states
-from fieldmon.infestation.prior import prior_chance, start_infested
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior import prior_chance, start_infested
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import ABSENT, PRESENT, Records
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle

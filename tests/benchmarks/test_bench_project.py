@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.infestation.prior import start_infested
+from fieldmon.infestation.prior.prior import start_infested
 from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.planning.workday import draw_detections

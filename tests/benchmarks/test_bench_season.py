@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.spread import Spread, night
+from fieldmon.infestation.insects.spread import Spread, night
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import rectangle

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.colonies import Colonies
-from fieldmon.infestation.dispersal import Dispersal
 from fieldmon.infestation.forecast import forecast
-from fieldmon.infestation.kernels import DistanceKernel
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.insects.colonies import Colonies
+from fieldmon.infestation.insects.dispersal import Dispersal
+from fieldmon.infestation.insects.kernels import DistanceKernel
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.io.readers.pest_file import pest_of
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.layout import rectangle

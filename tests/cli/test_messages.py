@@ -16,7 +16,7 @@ from fieldmon.cli.messages import (
     tell_unusable,
 )
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import PRESENT, Records
 from fieldmon.io.import_report import Remedy, guessed
 from fieldmon.io.prepared_plots import Laid, SourceMessage

@@ -13,7 +13,7 @@ A_NIGHT = """
 import numpy as np
 from fieldmon.compute.jit_progress import FIRST_USE
 from fieldmon.plot.layout import rectangle
-from fieldmon.infestation.spread import Spread, night
+from fieldmon.infestation.insects.spread import Spread, night
 night(rectangle(3, 3), np.ones(9, bool), Spread(), np.uint64(1))
 print(FIRST_USE.compiled)
 """

@@ -7,7 +7,7 @@ from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.insects import Insects
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.monitoring.estimates.monitor import Monitor
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.robot import Robot

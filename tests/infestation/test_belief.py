@@ -6,9 +6,9 @@ import pytest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.ensemble import Ensemble
-from fieldmon.infestation.independent_plants import IndependentPlants
-from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.pairs.independent_plants import IndependentPlants
+from fieldmon.infestation.pairs.pairs import PairApproximation
 from fieldmon.plot.layout import rectangle
 
 GRID = rectangle(8, 9)

@@ -7,9 +7,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.earlier_season import Believed, EarlierSeason, earlier_from
-from fieldmon.infestation.learnt import learnt_from
-from fieldmon.infestation.origins import (
+from fieldmon.infestation.ancestry.origins import (
     AT_START,
     AT_START_ELSEWHERE,
     BY_ADJACENT,
@@ -18,11 +16,13 @@ from fieldmon.infestation.origins import (
     OVERLOOKED,
     OriginCounts,
 )
+from fieldmon.infestation.earlier_season import Believed, EarlierSeason, earlier_from
+from fieldmon.infestation.learnt import learnt_from
 from fieldmon.infestation.plot_estimate import estimate_of
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Pest
 from fieldmon.plot.layout import rectangle
-from tests.infestation.traced_maps import mid_season
+from tests.infestation.tracing.traced_maps import mid_season
 
 GRID = rectangle(9, 9)
 FIRST = TracedPairs.of(GRID, np.full(81, 0.02))

@@ -7,7 +7,7 @@ from fieldmon.compute.random_streams import coin
 from fieldmon.infestation import ensemble
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.ensemble import Ensemble
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.plot.layout import rectangle
 
 GRID = rectangle(8, 8)

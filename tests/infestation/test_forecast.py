@@ -7,12 +7,12 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.colonies import Colonies
 from fieldmon.infestation.forecast import Forecast, forecast
-from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.colonies import Colonies
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.infestation.plot_estimate import PlotEstimate, draw_fields, estimate_of
-from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.layout import rectangle
 

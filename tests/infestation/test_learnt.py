@@ -6,10 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.jump_reach import kernel_means
-from fieldmon.infestation.learnt import Learnt, _length, learnt_from, with_start, worth_saying
-from fieldmon.infestation.origins import (
+from fieldmon.infestation.ancestry.origins import (
     ANYWHERE,
     AT_START,
     AT_START_ELSEWHERE,
@@ -17,14 +14,17 @@ from fieldmon.infestation.origins import (
     JUMPED,
     Estimate,
 )
-from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.insects.jump_reach import kernel_means
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.learnt import Learnt, _length, learnt_from, with_start, worth_saying
+from fieldmon.infestation.pairs.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import estimate_plot
-from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Entry, Movement, Pest
 from fieldmon.plot.layout import rectangle
-from tests.infestation.traced_maps import mid_season
+from tests.infestation.tracing.traced_maps import mid_season
 
 GRID = rectangle(9, 9)
 FLAT = np.full(81, 0.02)

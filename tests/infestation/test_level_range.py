@@ -10,7 +10,7 @@ from scipy.special import expit, logit
 from fieldmon.errors import SettingError
 from fieldmon.infestation.level_range import LevelRange, first_level_range, level_range
 from fieldmon.infestation.plot_estimate import doubted_level, estimate_plot
-from fieldmon.infestation.prior import scaled
+from fieldmon.infestation.prior.prior import scaled
 from fieldmon.plot.layout import rectangle
 
 GRID = rectangle(20, 20)

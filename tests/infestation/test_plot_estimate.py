@@ -9,7 +9,7 @@ from scipy.stats import binom
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.pairs import PairApproximation, pair_chances
+from fieldmon.infestation.pairs.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.plot_estimate import (
     PlotEstimate,
     doubted_level,
@@ -18,9 +18,9 @@ from fieldmon.infestation.plot_estimate import (
     estimate_of,
     estimate_plot,
 )
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.plot.layout import rectangle
-from tests.infestation.enumerated import Enumerated
+from tests.infestation.ancestry.enumerated import Enumerated
 
 GRID = rectangle(20, 20)
 

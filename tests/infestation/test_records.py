@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import ObservationError
-from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.infestation.record_kernel import record_chance
+from fieldmon.infestation.prior.prior_settings import PriorSettings
+from fieldmon.infestation.prior.record_kernel import record_chance
 from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN, Records, usable
-from tests.infestation.placed_records import GRID, MIDDLE, TODAY, at_middle, together
+from tests.infestation.prior.placed_records import GRID, MIDDLE, TODAY, at_middle, together
 
 
 def test_columns_that_are_not_given_are_unknown():

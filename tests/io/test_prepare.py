@@ -10,7 +10,7 @@ import shapely
 from rasterio.transform import from_bounds
 
 from fieldmon.errors import ChoiceNeeded, FileProblem, SettingError
-from fieldmon.infestation.raster_risk import RiskSettings
+from fieldmon.infestation.prior.raster_risk import RiskSettings
 from fieldmon.io.options import PlotOptions, ReadOptions
 from fieldmon.io.plot_records import records_on
 from fieldmon.io.plot_request import (

@@ -7,10 +7,10 @@ import numpy as np
 from shapely import MultiPolygon, box
 
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.infestation.insects.spread import night
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
-from fieldmon.infestation.prior import start_infested
+from fieldmon.infestation.prior.prior import start_infested
 from fieldmon.infestation.records import Records
-from fieldmon.infestation.spread import night
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings

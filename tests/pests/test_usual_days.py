@@ -5,7 +5,7 @@ from datetime import date
 import numpy as np
 import pytest
 
-from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
 from fieldmon.pests.degree_days import Thresholds
 from fieldmon.pests.development import daily_warmth
 from fieldmon.pests.pest import Pest

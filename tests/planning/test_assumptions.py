@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.io.plot_request import PlantingChoices
 from fieldmon.io.prepare import lay
 from fieldmon.planning.assumptions import assumed_by, assumed_by_team

@@ -9,8 +9,8 @@ import shapely
 from shapely import MultiPolygon, box
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.prior import prior_chance
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior import prior_chance
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import PRESENT, Records
 from fieldmon.pests.pest import Pest
 from fieldmon.planning.day_bound import found_bound

@@ -10,10 +10,10 @@ import shapely
 import shapely.affinity
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.prior import prior_chance
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior import prior_chance
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import PRESENT, Records
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.planning.plan import (
     PlanSettings,
     first_day,

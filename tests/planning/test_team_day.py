@@ -12,7 +12,7 @@ from shapely import LineString, MultiPolygon, Polygon
 
 from fieldmon.errors import PlotError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.pairs.pairs import PairApproximation
 from fieldmon.planning.members import Teamwork
 from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import _TeamDay, merged, team_day

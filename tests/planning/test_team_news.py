@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.independent_plants import IndependentPlants
+from fieldmon.infestation.pairs.independent_plants import IndependentPlants
 from fieldmon.planning.team_news import TeamNews
 from fieldmon.planning.team_worker import Posted, StopMade, TeamWorker
 from fieldmon.plot.layout import rectangle

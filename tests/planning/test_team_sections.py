@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.independent_plants import IndependentPlants
+from fieldmon.infestation.pairs.independent_plants import IndependentPlants
 from fieldmon.planning.members import Teamwork
 from fieldmon.planning.sections import aisle_heights, even_sections
 from fieldmon.planning.team_news import TeamNews

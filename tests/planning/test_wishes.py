@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.planning.plan import PlanSettings, plan_believed, plan_from
 from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.field import Field

@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from fieldmon.errors import PlotError, SettingError
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.planning.assumptions import assumed_by
 from fieldmon.planning.routes.best_route import best
 from fieldmon.plot.clearance import Clearance

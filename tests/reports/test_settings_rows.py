@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.units import Units
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.pests.pest import Pest

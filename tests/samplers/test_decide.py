@@ -6,7 +6,7 @@ import pytest
 from fieldmon.compute.jit import loop
 from fieldmon.compute.random_streams import coin_table
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pairs import Neighbourhood, pair_chances, update_neighbourhood
+from fieldmon.infestation.pairs.pairs import Neighbourhood, pair_chances, update_neighbourhood
 from fieldmon.planning.explain import explain
 from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.layout import rectangle

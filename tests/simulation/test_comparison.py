@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.spread import SIMULATED_PER_DAY, Spread
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import SIMULATED_PER_DAY, Spread
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.samplers.base import Sampler, Stops
 from fieldmon.samplers.sweeps import Bouncy, Naive

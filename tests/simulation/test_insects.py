@@ -8,8 +8,8 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.spread import Spread, night
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread, night
 from fieldmon.pests.pest import Movement, Pest, Stage
 from fieldmon.planning.workday import Workday
 from fieldmon.plot.layout import rectangle

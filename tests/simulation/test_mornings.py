@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.independent_plants import IndependentPlants
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.pairs.independent_plants import IndependentPlants
 from fieldmon.plot.layout import rectangle
 from fieldmon.simulation.mornings import MorningBeliefs
 

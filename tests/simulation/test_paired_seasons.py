@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import sampler
 from fieldmon.simulation import executor

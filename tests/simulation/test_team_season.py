@@ -8,8 +8,8 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.planning.members import TeamMember, Teamwork, team_of
 from fieldmon.planning.route import route_of

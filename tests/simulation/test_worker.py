@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.prior import prior_chance, start_infested
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.prior.prior import prior_chance, start_infested
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import Records
-from fieldmon.infestation.spread import Spread
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.pests.weather import DAY_S, weather_of
 from fieldmon.plot.planting import Planting

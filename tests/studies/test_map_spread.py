@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.dispersal import Dispersal, settle
-from fieldmon.infestation.kernels import DistanceKernel
+from fieldmon.infestation.insects.dispersal import Dispersal, settle
+from fieldmon.infestation.insects.kernels import DistanceKernel
 from fieldmon.plot.layout import rectangle
 from fieldmon.studies.map_spread import Interval, intervals_in, scores
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import joined, share_figure, worded
-from fieldmon.infestation.raster_risk import RELATIVE, meaning_of, risk_chance
+from fieldmon.infestation.prior.raster_risk import RELATIVE, meaning_of, risk_chance
 from fieldmon.io.import_report import doubtful, seen
 from fieldmon.io.options import source_name
 from fieldmon.io.rasters.read import read_raster
@@ -16,7 +16,7 @@ from fieldmon.io.rasters.shared_values import doubts_of_alike
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.raster_risk import RiskSettings
+    from fieldmon.infestation.prior.raster_risk import RiskSettings
     from fieldmon.io.import_report import Imported
     from fieldmon.io.options import Source
     from fieldmon.io.rasters.values import How, RasterOptions

@@ -11,7 +11,7 @@ import shapely
 from fieldmon.compute.units import distance_figure
 from fieldmon.compute.wording import first_few, joined, worded
 from fieldmon.errors import FieldmonError
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.import_report import ImportMessage, Remedy, Severity, doubtful
 from fieldmon.io.options import RecordOptions

@@ -8,7 +8,7 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import Records
 from fieldmon.io.import_report import (
     Imported,

@@ -11,7 +11,7 @@ import pyproj
 from fieldmon.compute.jit import routine
 from fieldmon.compute.wording import worded
 from fieldmon.errors import PlotError
-from fieldmon.infestation.raster_risk import CHANCE_BAND
+from fieldmon.infestation.prior.raster_risk import CHANCE_BAND
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.rasters.interpolated_projection import smoothly
 from fieldmon.io.sandbox import limits

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import counted, joined, share_figure, worded
-from fieldmon.infestation.jump_reach import RADIUS
+from fieldmon.infestation.insects.jump_reach import RADIUS
 
 if TYPE_CHECKING:
     from datetime import date

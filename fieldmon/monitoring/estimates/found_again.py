@@ -9,8 +9,8 @@ import numpy as np
 from scipy.special import bdtrc
 
 from fieldmon.compute.wording import worded
+from fieldmon.infestation.insects.pest_in_weather import PestSpread
 from fieldmon.infestation.inspections import FOUND, SKIPPED
-from fieldmon.infestation.pest_in_weather import PestSpread
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

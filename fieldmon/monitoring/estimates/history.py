@@ -12,15 +12,15 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError
+from fieldmon.infestation.ancestry.origins import Estimate
 from fieldmon.infestation.chance_bounds import KNOWN
 from fieldmon.infestation.forecast import NIGHTS, Forecast, forecast
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.infestation.learnt import learnt_from, with_start
 from fieldmon.infestation.level_range import level_range
-from fieldmon.infestation.origins import Estimate
 from fieldmon.infestation.plot_estimate import estimate_of
 from fieldmon.infestation.records import PRESENT
-from fieldmon.infestation.traced_pairs import in_hindsight, in_sight
+from fieldmon.infestation.tracing.traced_pairs import in_hindsight, in_sight
 from fieldmon.io.parse.result_words import says_gone
 from fieldmon.monitoring.estimates.still_infested import (
     infested_in_all,
@@ -41,11 +41,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.spread import Spread
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
-    from fieldmon.infestation.pest_in_weather import PestInWeather
     from fieldmon.infestation.plot_estimate import PlotEstimate
-    from fieldmon.infestation.spread import Spread
     from fieldmon.monitoring.settings.shift_work import Besides, Shift
     from fieldmon.monitoring.treating.treatment import Treatment
     from fieldmon.plot.grid import PlantGrid

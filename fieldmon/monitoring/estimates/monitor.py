@@ -21,12 +21,12 @@ from fieldmon.compute.ranges import DAYS
 from fieldmon.decisions.map_verdict import verdict_of
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.forecast import NIGHTS, forecast
-from fieldmon.infestation.pest_in_weather import seen_in_weather
+from fieldmon.infestation.insects.pest_in_weather import seen_in_weather
 from fieldmon.infestation.plot_estimate import estimate_of
-from fieldmon.infestation.prior import prior_chance
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior import prior_chance
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import Records
-from fieldmon.infestation.traced_pairs import in_hindsight, in_sight
+from fieldmon.infestation.tracing.traced_pairs import in_hindsight, in_sight
 from fieldmon.monitoring.estimates.still_infested import not_found_yet, still_certain
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.planning.plan import plan_in
@@ -46,9 +46,9 @@ if TYPE_CHECKING:
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.forecast import Forecast
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.spread import Spread
     from fieldmon.infestation.plot_estimate import PlotEstimate
-    from fieldmon.infestation.spread import Spread
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.plot import Plot

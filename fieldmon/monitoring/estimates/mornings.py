@@ -16,14 +16,14 @@ import numpy as np
 import fieldmon.infestation
 import fieldmon.pests
 from fieldmon.compute.digest import digest
-from fieldmon.infestation.cohorts import Age, Cohorts
-from fieldmon.infestation.kept_ancestry import ancestry_of, arrays_of
-from fieldmon.infestation.latency import Latency
-from fieldmon.infestation.origins import OriginCounts
-from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.ancestry.kept_ancestry import ancestry_of, arrays_of
+from fieldmon.infestation.ancestry.origins import OriginCounts
+from fieldmon.infestation.insects.cohorts import Age, Cohorts
+from fieldmon.infestation.insects.latency import Latency
+from fieldmon.infestation.pairs.pairs import PairApproximation
+from fieldmon.infestation.pairs.uninspected_days import UninspectedDays
 from fieldmon.infestation.plot_estimate import PlotEstimate
-from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.infestation.uninspected_days import UninspectedDays
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.monitoring.estimates import history as causes_of_a_morning
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.file.geopackage import insert, unpacked

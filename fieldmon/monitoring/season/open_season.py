@@ -14,7 +14,7 @@ import shapely
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.hotspots import record_states
-from fieldmon.infestation.prior import prior_chance
+from fieldmon.infestation.prior.prior import prior_chance
 from fieldmon.infestation.records import Records, usable
 from fieldmon.monitoring.changes import logged_days, outside_changes, season_log
 from fieldmon.monitoring.changes.transactions import Store, get_meta

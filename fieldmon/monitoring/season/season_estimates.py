@@ -15,8 +15,8 @@ from fieldmon.decisions.sequential import LEAVE
 from fieldmon.errors import SettingError
 from fieldmon.infestation.earlier_season import EarlierSeason
 from fieldmon.infestation.inspections import FOUND, SKIPPED
-from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.infestation.traced_pairs import TracedPairs, in_sight
+from fieldmon.infestation.prior.prior_settings import PriorSettings
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs, in_sight
 from fieldmon.monitoring.advice.advice import advice
 from fieldmon.monitoring.advice.left_plot import FewInspected, InspectAgain, NotReached
 from fieldmon.monitoring.estimates import day_figures

@@ -11,10 +11,10 @@ from fieldmon.compute.array_arguments import must_be_shaped
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.earlier_season import Believed, EarlierSeason
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.infestation.inspections import after_their_find
-from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.pairs.pairs import PairApproximation
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.pests.pest import USUAL_PER_DAY
 from fieldmon.plot.robot import Robot
 

@@ -19,10 +19,10 @@ from fieldmon.compute.ranges import SEED, AllowedRange
 from fieldmon.compute.wording import chance_figure, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.earlier_season import Believed, EarlierSeason, earlier_from
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.pest_prior import prior_of_now
-from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.prior.pest_prior import prior_of_now
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.monitoring.settings.pest_json import (
     kept_weather,

@@ -11,9 +11,9 @@ from fieldmon.samplers.base import InspectionTimes
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.clustering import ClusterEstimate
-    from fieldmon.infestation.pairs import Neighbourhood
-    from fieldmon.infestation.tracing import Raised, Traces
+    from fieldmon.infestation.pairs.clustering import ClusterEstimate
+    from fieldmon.infestation.pairs.pairs import Neighbourhood
+    from fieldmon.infestation.tracing.tracing import Raised, Traces
 
     Float = NDArray[np.float64]
     Int = NDArray[np.int64]

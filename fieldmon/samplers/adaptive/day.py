@@ -9,15 +9,15 @@ import numpy as np
 from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.infestation.calibration_slope import note_inspection, proved_slope
 from fieldmon.infestation.chance_bounds import bounded_chance, bounded_pair_chance
-from fieldmon.infestation.clustering import (
+from fieldmon.infestation.pairs.clustering import (
     chance_apart,
     clustering_scale,
     leaning,
     scale_clustering,
     update_clusters,
 )
-from fieldmon.infestation.pairs import update_neighbourhood
-from fieldmon.infestation.tracing import rescale_traced, trace
+from fieldmon.infestation.pairs.pairs import update_neighbourhood
+from fieldmon.infestation.tracing.tracing import rescale_traced, trace
 from fieldmon.plot.travel import travel_s
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, NEARLY, NOWHERE
 from fieldmon.samplers.adaptive.replan import first_price, plan_on, row_of

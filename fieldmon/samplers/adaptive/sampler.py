@@ -9,9 +9,9 @@ import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
 from fieldmon.errors import SettingError
-from fieldmon.infestation.clustering import ClusterEstimate, chance_apart, leaning
-from fieldmon.infestation.pairs import Neighbourhood, pair_chances
-from fieldmon.infestation.tracing import Raised, Traces
+from fieldmon.infestation.pairs.clustering import ClusterEstimate, chance_apart, leaning
+from fieldmon.infestation.pairs.pairs import Neighbourhood, pair_chances
+from fieldmon.infestation.tracing.tracing import Raised, Traces
 from fieldmon.samplers.adaptive.arrays import (
     LEAST,
     NOWHERE,

@@ -13,10 +13,10 @@ import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.ensemble import Ensemble
-from fieldmon.infestation.independent_plants import IndependentPlants
-from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.pairs.independent_plants import IndependentPlants
+from fieldmon.infestation.pairs.pairs import PairApproximation
 from fieldmon.infestation.plot_estimate import PlotEstimate, estimate_of, estimate_plot
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.io.html import page
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Experiment, Memory, run
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.infestation.belief import Belief, Learning
-    from fieldmon.infestation.spread import Spread
+    from fieldmon.infestation.insects.spread import Spread
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.samplers.base import Sampler
     from fieldmon.studies.samplers.scenarios import Scenario

@@ -9,9 +9,9 @@ import numpy as np
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
-from fieldmon.infestation.independent_plants import IndependentPlants
-from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.pairs.independent_plants import IndependentPlants
+from fieldmon.infestation.pairs.pairs import PairApproximation
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers import kind_of, sampler_maker
 from fieldmon.samplers.adaptive import Adaptive

@@ -10,8 +10,8 @@ import numpy as np
 
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.pairs.pairs import PairApproximation
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers.adaptive import Adaptive

@@ -11,11 +11,11 @@ import numpy as np
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.pest_in_weather import seen_in_weather
-from fieldmon.infestation.prior import edge_chance, scaled, start_infested
-from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.pest_in_weather import seen_in_weather
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.pairs.pairs import PairApproximation
+from fieldmon.infestation.prior.prior import edge_chance, scaled, start_infested
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import Aisles
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.compute.random_streams import RandomStreams
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.plot.grid import PlantGrid
 
 # the thesis's plots, plants a side: 1, 5 and 10 ha

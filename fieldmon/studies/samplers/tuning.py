@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.samplers.dynamic import Dynamic
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Experiment, Memory, run

@@ -10,10 +10,10 @@ import numpy as np
 
 from fieldmon.compute.digest import digest
 from fieldmon.errors import SettingError
-from fieldmon.infestation.prior import prior_chance
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.prior.prior import prior_chance
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import Records
-from fieldmon.infestation.spread import Spread
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.simulation.experiment import Experiment
     from fieldmon.simulation.team_season import Team
 

@@ -12,7 +12,7 @@ from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.decisions.zones import best_zones, whole_plot
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.planning.workday import work_day
 from fieldmon.samplers import SAMPLERS, sampler
 from fieldmon.samplers.adaptive import Adaptive
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from fieldmon.decisions.zones import Zones
     from fieldmon.infestation.belief import Belief
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.plot.grid import PlantGrid
 
 NOTHING = "nothing"

@@ -17,7 +17,7 @@ from fieldmon.decisions.sequential import INSPECT_MORE, LEAVE, TREAT, IwaoPlan, 
 from fieldmon.decisions.stopping import decided
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.planning.workday import work_day
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.travel import GATE, Aisles
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler
 

@@ -11,7 +11,7 @@ from app.words.units import UnitsInLanguage
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import share_figure
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
-from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.pairs.pairs import PairApproximation
 from fieldmon.io.spray_rate import litres_figure
 from fieldmon.monitoring.advice.advice import advice
 from fieldmon.monitoring.settings.advice_settings import AdviceSettings

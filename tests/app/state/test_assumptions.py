@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from app.state import assumptions, widget_memory
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from tests.app.chosen import a_plot, chosen
 
 

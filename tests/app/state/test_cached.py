@@ -3,7 +3,7 @@
 import numpy as np
 
 from app.state import cached, cached_files, cached_simulations
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import Records
 from fieldmon.planning.plan import PlanSettings, plan_from
 from fieldmon.planning.wishes import Wishes

@@ -4,7 +4,7 @@ import numpy as np
 
 from app.state import cached_simulations
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.prior import start_infested
+from fieldmon.infestation.prior.prior import start_infested
 from fieldmon.plot.robot import Robot
 from fieldmon.simulation.worker import LaidPlot
 from tests.app.chosen import a_plot

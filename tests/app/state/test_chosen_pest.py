@@ -7,7 +7,7 @@ import pytest
 import fieldmon as fm
 from app.state import brought_files, chosen_pest
 from app.state.brought_files import File
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.io.options import Upload
 from fieldmon.io.packaged import pest_names
 

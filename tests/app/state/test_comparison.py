@@ -11,7 +11,7 @@ from app.state.comparison import (
     gains,
     outcomes,
 )
-from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.plot.field import Field
 from fieldmon.plot.plot import Plot

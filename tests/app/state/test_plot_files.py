@@ -10,8 +10,8 @@ from shapely import LineString, MultiLineString
 from app.show.maps import colours
 from app.state import plot_files
 from app.state.brought_files import File
-from fieldmon.infestation.prior import prior_chance
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior import prior_chance
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.io.options import Upload
 from fieldmon.io.plot_request import PlotRequest, PlotSources, RecordSource
 from fieldmon.io.prepare import prepare

@@ -131,8 +131,8 @@ def test_texts_stay_where_they_are_and_new_ones_come_behind_what_they_stand_behi
 _ELSEWHERE = {
     "cli", "compute", "drive", "samplers", "simulation", "studies",
     "decisions/leaves.py", "decisions/taylor.py", "infestation/belief.py",
-    "infestation/hotspots.py", "infestation/inspections.py", "infestation/kernels.py",
-    "infestation/records.py", "infestation/spread.py", "monitoring/estimates/monitor.py",
+    "infestation/hotspots.py", "infestation/inspections.py", "infestation/insects/kernels.py",
+    "infestation/records.py", "infestation/insects/spread.py", "monitoring/estimates/monitor.py",
     "planning/routes", "plot/frames.py", "plot/positions.py",
 }  # fmt: skip
 _SAYS = {"seen", "repaired", "guessed", "dropped", "doubtful", "ask_for_crs"}

@@ -5,7 +5,7 @@ import pytest
 import rasterio
 
 from fieldmon.errors import ChoiceNeeded, FileProblem, ObservationError
-from fieldmon.infestation.raster_risk import CHANCE_BAND, RiskSettings, risk_chance
+from fieldmon.infestation.prior.raster_risk import CHANCE_BAND, RiskSettings, risk_chance
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import Upload
 from fieldmon.io.rasters.at_plants import read_missing, read_risk

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fieldmon.infestation.raster_risk import RiskSettings
+from fieldmon.infestation.prior.raster_risk import RiskSettings
 from fieldmon.io.import_report import Severity
 from fieldmon.io.rasters.at_plants import read_missing, read_risk
 from fieldmon.io.rasters.read import RasterOptions

@@ -6,7 +6,7 @@ import shapely
 from shapely import MultiPolygon, box
 
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.io.formats.layer import Layer
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import RecordOptions

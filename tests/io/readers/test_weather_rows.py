@@ -8,7 +8,7 @@ import pytest
 
 import fieldmon as fm
 from fieldmon.errors import FileProblem
-from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
 from fieldmon.io.readers.weather_rows import WeatherRows, utc_times
 
 BERLIN, NEW_YORK = ZoneInfo("Europe/Berlin"), ZoneInfo("America/New_York")

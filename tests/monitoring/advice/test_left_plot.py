@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fieldmon.infestation.jump_reach import RADIUS
+from fieldmon.infestation.insects.jump_reach import RADIUS
 from fieldmon.monitoring.advice.left_plot import FewInspected, InspectAgain, NotReached
 from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 from fieldmon.plot.layout import rectangle

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.estimates import first_morning
 from fieldmon.monitoring.season import open_season as in_season

@@ -9,11 +9,11 @@ import pytest
 
 from fieldmon.errors import ObservationError
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.infestation.level_range import LevelRange
-from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.pairs.pairs import PairApproximation
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.monitoring.estimates.history import History
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.monitoring.settings.shift_work import Shift

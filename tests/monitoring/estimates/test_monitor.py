@@ -9,10 +9,10 @@ import pytest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.estimates.monitor import Monitor
 from fieldmon.monitoring.season.season_file import Season

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.estimates import day_figures

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
-from fieldmon.infestation.pairs import PairApproximation
+from fieldmon.infestation.pairs.pairs import PairApproximation
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.estimates.history import History
 from fieldmon.monitoring.estimates.plant_states import (

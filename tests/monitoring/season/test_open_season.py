@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.estimates.history import History
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings

@@ -5,10 +5,10 @@ import pytest
 
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.infestation.inspections import CLEAN, FOUND
-from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.spread import Spread
-from fieldmon.infestation.traced_pairs import TracedPairs
+from fieldmon.infestation.pairs.pairs import PairApproximation
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.pests.pest import Pest
 from fieldmon.plot.layout import rectangle

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.errors import FileProblem, SettingError
-from fieldmon.infestation.prior_settings import PriorSettings
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.monitoring.settings.settings import (

@@ -8,15 +8,15 @@ import pytest
 
 from fieldmon.compute.jit import loop
 from fieldmon.infestation.calibration_slope import no_inspections
-from fieldmon.infestation.clustering import (
+from fieldmon.infestation.pairs.clustering import (
     ClusterEstimate,
     chance_apart,
     leaning,
     scale_clustering,
 )
-from fieldmon.infestation.pairs import Neighbourhood, PairApproximation
-from fieldmon.infestation.traced_pairs import TracedPairs
-from fieldmon.infestation.tracing import Traces, rescale_traced
+from fieldmon.infestation.pairs.pairs import Neighbourhood, PairApproximation
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
+from fieldmon.infestation.tracing.tracing import Traces, rescale_traced
 from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot

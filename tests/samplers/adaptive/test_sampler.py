@@ -7,8 +7,8 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pairs import PairApproximation
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.pairs.pairs import PairApproximation
 from fieldmon.planning.workday import plan_work, work_day
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from fieldmon.infestation.clustering import ClusterEstimate
-from fieldmon.infestation.pairs import Neighbourhood, pair_chances
-from fieldmon.infestation.tracing import Raised, Traces
+from fieldmon.infestation.pairs.clustering import ClusterEstimate
+from fieldmon.infestation.pairs.pairs import Neighbourhood, pair_chances
+from fieldmon.infestation.tracing.tracing import Raised, Traces
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers.adaptive.arrays import NOWHERE, BeliefArrays, BestTours, OwnRow, RowTours
 from fieldmon.samplers.adaptive.tours import measure_ways

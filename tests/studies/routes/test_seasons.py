@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.planning.workday import plan_work
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.robot import Robot

@@ -7,8 +7,8 @@ from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.pests.pest import Pest
 from fieldmon.plot.robot import Robot
 from fieldmon.studies.samplers.scenarios import (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.simulation import executor
 from fieldmon.simulation.experiment import Memory, run
 from fieldmon.studies.samplers.contenders import CLAIRVOYANT, CONTENDERS, NAMES, NO_TRAVEL, SOME

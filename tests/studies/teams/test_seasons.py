@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.planning.members import Teamwork
 from fieldmon.plot.robot import Robot
 from fieldmon.simulation.executor import here

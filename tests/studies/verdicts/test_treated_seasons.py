@@ -4,7 +4,7 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.simulation.treating import WHOLE
 from fieldmon.studies.samplers.scenarios import Scenario

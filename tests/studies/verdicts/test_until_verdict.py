@@ -4,7 +4,7 @@ import pytest
 
 from fieldmon.decisions.sequential import WaldPlan
 from fieldmon.errors import SettingError
-from fieldmon.infestation.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
 from fieldmon.pests.pest import Pest
 from fieldmon.studies.verdicts import until_verdict
 from fieldmon.studies.verdicts.until_verdict import (

@@ -9,7 +9,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.open_choices import OpenChoices, StartUp
 from fieldmon.studies.thesis.chapter5.published import FIGURES, PARTS

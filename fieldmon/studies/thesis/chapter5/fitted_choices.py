@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.studies.thesis.chapter5.open_choices import OpenChoices, StartUp
 
 CALIBRATED = OpenChoices(

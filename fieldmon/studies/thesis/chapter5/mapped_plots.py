@@ -10,8 +10,8 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams, coin_table
 from fieldmon.errors import SettingError
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.independent_plants import learn, overnight
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.pairs.independent_plants import learn, overnight
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.planning.workday import draw_detections
 from fieldmon.samplers import sampler
 from fieldmon.samplers.base import NEVER, Scene
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from fieldmon.infestation.spread import Spread
+    from fieldmon.infestation.insects.spread import Spread
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
     from fieldmon.simulation.experiment import Progress

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Literal
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.plot.robot import Robot
 
 if TYPE_CHECKING:
-    from fieldmon.infestation.pest_in_weather import PestInWeather
+    from fieldmon.infestation.insects.pest_in_weather import PestInWeather
 
 SCENARIOS = {"A": 1.0, "B": 5.0, "C": 10.0}
 """Hectares of the thesis's scenarios: 784, 4 096 and 8 281 plants."""

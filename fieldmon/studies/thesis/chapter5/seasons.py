@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.dispersal import dispersal_of
-from fieldmon.infestation.independent_plants import learn, overnight
-from fieldmon.infestation.pest_in_weather import PestInWeather, kernel_of
-from fieldmon.infestation.spread import night
+from fieldmon.infestation.insects.dispersal import dispersal_of
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather, kernel_of
+from fieldmon.infestation.insects.spread import night
+from fieldmon.infestation.pairs.independent_plants import learn, overnight
 from fieldmon.planning.workday import draw_detections
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers import kind_of, sampler

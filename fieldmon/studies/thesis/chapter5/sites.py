@@ -11,9 +11,9 @@ import numpy as np
 from fieldmon.compute.jit import routine
 from fieldmon.compute.random_streams import coin, coin_table
 from fieldmon.infestation.belief import Learning
-from fieldmon.infestation.independent_plants import learn
-from fieldmon.infestation.prior import edge_chance, path_chance
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.pairs.independent_plants import learn
+from fieldmon.infestation.prior.prior import edge_chance, path_chance
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.travel import Aisles
 from fieldmon.simulation.start import Start, season_start

@@ -7,7 +7,7 @@ import pytest
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import ObservationError, SettingError
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.plot.robot import Robot
 from fieldmon.studies.plant_maps import PlantMap
 from fieldmon.studies.thesis.chapter5.mapped_plots import (

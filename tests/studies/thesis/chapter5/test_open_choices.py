@@ -5,7 +5,7 @@ from dataclasses import fields
 import pytest
 
 from fieldmon.errors import SettingError
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.spread import Spread
 from fieldmon.plot.robot import Viewpoints
 from fieldmon.studies.thesis.chapter5.fitted_choices import CALIBRATED
 from fieldmon.studies.thesis.chapter5.open_choices import OpenChoices, StartUp, side_of

@@ -8,9 +8,9 @@ from scipy import stats
 from shapely import MultiPolygon, Polygon
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.independent_plants import IndependentPlants
-from fieldmon.infestation.pest_in_weather import PestInWeather
-from fieldmon.infestation.spread import Spread
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.pairs.independent_plants import IndependentPlants
 from fieldmon.pests.pest import Movement, Pest
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import lay

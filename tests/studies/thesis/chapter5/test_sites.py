@@ -6,8 +6,8 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from fieldmon.compute.random_streams import RandomStreams
-from fieldmon.infestation.prior import prior_chance
-from fieldmon.infestation.prior_settings import PriorSettings
+from fieldmon.infestation.prior.prior import prior_chance
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import ABSENT, PRESENT, Records
 from fieldmon.plot.field import Field
 from fieldmon.plot.layout import rectangle

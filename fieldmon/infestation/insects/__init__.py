@@ -1,0 +1,1 @@
+"""What insects do: how they spread, hide and fare in the weather."""

@@ -144,8 +144,8 @@ class Season(SeasonPlans, SeasonFrames):
             that are left out.
         risk
             ``(n,)`` one more chance of being infested at the start, from a raster for instance,
-            see `fieldmon.infestation.prior.prior.prior_chance`; None: none. Of pandas its index must
-            be the plants', 0, 1, 2...
+            see `fieldmon.infestation.prior.prior.prior_chance`; None: none. Of pandas its index
+            must be the plants', 0, 1, 2...
         chosen
             Settings one by one instead, as ``begins=date(2026, 11, 18)`` or
             ``robot=Robot(hours=4)``. A time that names a zone is its day on the plot.

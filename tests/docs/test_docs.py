@@ -18,7 +18,7 @@ from fieldmon.io.writers.handoff import FORMATS
 from fieldmon.samplers import SAMPLERS
 from tests.docs.pages import DOCS, INLINE, PAGES, README, fences, prose
 from tests.paths import ROOT
-from tests.test_floors import FLOORS
+from tests.test_floors import FLOORS, SEASON_FLOORS
 
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 OWN_FILE = re.compile(
@@ -198,6 +198,11 @@ def test_the_picture_of_the_rooms_shows_the_floors_as_they_are_held():
     assert drawn == floors[::-1]
     told = re.findall(r"^\| `(?:fieldmon/)?(\w+)(?:\.py)?` \|", page, re.MULTILINE)
     assert set(told) == {room for floor in FLOORS for room in floor}
+
+
+def test_the_rooms_of_a_season_are_told_from_the_lowest_floor_up():
+    told = re.findall(r"^\| `monitoring/(\w+)` \|", PAGES["docs/architecture.md"], re.MULTILINE)
+    assert told == SEASON_FLOORS
 
 
 def test_a_stranger_is_told_the_one_room_for_each_change():

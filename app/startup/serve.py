@@ -304,14 +304,15 @@ def main() -> None:
         "ws_per_message_deflate": False, "ws_ping_interval": 30, "ws_ping_timeout": 30,
         "timeout_graceful_shutdown": _GOODBYE_S,
     }  # fmt: skip
-    logging.getLogger("uvicorn.access").disabled = True  # Streamlit writes down every request
     if lan.LAN in os.environ:
         try:
             lan.serve(Server(), port, line, settings)
         except FieldmonError as error:
             sys.exit(f"Error: {error}")
     else:
-        uvicorn.Server(uvicorn.Config(_as_reached(), **settings)).run(sockets=[line])
+        server = uvicorn.Server(uvicorn.Config(_as_reached(), **settings))
+        logging.getLogger("uvicorn.access").disabled = True  # the settings have switched it on
+        server.run(sockets=[line])
 
 
 if __name__ == "__main__":

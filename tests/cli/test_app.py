@@ -108,16 +108,19 @@ def until(is_so, within_s=180.0):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal")
-def test_a_signal_to_the_command_ends_the_server_and_all_that_it_started(tmp_path):
+def test_a_signal_ends_the_server_and_all_that_it_started_and_requests_are_not_listed(tmp_path):
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     command = [sys.executable, "-m", "fieldmon", "app", "--no-browser", "--port", str(port),
                "--seasons", str(tmp_path)]  # fmt: skip
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as app:
+    said = tmp_path / "said.txt"
+    with said.open("w") as out, subprocess.Popen(command, stdout=out, stderr=out) as app:
         until(lambda: answers(f"http://127.0.0.1:{port}/_stcore/health"))
         started = psutil.Process(app.pid).children(recursive=True)
         assert len(started) >= 2, "the server and its reader of files"
         os.kill(app.pid, signal.SIGTERM)
         assert app.wait(30) == 128 + signal.SIGTERM
     until(lambda: not any(one.is_running() for one in started))
+    # the line that says where it is, and how it ends, is not lost among requests
+    assert "HTTP/1.1" not in said.read_text()

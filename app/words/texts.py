@@ -358,7 +358,7 @@ HELD_STILL = (
     "nothing was changed."
 )
 TRY_AGAIN = "Try again"
-_COMPILING = "so far. This happens once and takes up to a minute; the plan follows by itself."
+_COMPILING = "so far. This happens once and takes a minute or two; the plan follows by itself."
 COMPILING = Plural(
     "fieldmon is being compiled for this machine: {n} part " + _COMPILING,
     "fieldmon is being compiled for this machine: {n} parts " + _COMPILING,

@@ -16,5 +16,5 @@ def test_a_robot_is_called_by_its_maker_and_number_and_a_simulated_one_by_its_ki
 
 
 def test_a_version_that_no_robot_speaks_is_refused():
-    with pytest.raises(SettingError, match="2.1"):
+    with pytest.raises(SettingError, match=r"2\.1"):
         DriveOptions(vda="1.0").robot_name()

@@ -25,6 +25,7 @@ from fieldmon.samplers import USUAL_SAMPLER
 
 if TYPE_CHECKING:
     from fieldmon.drive.vda5050.mqtt import RobotName
+
 BrokerName = Annotated[
     str, typer.Option("--broker", help="MQTT broker: HOST:PORT or mqtts://USER:PASSWORD@HOST:PORT.")
 ]

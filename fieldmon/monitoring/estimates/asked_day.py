@@ -14,6 +14,7 @@ from fieldmon.plot.grid import plant_numbers
 
 if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
+
 # no working day has so many seconds
 _NO_DAY_S = 1e9
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from fieldmon.monitoring.inspecting.batches import Batch, BatchContents
+
 _RESULTS = {
     "found": worded("found"),
     "clean": worded("clean"),

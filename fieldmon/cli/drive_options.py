@@ -10,16 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.option_ranges import refusing, within
-from fieldmon.cli.options import (
-    Every,
-    Feature,
-    MaybePlotFile,
-    PlotFiles,
-    RecordsFile,
-    WorkDate,
-    WorkerOptions,
-)
+from fieldmon.cli.options import Every, Feature, MaybePlotFile, PlotFiles, RecordsFile, WorkDate
 from fieldmon.cli.sampler_names import OneSampler
+from fieldmon.cli.worker_options import WorkerOptions
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.samplers import USUAL_SAMPLER
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from fieldmon.monitoring.changes.log_entry import LogEntry
 from fieldmon.monitoring.changes.outside_changes import OutsideChange
-from fieldmon.monitoring.changes.season_log import LogEntry
 from fieldmon.monitoring.changes.transactions import Store, copy_season, is_season
 from fieldmon.monitoring.days.worked_route import day_was_worked, worked_route
 from fieldmon.monitoring.estimates.day_figures import DayFigures, PlannedAndDone, Progress

@@ -21,9 +21,10 @@ from fieldmon.monitoring.inspecting import batches, inspection_table, undone_bat
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merge import merge_copies
 from fieldmon.monitoring.phones import findings, photos
-from fieldmon.monitoring.phones.findings import Finding, _SentFindings
+from fieldmon.monitoring.phones.findings import _SentFindings
 from fieldmon.monitoring.phones.photos import Photo
 from fieldmon.monitoring.phones.scouts import Scout
+from fieldmon.monitoring.phones.sent_findings import Finding
 from fieldmon.monitoring.settings import settings_log
 from fieldmon.monitoring.settings.settings import MonitoringSettings, as_json, from_json
 from fieldmon.monitoring.treating.applications import Application

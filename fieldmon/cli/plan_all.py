@@ -173,10 +173,14 @@ def _plan(
             rows[row["file"]] = row | {"digest": digests[row["file"]]}
 
     pool, work = _pool(min(workers, len(tasks)), day) if len(tasks) > _FEW else _here(day)
+
+    def submit(name: str, task: Task) -> Future[Row]:
+        return pool.submit(work, name, task)
+
     names, saved = list(tasks), time.monotonic()
     with progress("Planning", len(names)) as bar:
         try:
-            for one in _ended(partial(pool.submit, work), tasks.items(), keep):
+            for one in _ended(submit, tasks.items(), keep):
                 one.result()
                 bar.update(1)
                 if time.monotonic() - saved > _EVERY_S:

@@ -1,4 +1,4 @@
-"""The texts of a language, read once from its file among `languages`. No Streamlit in here."""
+"""The texts of a language, read once from its file. No Streamlit in here."""
 
 from __future__ import annotations
 

@@ -50,7 +50,8 @@ if TYPE_CHECKING:
         read_weather,
     )
     from fieldmon.io.plot_request import PlantingChoices
-    from fieldmon.monitoring.estimates.monitor import Monitor, MonitorDay, PlantToInspect
+    from fieldmon.monitoring.estimates.asked_day import PlantToInspect
+    from fieldmon.monitoring.estimates.monitor import Monitor, MonitorDay
     from fieldmon.monitoring.estimates.status import Status
     from fieldmon.monitoring.season.season_file import Season
     from fieldmon.monitoring.settings.advice_settings import AdviceSettings
@@ -114,7 +115,8 @@ _MODULES = {
     ),
     "monitoring.treating.applications": ("Application",),
     "monitoring.settings.belief_settings": ("BeliefSettings",),
-    "monitoring.estimates.monitor": ("Monitor", "MonitorDay", "PlantToInspect"),
+    "monitoring.estimates.asked_day": ("PlantToInspect",),
+    "monitoring.estimates.monitor": ("Monitor", "MonitorDay"),
     "monitoring.season.season_file": ("Season",),
     "monitoring.settings.settings": ("MonitoringSettings",),
     "pests.pest": ("Citation", "Entry", "Increase", "Movement", "Pest", "Stage"),

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from fieldmon.cli.change import ChangeOptions, change
-from fieldmon.cli.options import OF_ROBOT, RobotOptions, TeamworkOptions, WorkerOptions
+from fieldmon.cli.worker_options import OF_ROBOT, RobotOptions, TeamworkOptions, WorkerOptions
 from fieldmon.compute.units import Units
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.ancestry.origins import N_ORIGINS

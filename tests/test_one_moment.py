@@ -8,7 +8,7 @@ import pytest
 from fieldmon.cli.status import status as status_command
 from fieldmon.compute.units import Units
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.changes import transactions
+from fieldmon.monitoring.file import connections
 from fieldmon.monitoring.inspecting.certifier_tables import treatments_table
 from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 from fieldmon.reports.advice import advice_report
@@ -39,14 +39,14 @@ def worked(tmp_path_factory):
 @pytest.fixture
 def moments(monkeypatch):
     """List the transactions that are begun."""
-    begun, connect = [], transactions.connect
+    begun, connect = [], connections.connect
 
     def listening(*of):
         db = connect(*of)
         db.set_trace_callback(lambda sql: begun.append(sql) if sql.startswith("BEGIN") else None)
         return db
 
-    monkeypatch.setattr(transactions, "connect", listening)
+    monkeypatch.setattr(connections, "connect", listening)
     return begun
 
 

@@ -173,7 +173,7 @@ class AtOnce:
     """Does what a pool of processes is handed here and now."""
 
     def __init__(self, _workers, _context, _prepare, told):
-        plan_all._day[:] = told
+        plan_all._BEGUN_WITH[:] = told
 
     def submit(self, work, *about):
         done = Future()

@@ -28,7 +28,8 @@ from ..state.brought_files import (
 from ..state.tried_answers import tried_of_records
 from ..words import texts
 from ..words.answers import in_short
-from ..words.language import in_words, listed, of_error, unformatted
+from ..words.language import in_words, listed, of_error
+from ..words.signs import unformatted
 from . import bringing_seasons
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Recording what was found: one plant, the stops of the route, or a file; and taking it back."""
+"""Recording what was found: one plant, the stops of the route, or a file."""
 
 from __future__ import annotations
 
@@ -12,41 +12,31 @@ import pandas as pd
 import streamlit as st
 
 from fieldmon.compute.working_folder import working_folder
-from fieldmon.errors import ContradictionError, FieldmonError, SettingError
+from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.options import Upload
-from fieldmon.io.parse import result_words
 from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring.changes.transactions import MAGIC
 from fieldmon.monitoring.season.inspection_import import read_brought, record_saved
 from fieldmon.plot.grid import plant_at, plant_numbers
-from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.named_rows import plant_meant
 
-from ..show import cautions, day, plant_history, recorded_batches
+from ..show import day, plant_history
 from ..show.recorded_batches import GONE
 from ..state import brought_files, chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
-from ..state.unconfirmed import Unconfirmed
 from ..words import texts
-from ..words.language import in_words
-from . import acting, bringing_files, choosing, correcting, treating
+from . import acting, bringing_files, choosing, contradicting, correcting, treating
+from .recording_results import as_kept, listed, recorded, said_of, warn_of_lost
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from fieldmon.io.import_report import ImportMessage
-    from fieldmon.monitoring.inspecting.batches import Batch, BatchContents, Recorded
     from fieldmon.monitoring.season.inspection_import import BroughtFile
 
     from ..state.choices import Choices
 
-# batches shown, the last ones, and so many more at each press
-_MOST = 20
 _SAID_OF_FILE = "said of a file of findings"
 # who inspected where nobody said so
 _NOBODY = ""
-_UNDO_ASKED, _SHOWN = "undo asked", "batches shown"
 #: what a season's file calls what was typed in here, whatever the page's language
 TYPED_IN, _ROUTE_TABLE = "typed in", "route table"
 # the forms
@@ -60,7 +50,7 @@ def show(choices: Choices) -> None:
     fresh_boxes.turn(choices)
     st.markdown(f"**{texts.RECORD} · {choices.units.said_day(choices.day)}**")
     moved = st.container()
-    ask_about_contradictions(choices)
+    contradicting.ask_about_contradictions(choices)
     one, route, file, treat = st.tabs(
         [texts.RECORD_ONE, texts.RECORD_ROUTE, texts.RECORD_UPLOAD, texts.TREAT]
     )
@@ -160,11 +150,6 @@ def _record_one(choices: Choices) -> str:
     )  # fmt: skip
     done = recorded(choices, results, TYPED_IN, _ONE, who=_signed(FreshBoxes(_ONE, choices)))
     return said_of(choices, done, results)
-
-
-def as_kept(result: int) -> tuple[int, str]:
-    """Return a result as a season keeps it, with its note."""
-    return (SKIPPED, result_words.GONE) if result == GONE else (result, "")
 
 
 # -- the stops of the route
@@ -308,7 +293,7 @@ def _file_recorded(choices: Choices, *, confirmed: bool) -> str:
             corrected = _corrected(choices, read, boxes, confirmed=confirmed)
     st.session_state[_SAID_OF_FILE] = file.asked, read.messages
     messages = [message.sentence for message in read.messages]
-    _warn_of_lost(read.messages)
+    warn_of_lost(read.messages)
     if read.saved is None:
         # what was said of a file may be answered: it stays to be read again
         form = "" if messages else _FILE
@@ -321,19 +306,8 @@ def _file_recorded(choices: Choices, *, confirmed: bool) -> str:
             notices.warn()
         if not messages:
             boxes.empty()
-    said = said + _listed(messages) if said else ""
+    said = said + listed(messages) if said else ""
     return "\n\n".join(part for part in (corrected, said) if part)
-
-
-def _warn_of_lost(messages: Iterable[ImportMessage]) -> None:
-    """Let what is returned be no success where something of a file was left out or is doubtful."""
-    if any(message.severity.is_loss for message in messages):
-        notices.warn()
-
-
-def _listed(sentences: Iterable[str]) -> str:
-    """Return what was said of a file, a line for each sentence."""
-    return "".join(f"\n- {in_words(sentence)}" for sentence in sentences)
 
 
 def _corrected(choices: Choices, read: BroughtFile, boxes: FreshBoxes, *, confirmed: bool) -> str:
@@ -364,258 +338,3 @@ def _ask_who(boxes: FreshBoxes, help_: str | None = None, *, stays: bool = False
 def _signed(boxes: FreshBoxes) -> str:
     """Return who is said to have inspected; empty: nobody is."""
     return str(boxes.said("who") or _NOBODY).strip()
-
-
-def recorded(
-    choices: Choices, results: Inspections, source: str, form: str = "",
-    messages: tuple[ImportMessage, ...] = (), who: str = "",
-) -> Recorded | None:  # fmt: skip
-    """Record results, and empty the form that they are from; `who` inspected, unless they say so.
-
-    None where some contradict what is recorded: they wait for a word on it, and what was said of
-    their file waits with them.
-    """
-    try:
-        done = choices.open_season.record(results, source, who)
-    except ContradictionError:
-        of = choices.key, choices.day
-        unconfirmed.keep(Unconfirmed(*of, results, source, form, messages, who))
-        return None
-    unconfirmed.drop()
-    if form:
-        FreshBoxes(form, choices).empty()
-    return done
-
-
-def said_of(choices: Choices, done: Recorded | None, results: Inspections | None = None) -> str:
-    """Return what recording did, and of which days if not of that shown.
-
-    Nothing where results wait for a word.
-    """
-    if done is None:
-        return ""
-    corrected: list[str] = [texts.CORRECTED.format(n=done.corrected)] if done.corrected else []
-    if done.new or done.known or not corrected:
-        said = [texts.RECORDED.format(new=done.new, known=done.known)]
-        more = (
-            *((texts.NOTED, done.noted), (texts.COMPLETED, done.filled)),
-            (texts.BY_A_SECOND, done.seen_by_another),
-        )
-        corrected.append(" ".join([*said, *(text.format(n=n) for text, n in more if n)]))
-    if results is not None:
-        corrected += _of_days(choices, results)
-    return "\n\n".join(corrected)
-
-
-def _of_days(choices: Choices, results: Inspections) -> Iterator[str]:
-    """Yield of which days results are, if not of that shown, and that one has not come."""
-    days = results.date[~np.isnat(results.date)]
-    if not len(days):
-        return
-    first, last = days.min().item(), days.max().item()
-    # past midnight the page is about the next day already
-    shown = local_clock(choices.plot.field).today() if choices.is_today else choices.on
-    if {first, last} != {shown}:
-        said = choices.units.said_days(first, last, shown)
-        day = choices.units.said_day(shown)
-        yield texts.RECORDED_OF.format(days=said, day=day)
-    if ahead := cautions.not_come(choices, last):
-        notices.warn()
-        yield ahead
-
-
-# -- what contradicts
-
-
-def ask_about_contradictions(choices: Choices) -> None:
-    """Show what waits because it contradicts what is recorded, and what can be done with it."""
-    waiting = unconfirmed.of(choices.key, choices.day)
-    if waiting is None:
-        return
-    season = choices.open_season
-    against = season.contradictions(waiting.results)
-    said = against.sentences(season.plot.grid)
-    if not said:  # what they contradicted was taken back since
-        _ask_anew(choices, waiting)
-        return
-    others = waiting.results.take(_but(against.which, len(waiting.results)))
-    new = season.count_new(others)
-    source = recorded_batches.source(waiting.source)
-    st.warning(texts.CONTRADICTING.format(n=len(said), source=source))
-    st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
-    if len(said) > _MOST:
-        st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
-    with st.container(horizontal=True):
-        for key, label, action in (
-            (
-                "leave_out",
-                texts.LEAVE_OUT.format(n=new) if new else texts.LEAVE_OUT_ONLY,
-                _leave_out,
-            ),
-            ("holds", texts.HOLDS.format(n=len(said)), _record_instead),
-            ("confirm", texts.CONFIRM.format(n=len(said)), _confirm),
-            ("record_none", texts.RECORD_NONE, _drop),
-        ):
-            if key != "leave_out" or len(others):
-                st.button(label, key=key, on_click=action, args=(choices,))
-
-
-def _ask_anew(choices: Choices, waiting: Unconfirmed) -> None:
-    """Ask whether to record what waited and contradicts nothing any more."""
-    n, source = len(waiting.results), recorded_batches.source(waiting.source)
-    st.warning(texts.CONTRADICTING_NO_MORE.format(n=n, source=source))
-    with st.container(horizontal=True):
-        st.button(texts.RECORD_THESE.format(n=n), key="record_these", on_click=_record_these,
-                  args=(choices,))  # fmt: skip
-        st.button(texts.RECORD_NONE, key="record_none", on_click=_drop, args=(choices,))
-
-
-@notices.reporting
-def _record_these(choices: Choices) -> str:
-    """Record what waited, as if it were brought now."""
-    waiting = unconfirmed.of(choices.key, choices.day)
-    if waiting is None:
-        return ""
-    results, source, who = waiting.results, waiting.source, waiting.who
-    done = recorded(choices, results, source, waiting.form, waiting.messages, who)
-    return _said_at_last(choices, waiting, done)
-
-
-@notices.reporting
-def _confirm(choices: Choices) -> str:
-    """Record what contradicts too: both counts as said."""
-    return _settled(choices, slice(None))
-
-
-@notices.reporting
-def _record_instead(choices: Choices) -> str:
-    """Record all, and let what contradicts hold in place of what was recorded."""
-    waiting = unconfirmed.of(choices.key, choices.day)
-    if waiting is None:
-        return ""
-    done = choices.open_season.record_instead(waiting.results, waiting.source, waiting.who)
-    return _end_waiting(choices, waiting, done)
-
-
-@notices.reporting
-def _leave_out(choices: Choices) -> str:
-    """Record what does not contradict."""
-    waiting = unconfirmed.of(choices.key, choices.day)
-    if waiting is None:
-        return ""
-    against = choices.open_season.contradictions(waiting.results).which
-    return _settled(choices, _but(against, len(waiting.results)))
-
-
-def _but(against: np.ndarray, n: int) -> np.ndarray:
-    """Return the numbers of so many results but for those that contradict."""
-    return np.setdiff1d(np.arange(n), against)
-
-
-def _settled(choices: Choices, which: np.ndarray | slice) -> str:
-    waiting = unconfirmed.of(choices.key, choices.day)
-    if waiting is None:
-        return ""
-    taken = waiting.results.take(which)
-    done = choices.open_season.record(taken, waiting.source, waiting.who, confirmed=True)
-    return _end_waiting(choices, waiting, done)
-
-
-def _end_waiting(choices: Choices, waiting: Unconfirmed, done: Recorded) -> str:
-    """Let nothing wait any more; return what was done."""
-    unconfirmed.drop()
-    if waiting.form:
-        FreshBoxes(waiting.form, choices).empty()
-    return _said_at_last(choices, waiting, done)
-
-
-def _said_at_last(choices: Choices, waiting: Unconfirmed, done: Recorded | None) -> str:
-    """Return what was done with results that waited, and what was said of their file."""
-    if done is None:
-        return ""
-    _warn_of_lost(waiting.messages)
-    return said_of(choices, done, waiting.results) + _listed(
-        message.sentence for message in waiting.messages
-    )
-
-
-def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others
-    unconfirmed.drop()
-
-
-# -- what was recorded
-
-
-def show_batches(choices: Choices) -> None:
-    """Show what was recorded, if anything was, the last one first, each with its undo."""
-    kept = [batch for batch in choices.open_season.batches() if batch.rows]
-    if not kept:
-        return
-    shown = kept[: _MOST + _more_shown(choices)]
-    contents = choices.open_season.contents([batch.number for batch in shown])
-    with st.expander(texts.BATCHES, expanded=True):
-        for batch in shown:
-            _show_batch(choices, batch, contents.get(batch.number))
-        if more := len(kept) - len(shown):
-            st.button(texts.BATCHES_MORE.format(n=min(more, _MOST)), key="batches_more",
-                      on_click=_show_more, args=(choices,))  # fmt: skip
-
-
-def _more_shown(choices: Choices) -> int:
-    """Return how many batches are shown beside the last ones."""
-    key, more = st.session_state.get(_SHOWN, ("", 0))
-    return more if key == choices.key else 0
-
-
-def _show_more(choices: Choices) -> None:
-    st.session_state[_SHOWN] = choices.key, _more_shown(choices) + _MOST
-
-
-def _show_batch(choices: Choices, batch: Batch, contents: BatchContents | None) -> None:
-    said = recorded_batches.line(choices, batch, contents)
-    why = recorded_batches.why_to_ask(choices, batch, contents)
-    n, asked = batch.number, _undo_asked(choices) == batch.number and not batch.undone
-    # side by side, not in columns: a button takes what its word needs in each language
-    with st.container(horizontal=True, vertical_alignment="center", key=f"batch_{n}"):
-        st.markdown(said, width="stretch")
-        if batch.undone:
-            st.button(texts.REDO, key=f"redo {n}", on_click=redo, help=said, args=(choices, n))
-        elif not asked:
-            act = _ask_undo if why else undo
-            st.button(texts.UNDO, key=f"undo {n}", on_click=act, help=said, args=(choices, n))
-    if asked:
-        st.warning(" ".join([texts.UNDO_ASK, *why]))
-        with st.container(horizontal=True, key=f"undo_asked_{n}"):
-            st.button(texts.UNDO_YES, key=f"undo_yes {n}", on_click=undo, args=(choices, n))
-            st.button(texts.UNDO_NO, key=f"undo_no {n}", on_click=_ask_no_undo)
-
-
-def _undo_asked(choices: Choices) -> int | None:
-    """Return the batch of which it is asked whether it is to be undone."""
-    key, batch = st.session_state.get(_UNDO_ASKED, ("", None))
-    return batch if key == choices.key else None
-
-
-def _ask_undo(choices: Choices, batch: int) -> None:
-    st.session_state[_UNDO_ASKED] = choices.key, batch
-
-
-def _ask_no_undo() -> None:
-    st.session_state.pop(_UNDO_ASKED, None)
-
-
-@notices.reporting
-def undo(choices: Choices, batch: int, who: str = "") -> str:
-    """Take a batch back, unless somebody did so in another window; `who` does, for the log."""
-    _ask_no_undo()
-    if batch not in {one.number for one in choices.open_season.batches() if not one.undone}:
-        raise SettingError(texts.UNDONE_BEFORE)
-    return in_words(choices.open_season.undo(batch, who=who))
-
-
-@notices.reporting
-def redo(choices: Choices, batch: int) -> str:
-    """Let a batch that was undone count again, unless somebody did so in another window."""
-    if batch not in {one.number for one in choices.open_season.batches() if one.undone}:
-        raise SettingError(texts.REDONE_BEFORE)
-    return in_words(choices.open_season.redo(batch))

@@ -14,7 +14,8 @@ from ..show import plant_history, recorded_batches
 from ..state import notices
 from ..words import texts
 from ..words.language import plant_in_words
-from . import recording
+from . import contradicting, recording_results, undoing
+from .recording import TYPED_IN
 
 if TYPE_CHECKING:
     from ..state.choices import Choices
@@ -43,21 +44,21 @@ def show(choices: Choices) -> None:
         batch = _last(choices)
         if batch is not None:
             st.button(texts.UNDO, key="here_undo", icon=":material/undo:",
-                      on_click=recording.undo, args=(choices, batch))  # fmt: skip
+                      on_click=undoing.undo, args=(choices, batch))  # fmt: skip
     # the plant shown now may be another one
     if batch is not None and (said := choices.season.contents([batch]).get(batch)):
         st.caption(recorded_batches.last(choices, said))
-    recording.ask_about_contradictions(choices)
+    contradicting.ask_about_contradictions(choices)
 
 
 @notices.reporting
 def _record(choices: Choices, plant: int, result: int) -> str:
     results = Inspections.of(np.array([plant]), np.array([result]), np.datetime64(choices.day))
-    done = recording.recorded(choices, results, recording.TYPED_IN)
+    done = recording_results.recorded(choices, results, TYPED_IN)
     if done is not None and done.batch is not None:
         at = {one.number: one.at for one in choices.open_season.batches()}
         st.session_state[_LAST] = choices.key, at[done.batch]
-    return recording.said_of(choices, done, results)
+    return recording_results.said_of(choices, done, results)
 
 
 def _last(choices: Choices) -> int | None:

@@ -15,7 +15,7 @@ from ..show import recorded_batches
 from ..state import chosen_day, notices
 from ..words import texts
 from ..words.language import number
-from . import handing_out, recording
+from . import handing_out, recording_results, undoing
 
 if TYPE_CHECKING:
     from streamlit.delta_generator import DeltaGenerator
@@ -39,14 +39,14 @@ def _second(choices: Choices) -> float:
 def _tap(choices: Choices, plant: int, result: int) -> str:
     count = st.session_state.get("scout_count")
     counted = float(count) if result == FOUND and count is not None else np.nan
-    second, (kept, note) = _second(choices), recording.as_kept(result)
+    second, (kept, note) = _second(choices), recording_results.as_kept(result)
     results = Inspections.of(
         np.array([plant]), np.array([kept]), np.datetime64(choices.day),
         second=np.array([second]), count=np.array([counted]), notes=np.array([note], object),
     )  # fmt: skip
     if not len(chosen_day.given_out(choices)):  # from the first tap on it is the day's route
         handing_out.give_out(choices)
-    recording.recorded(choices, results, SOURCE, who=choices.whose_day or "")
+    recording_results.recorded(choices, results, SOURCE, who=choices.whose_day or "")
     return ""
 
 
@@ -75,7 +75,7 @@ def undo(choices: Choices, batch: int, after: int) -> None:
     if after != taps():
         return
     st.session_state[_TAPS] += 1
-    recording.undo(choices, batch, choices.whose_day or "")
+    undoing.undo(choices, batch, choices.whose_day or "")
 
 
 def last_tap(choices: Choices) -> tuple[int, str] | None:

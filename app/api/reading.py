@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.errors import ObservationError
 from fieldmon.io.readers.phone_file import LEAST_MOST, day, fields_of, moment
-from fieldmon.monitoring.phones.findings import Finding
 from fieldmon.monitoring.phones.photos import Photo
+from fieldmon.monitoring.phones.sent_findings import Finding
 
 from . import description
 

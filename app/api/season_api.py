@@ -30,7 +30,7 @@ from fieldmon.errors import (
     SettingError,
 )
 from fieldmon.io.readers.phone_file import day
-from fieldmon.monitoring.changes.transactions import waiting_at_most
+from fieldmon.monitoring.file.connections import waiting_at_most
 from fieldmon.monitoring.file.file_problems import FileHeld
 from fieldmon.monitoring.phones import findings, photos, photos_asked, scouts
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import beginning, bringing_files, picking, recording
+from ..actions import beginning, bringing_files, picking, recording, undoing
 from ..show import day, map_layers, plant_history
 from ..state import wishes
 from ..words import texts
@@ -29,4 +29,4 @@ def show(choices: Choices) -> None:
         return
     day.say_otherwise(choices)
     recording.show(choices)
-    recording.show_batches(choices)
+    undoing.show_batches(choices)

@@ -10,7 +10,7 @@ import streamlit as st
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED
 
-from ..actions import choosing, inviting, recording, scouting
+from ..actions import choosing, contradicting, inviting, scouting
 from ..show import field_map, map_layers
 from ..show.maps import marks
 from ..show.next_stop import NextStop, next_stop
@@ -33,7 +33,7 @@ def show(choices: Choices) -> None:
     st.html(_STYLE)
     with st.container():  # empty or not: buttons that move are there twice for a moment
         scouting.ask_start(choices)
-        recording.ask_about_contradictions(choices)
+        contradicting.ask_about_contradictions(choices)
     choosing.whose_day(choices)
     plan, above = choices.plan(), []
     if len(plan.route):

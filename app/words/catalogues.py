@@ -28,7 +28,8 @@ from fieldmon.reports import words as report_words
 from fieldmon.samplers import of_equal_times
 
 from . import texts
-from .language import DRAFTS, ENGLISH, FOLDER, LANGUAGES, LIBRARY, SAME, Plural
+from .language import DRAFTS, ENGLISH, LANGUAGES, LIBRARY, SAME, Plural
+from .translations import FOLDER
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -7,41 +7,38 @@ as the language writes them, and a text that names a count takes the form that t
 
 from __future__ import annotations
 
-import gettext
 import re
 import unicodedata
 from contextvars import ContextVar
 from datetime import date, datetime
 from functools import cache, lru_cache
-from io import BytesIO
-from numbers import Real
-from pathlib import Path
 from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
 from fieldmon.compute import wording
-from fieldmon.compute.wording import KeptText, Worded, counted, estimate, joined, worded, written
+from fieldmon.compute.wording import KeptText, Worded, counted, estimate, joined, worded
 from fieldmon.io.writers.day_file import with_face
 from fieldmon.reports.language import ENGLISH as ENGLISH_REPORTS
 from fieldmon.reports.language import ReportLanguage
 
+from . import blanks
+from .blanks import SHARE_APART, filled, number_in, separated
 from .kept_sentences import KnownSentences, sentences
+from .signs import leading_nowhere, marked_as_english, together
+from .translations import catalogue_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from fieldmon.plot.grid import PlantGrid
 
-ENGLISH = "en"
+ENGLISH = blanks.ENGLISH
 #: each by its own name
 LANGUAGES = wording.LANGUAGES
 #: languages whose file is not whole yet, by their own names: only an address (?lang=) asks for
 #: them, and what has no words is English
 DRAFTS: dict[str, str] = {}
 RIGHT_TO_LEFT = frozenset({"he", "ar"})
-# languages that set the sign of a share apart from its number
-_SHARE_APART = frozenset({ENGLISH, "es"})
-FOLDER = Path(__file__).with_name("languages")
 #: the context of the library's sentences
 LIBRARY = "fieldmon"
 # so many things, as `counted` says them
@@ -49,25 +46,13 @@ _COUNTED = re.compile(r"([\d,]*\d) ([a-z][a-z ]*)")
 #: names, signs and files, which are the same in every language
 SAME = frozenset({"TITLE", "ARROWS", "MAP_WORDS.picture_name", "MAP_WORDS.film_name"})
 
-# signs that embed, override or isolate a direction, and their ends (Unicode Standard Annex 9)
-# what Markdown formats by, inside a line
-_FORMATS = re.compile(r"[\\`*_$\[\]<>~#|&]")
-# and what the page makes pictures of by name, escaped or not
-_PICTURES = re.compile(r":(?=[a-z+-])", re.IGNORECASE)
-_TURNING = re.compile("[\u202a-\u202e\u2066-\u2069]")
-_LEADING = re.compile(r"\](?=[\[(:])|!(?=\[)|:(?=//)|www(?=\.)|(?<=\S)@(?=\S)", re.IGNORECASE)
-
 # what seasons keep of distances, and of two columns as 1.0 named them
 _AWAY = r"\d[\d,]*(?:\.\d+)? k?m"
 _BETWEEN, _TWO_NAMES = re.compile(f"({_AWAY}) to ({_AWAY})"), re.compile("('.*') and ('.*')")
-
-# what stands after a number, and not on the next line
-_UNIT = re.compile(r"(?<=\d) (?=%|(?:h|m|km|ha|ft|mi|l|°C)\b)")
-_SHARE = re.compile(r"(?<=\d) (?=%)")
-
 _NUMBER = re.compile(r"[+−-]?\d[\d,]*(\.\d+)?( %)?")
 
 _NOW: ContextVar[str | None] = ContextVar("language", default=None)
+# who knows what a window chose: this room knows of no window. Told once, and the same for all
 _ASKED: list[Callable[[], str]] = []
 _DAYS: list[Callable[[date], str]] = []
 
@@ -126,7 +111,7 @@ class Text(str):  # noqa: SLOT000 - it holds more than words
 
     def format(self, *args: object, **values: object) -> Text:
         """Return the text with its blanks filled."""
-        return Text(_filled(self, self.language, args, values), self.language)
+        return Text(filled(self, self.language, args, values), self.language)
 
 
 class Plural(Text):
@@ -152,7 +137,7 @@ class Plural(Text):
 
     def format(self, *args: object, **values: object) -> Text:
         """Return the form that the count asks for, with its blanks filled."""
-        return Text(_filled(self.form(values[self.by]), self.language, args, values), self.language)
+        return Text(filled(self.form(values[self.by]), self.language, args, values), self.language)
 
     def form(self, count: object) -> str:
         """Return the words for so many."""
@@ -160,7 +145,7 @@ class Plural(Text):
         english = self.one if number == 1 else str(self)
         if self.language == ENGLISH:
             return english
-        found = _catalogue(self.language)
+        found = catalogue_of(self.language)
         return found.npgettext(self.context, self.one, str(self), number) or english
 
 
@@ -206,48 +191,7 @@ def _in_language(language: str, context: str, value: Any) -> Any:  # noqa: ANN40
         made = Plural(value.one, str(value), value.by, language)
         made.context = context
         return made
-    return Text(_catalogue(language).pgettext(context, value) or value, language)
-
-
-@cache
-def _catalogue(language: str) -> _Catalogue:
-    """Return a language's texts, read once."""
-    from babel.messages.mofile import write_mo  # noqa: PLC0415 - who reads English needs none
-    from babel.messages.pofile import read_po  # noqa: PLC0415
-
-    written = BytesIO()
-    with (FOLDER / f"{language}.po").open("rb") as file:
-        write_mo(written, read_po(file, locale=language))
-    written.seek(0)
-    found = _Catalogue(written)
-    found.add_fallback(_Unknown())
-    return found
-
-
-class _Catalogue(gettext.GNUTranslations):
-    """A language's texts."""
-
-    def words(self) -> list[str]:
-        """Return all of them."""
-        texts_: dict[object, str] = self._catalog  # type: ignore[attr-defined]
-        return [*texts_.values()]
-
-    def words_in(self, context: str) -> list[str]:
-        """Return the English of the texts of a context that have one form."""
-        texts_: dict[object, str] = self._catalog  # type: ignore[attr-defined]
-        before = f"{context}\x04"
-        keys = (key for key in texts_ if isinstance(key, str))
-        return [key.removeprefix(before) for key in keys if key.startswith(before)]
-
-
-class _Unknown(gettext.NullTranslations):
-    """Says nothing of what a catalogue has no words for."""
-
-    def pgettext(self, context: str, message: str) -> str:  # noqa: ARG002 - as gettext asks
-        return ""
-
-    def npgettext(self, context: str, msgid1: str, msgid2: str, n: int) -> str:  # noqa: ARG002
-        return ""
+    return Text(catalogue_of(language).pgettext(context, value) or value, language)
 
 
 # -- the library's sentences
@@ -295,38 +239,12 @@ def _day_or(value: Any) -> Any:  # noqa: ANN401 - whatever stands in a blank
     return _with_days(value) if isinstance(value, str) else value
 
 
-def together(text: str) -> str:
-    """Return a text in which no line ends between a number and its sign or unit."""
-    return _UNIT.sub("\u00a0", text)
-
-
 def _from_the_right(said: str) -> str:
     """Return a sentence that begins with a Latin name so that it is laid out as its language is."""
     sides = (unicodedata.bidirectional(letter) for letter in said)
     if not is_right_to_left() or next((s for s in sides if s in {"L", "R", "AL"}), "L") != "L":
         return said
     return f"\u200f{said}" if any(s in {"R", "AL"} for s in sides) else said
-
-
-def leading_nowhere(text: str, *, turning: bool = True) -> str:
-    """Return a text of a file in which nothing becomes a link or a picture of the internet.
-
-    What Markdown or a browser would take for one is parted by a sign that nobody sees. Unless
-    `turning`, signs that turn the direction are left out.
-    """
-    text = text if turning else _TURNING.sub("", text)
-    return _LEADING.sub("\\g<0>\u2060", text)
-
-
-def unformatted(text: str) -> str:
-    r"""Return a text as Markdown that shows each of its signs.
-
-    Examples
-    --------
-    >>> print(unformatted("*webs* at $5"))
-    \*webs\* at \$5
-    """
-    return _FORMATS.sub(r"\\\g<0>", _PICTURES.sub("\\g<0>\u2060", text))
 
 
 def listed(parts: Iterable[str]) -> str:
@@ -350,18 +268,13 @@ def of_error(error: BaseException) -> str:
     return in_words(error.args[0] if error.args else str(error))
 
 
-def marked_as_english(sentence: str) -> str:
-    """Return an English sentence among others, marked as such and kept from the left."""
-    return f"\u2066{sentence}\u2069 [English]"
-
-
 def _said(sentence: object, language: str) -> str | None:
     """Return a sentence in a language; None if there are no words for it."""
     if isinstance(sentence, BaseException) and sentence.args:
         sentence = sentence.args[0]
     if not isinstance(sentence, Worded):
         return _said_again(sentence, language) if isinstance(sentence, KeptText) else None
-    found = _catalogue(language)
+    found = catalogue_of(language)
     if sentence.parts:
         parts = {part: _said(part, language) for part in sentence.parts}
         if all(said is None for said in parts.values()):
@@ -373,7 +286,7 @@ def _said(sentence: object, language: str) -> str | None:
     else:
         form = found.pgettext(LIBRARY, sentence.words)
     if not form and _is_wordless(sentence.words):
-        apart = language in _SHARE_APART
+        apart = language in SHARE_APART
         form = sentence.words if apart else sentence.words.replace(" %", "%")
     if not form:
         return None
@@ -383,7 +296,7 @@ def _said(sentence: object, language: str) -> str | None:
         name: value if (made := _said(value, language)) is None else made
         for name, value in sentence.values.items()
     }
-    return _filled(form, language, (), values)
+    return filled(form, language, (), values)
 
 
 @lru_cache(maxsize=2_000)
@@ -407,7 +320,7 @@ def _one_again(sentence: str, language: str) -> str | None:
     if told is None:
         return None
     words, blanks = told
-    form = _catalogue(language).pgettext(LIBRARY, words)
+    form = catalogue_of(language).pgettext(LIBRARY, words)
     values = {
         name: _one_again(value, language) or _counted_again(value, language)
         for name, value in blanks.items()
@@ -425,7 +338,7 @@ def _counted_again(value: str, language: str) -> str:
     if said := _BETWEEN.fullmatch(value):
         nearest, farthest = (_distance_again(one, language) for one in said.groups())
         ends = {"nearest": nearest, "farthest": farthest}
-        form = _catalogue(language).pgettext(LIBRARY, "{nearest} to {farthest}")
+        form = catalogue_of(language).pgettext(LIBRARY, "{nearest} to {farthest}")
         return _AsKept().vformat(form, (), ends) if form else value
     if re.fullmatch(_AWAY, value):
         return _distance_again(value, language)
@@ -437,7 +350,7 @@ def _counted_again(value: str, language: str) -> str:
 def _distance_again(value: str, language: str) -> str:
     """Return a distance, "26 m", in a language."""
     number, unit = value.split(" ")
-    form = _catalogue(language).pgettext(LIBRARY, f"{{value}} {unit}")
+    form = catalogue_of(language).pgettext(LIBRARY, f"{{value}} {unit}")
     said = _number_again(number, language)
     return together(_AsKept().vformat(form, (), {"value": said})) if form else value
 
@@ -445,13 +358,13 @@ def _distance_again(value: str, language: str) -> str:
 def _number_again(value: str, language: str) -> str:
     if not _NUMBER.fullmatch(value):
         return value
-    said = value if language in _SHARE_APART else value.replace(" %", "%")
-    return together(_separated(said, language))
+    said = value if language in SHARE_APART else value.replace(" %", "%")
+    return together(separated(said, language))
 
 
 @cache
 def _known(language: str) -> KnownSentences:
-    return KnownSentences(_catalogue(language).words_in(LIBRARY))
+    return KnownSentences(catalogue_of(language).words_in(LIBRARY))
 
 
 class _AsKept(Formatter):
@@ -479,7 +392,7 @@ def for_reports(language: str) -> ReportLanguage:
     """Return a language for reports."""
     if language == ENGLISH:
         return ENGLISH_REPORTS
-    found = _catalogue(language)
+    found = catalogue_of(language)
 
     def say(sentence: str) -> str:
         return _said(sentence, language) or _said_again(str(sentence), language) or str(sentence)
@@ -491,26 +404,6 @@ def for_reports(language: str) -> ReportLanguage:
 # -- numbers and dates
 
 
-class _BlanksInLanguage(Formatter):
-    def __init__(self, language: str) -> None:
-        self._language = language
-
-    def format_field(self, value: Any, format_spec: str) -> str:  # noqa: ANN401
-        if "|" in format_spec:
-            return written(value, format_spec)
-        if isinstance(value, Real) and not isinstance(value, bool):
-            return _number(value, format_spec, self._language)
-        return format(value, format_spec)
-
-
-def _filled(words: str, language: str, args: Any, values: Any) -> str:  # noqa: ANN401
-    if language == ENGLISH and "%}" not in words and "|" not in words:
-        filled = str.format(words, *args, **values)
-    else:
-        filled = _BlanksInLanguage(language).vformat(str(words), args, values)
-    return _SHARE.sub("\u00a0", filled)
-
-
 def number(value: float, form: str = "") -> str:
     """Return a number as the current language writes it; `form` as Python's `format` takes it.
 
@@ -519,7 +412,7 @@ def number(value: float, form: str = "") -> str:
     >>> number(1234.5, ",.1f")
     '1,234.5'
     """
-    return _number(value, form, current())
+    return number_in(value, form, current())
 
 
 def about(value: float) -> str:
@@ -531,25 +424,6 @@ def about(value: float) -> str:
     ('46', '4.6')
     """
     return in_words(estimate(value))
-
-
-def _number(value: Any, form: str, language: str) -> str:  # noqa: ANN401 - any number
-    said = written(value, form) if language in _SHARE_APART else format(value, form)
-    return together(_separated(said, language))
-
-
-def _separated(written: str, language: str) -> str:
-    if language == ENGLISH:
-        return written
-    return written.translate(_separators(language))
-
-
-@cache
-def _separators(language: str) -> dict[int, str]:
-    from babel import Locale  # noqa: PLC0415
-
-    signs = Locale.parse(language).number_symbols["latn"]
-    return {ord("."): signs["decimal"], ord(","): signs["group"]}
 
 
 def separators() -> tuple[str, str]:

@@ -11,7 +11,7 @@ from typing import Any
 from fieldmon.reports import words
 from fieldmon.samplers import of_equal_times
 
-from . import language
+from . import language, signs
 from .language import Plural, Text
 
 
@@ -20,12 +20,12 @@ def isolated(name: str) -> str:
 
     Signs of its own that turn the direction end with it, and it leads nowhere.
     """
-    return f"\u2068{language.leading_nowhere(name, turning=False)}\u2069"
+    return f"\u2068{signs.leading_nowhere(name, turning=False)}\u2069"
 
 
 def written(said: str) -> str:
     """Return what somebody wrote, in one line of a page and word for word: no sign formats it."""
-    return isolated(language.unformatted(" ".join(said.split())))
+    return isolated(signs.unformatted(" ".join(said.split())))
 
 
 TITLE = "fieldmon"

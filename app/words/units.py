@@ -10,7 +10,8 @@ from fieldmon.compute.units import AREAS_M2, DATES, LENGTHS
 from fieldmon.compute.wording import hours_figure
 
 from . import texts
-from .language import day_and_month, in_words, number, separators, together, weekday
+from .language import day_and_month, in_words, number, separators, weekday
+from .signs import together
 
 __all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "usual"]
 

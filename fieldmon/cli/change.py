@@ -9,19 +9,12 @@ import typer
 
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
-from fieldmon.cli.options import (
-    Background,
-    RobotOptions,
-    Robots,
-    SeasonFile,
-    TeamworkOptions,
-    WorkerOptions,
-    sampler_settings,
-)
+from fieldmon.cli.options import Background, SeasonFile, sampler_settings
 from fieldmon.cli.pest_options import SAYS_ITSELF, PestOptions, tell_half_life, tell_pest
 from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
+from fieldmon.cli.worker_options import RobotOptions, Robots, TeamworkOptions, WorkerOptions
 from fieldmon.compute.ranges import CHANCE
 from fieldmon.errors import SettingError
 from fieldmon.samplers import EVERY

@@ -12,24 +12,21 @@ from fieldmon.cli.files_to_plot import believed, prepared
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import (
-    Contact,
     Feature,
     InfestedAtStart,
-    LeastGain,
     MaybePlotFile,
-    Passing,
     PlotFiles,
     RecordsFile,
     SeasonDays,
     VisitEvery,
     WorkDate,
-    WorkerOptions,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import known
 from fieldmon.cli.study_output import can_be_folder, going_on, write_all
 from fieldmon.cli.times import day, day_on
+from fieldmon.cli.worker_options import Contact, LeastGain, Passing, WorkerOptions
 from fieldmon.compute.ranges import CHANCE, PAIRED
 from fieldmon.errors import SettingError
 from fieldmon.samplers import USUAL_SAMPLER, kind_of

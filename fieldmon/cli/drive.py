@@ -3,44 +3,36 @@
 from __future__ import annotations
 
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field, replace
-from datetime import datetime, time, timedelta
-from enum import StrEnum
+from datetime import time
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import typer
 
+from fieldmon.cli.drive_messages import (
+    say,
+    tell_before,
+    tell_others,
+    tell_plan,
+    tell_replanned,
+    tell_stopped,
+)
+from fieldmon.cli.drive_options import DriveOptions, Drives
+from fieldmon.cli.drive_team import drive_as_team
+from fieldmon.cli.driven_files import moment_begun, refuse_written_over, write_bag_of, write_tables
 from fieldmon.cli.files_to_plot import prepared
 from fieldmon.cli.messages import tell_assumed, tell_past_midnight
 from fieldmon.cli.option_groups import with_options
-from fieldmon.cli.option_ranges import refusing, within
-from fieldmon.cli.options import (
-    Every,
-    Feature,
-    MaybePlotFile,
-    PlotFiles,
-    RecordsFile,
-    WorkDate,
-    WorkerOptions,
-    sampler_of,
-)
-from fieldmon.cli.sampler_names import OneSampler
-from fieldmon.cli.season_files import (
-    refuse_too_wide,
-    refuse_unrecorded,
-    refuse_what_was_chosen,
-)
+from fieldmon.cli.options import sampler_of
+from fieldmon.cli.season_files import refuse_what_was_chosen
 from fieldmon.cli.stopped import STOPPED_CODE
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.told_to_end import as_at_ctrl_c, told_to_end
-from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.errors import SettingError
-from fieldmon.samplers import USUAL_SAMPLER
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Sequence
+    from collections.abc import Callable, Iterator
     from datetime import date
 
     from fieldmon.drive.day import DrivenDay
@@ -48,120 +40,8 @@ if TYPE_CHECKING:
     from fieldmon.drive.mujoco_robot import Physics
     from fieldmon.drive.recording import Recording
     from fieldmon.drive.vda5050.fleet import Vda5050Robot
-    from fieldmon.drive.vda5050.mqtt import RobotName
-    from fieldmon.monitoring import Season
-    from fieldmon.monitoring.settings.settings import MonitoringSettings
-    from fieldmon.planning.members import TeamMember
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
-
-BrokerName = Annotated[
-    str, typer.Option("--broker", help="MQTT broker: HOST:PORT or mqtts://USER:PASSWORD@HOST:PORT.")
-]
-Serial = Annotated[str, typer.Option(help="Serial number of the robot, as in its topics.")]
-RobotModel = Annotated[
-    Path | None,
-    typer.Option(
-        "--robot-model",
-        help="Model of a robot for mujoco, URDF or MJCF (docs: drive names its joints).",
-    ),
-]
-SteeringName = Annotated[
-    str,
-    typer.Option(
-        help="For mujoco's own robot. differential: two driven wheels. ackermann: a steered axle, "
-        "which turns at corners by arcs and shunts."
-    ),
-]
-
-
-def _too_rough(height_m: float) -> str:
-    from fieldmon.drive.ground import ROUGH_M
-
-    return ROUGH_M.broken(height_m)
-
-
-Rough = Annotated[
-    float,
-    typer.Option(
-        help="With mujoco: height of bumps in metres (standard deviation).",
-        callback=refusing(_too_rough),
-    ),
-]
-GroundHeights = Annotated[
-    Path | None, typer.Option("--ground", help="With mujoco: raster of heights (GeoTIFF), metres.")
-]
-Version = Annotated[str, typer.Option("--vda", help="Version of VDA 5050: 2.1 or 3.0.")]
-Maker = Annotated[str, typer.Option("--manufacturer", help="Manufacturer, as in its topics.")]
-
-
-class Drives(StrEnum):
-    """Who drives."""
-
-    CHARGED = "charged"
-    MUJOCO = "mujoco"
-    VDA5050 = "vda5050"
-
-
-@dataclass(frozen=True)
-class DriveOptions:
-    """What `fieldmon drive` is told."""
-
-    plot: MaybePlotFile = None
-    robot: Annotated[
-        Drives,
-        typer.Option(
-            help="charged: the seconds that are charged, no physics. mujoco: wheels in a physical "
-            "simulation. vda5050: a robot that takes orders over MQTT."
-        ),
-    ] = Drives.CHARGED
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            help="Table of the day (CSV); a table of its stops is written beside it.",
-        ),
-    ] = None
-    bag: Annotated[
-        Path | None, typer.Option(help="Bag of ROS 2 (.mcap), for RViz and Foxglove.")
-    ] = None
-    records: RecordsFile = None
-    feature: Feature = None
-    sampler: OneSampler = USUAL_SAMPLER
-    every: Every = None
-    on: WorkDate = None
-    infested: Annotated[
-        float,
-        typer.Option(
-            help="Share of plants that a simulated robot finds infested.", callback=within(CHANCE)
-        ),
-    ] = 0.02
-    seed: Annotated[
-        int, typer.Option(help="Seed of simulated insects and noise.", callback=within(SEED))
-    ] = 1
-    gnss: Annotated[
-        float,
-        typer.Option(
-            help="Noise of simulated positions, metres (standard deviation).",
-            callback=within(0, 100, unit=" metres"),
-        ),
-    ] = 0.0
-    robot_model: RobotModel = None
-    steering: SteeringName = "differential"
-    rough: Rough = 0.0
-    ground: GroundHeights = None
-    made_up: Annotated[
-        bool,
-        typer.Option("--made-up", help="Record a simulated robot's made-up finds in the season."),
-    ] = False
-    broker: BrokerName = "127.0.0.1:1883"
-    serial: Serial = "robot1"
-    manufacturer: Maker = "fieldmon"
-    vda: Version = "2.1"
-    worker: WorkerOptions = field(default_factory=WorkerOptions)
-    files: PlotFiles = field(default_factory=PlotFiles)
-
 
 #: what goes with a season too; who works, what is known and who chooses are its own
 _OF_A_SEASON = {
@@ -195,9 +75,9 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
         refuse_what_was_chosen(context, _OF_A_SEASON)
         from fieldmon.drive.one_drive import one_drive
 
-        if _team(context, options, options.plot):
+        if drive_as_team(context, options, options.plot):
             return
-        with one_drive(options.plot, _name(options)):
+        with one_drive(options.plot, options.name):
             _season(options, options.plot)
 
 
@@ -212,7 +92,7 @@ def _plot(options: DriveOptions) -> None:
     from fieldmon.planning.assumptions import assumed_by
     from fieldmon.plot.local_clock import local_clock, utc_now
 
-    _refuse_written_over(None, (options,))
+    refuse_written_over(None, (options,))
     worker = options.worker.robot()
     if options.steering == "ackermann":
         from fieldmon.drive.robot_body import with_turning_radius
@@ -232,7 +112,7 @@ def _plot(options: DriveOptions) -> None:
     clock, so_far = local_clock(plot.field), DrivenDay()
 
     def tables(*, stopped: bool) -> None:
-        _write(so_far, on, options, _name(options))
+        write_tables(so_far, on, options, options.name)
         if stopped:
             typer.echo("The day is not over; the same command begins it anew.")
 
@@ -240,7 +120,7 @@ def _plot(options: DriveOptions) -> None:
         robot, recording = driver
         is_now = _live(robot) is not None and on == clock.today()
         begins = utc_now() if is_now else clock.moment(on, time(6))
-        bag = partial(_write_bag, (recording, so_far), begins, options)
+        bag = partial(write_bag_of, (recording, so_far), begins, options)
         watch = recording.note if _live(robot) is None else recording.note_live
         with _written(bag, tables), _home_when_told(robot, so_far, options.serial):
             drive_day(today, aisles, (worker, robot), watch, so_far)
@@ -260,7 +140,7 @@ def _season(options: DriveOptions, file: Path) -> None:
             "Drive a copy of the season with --made-up, or a robot with --robot vda5050."
         )
     season = Season(file)
-    _refuse_written_over(season, (options,))
+    refuse_written_over(season, (options,))
     on = day_on(season.plot.field, day(options.on))
     settings = season.planned_by(on)
     worker = settings.robot
@@ -268,35 +148,35 @@ def _season(options: DriveOptions, file: Path) -> None:
     is_real = options.robot is Drives.VDA5050
     made_up = "" if is_real else ", finds made up"
     today = SeasonDay(
-        season, on, f"{_name(options)}{made_up}", name=options.serial if is_real else ""
+        season, on, f"{options.name}{made_up}", name=options.serial if is_real else ""
     )
     tell_assumed(season.assumed(settings))
     tell_past_midnight(on, settings)
-    _tell_others(season, on, today.left_out)
-    _tell_before(season, on, _name(options), today.at)
+    tell_others(season, on, today.left_out)
+    tell_before(season, on, options.name, today.at)
     if told := aisles.narrow_sentence():
         typer.echo(told)
     if today.batch is not None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
-        _tell_plan(goes_on=today.goes_on)
+        tell_plan(goes_on=today.goes_on)
     before = season.contents([today.batch])[today.batch].n if today.batch is not None else 0
     so_far = DrivenDay()
 
     def tables(*, stopped: bool) -> None:
-        _write(so_far, on, options, _name(options), before)
-        _tell_replanned(today.replanned - 1)
+        write_tables(so_far, on, options, options.name, before)
+        tell_replanned(today.replanned - 1)
         if stopped:
-            _tell_stopped(season, on, today.batch)
+            tell_stopped(season, on, today.batch)
 
     with _driver(options, season.plot, worker, (season.morning(on), on)) as (robot, recording):
 
         def bag() -> None:
-            begins = _begins(season, on, today.begun_s)
-            _write_bag((recording, so_far), begins, options, goes_on=before > 0)
+            begins = moment_begun(season, on, today.begun_s)
+            write_bag_of((recording, so_far), begins, options, goes_on=before > 0)
 
         with _written(bag, tables), _home_when_told(robot, so_far, options.serial):
             if told := time_results(today, grid_clock(season.plot.grid), _live(robot)):
-                _say(told)
+                say(told)
             watch = recording.note if _live(robot) is None else recording.note_live
             drive_day(today, aisles, (worker, robot), watch, so_far)
 
@@ -323,199 +203,6 @@ def _written(bag: Callable[[], None], tables: _Tables) -> Iterator[None]:
     tables(stopped=False)
 
 
-def _team(context: typer.Context, options: DriveOptions, file: Path) -> bool:
-    """Let a season's team drive its day by VDA 5050, a robot each; return whether it has one."""
-    from fieldmon.monitoring import Season
-
-    season = Season(file)
-    on = day_on(season.plot.field, day(options.on))
-    settings = season.planned_by(on)
-    if not settings.team:
-        return False
-    if options.robot is not Drives.VDA5050:
-        raise SettingError(
-            f"A season's team drives by VDA 5050, but --robot is {options.robot.value}. Give "
-            "--robot vda5050; fieldmon stand-in simulates the robots."
-        )
-    if (told := context.get_parameter_source("serial")) and told.name == "COMMANDLINE":
-        names = ", ".join(one.name for one in settings.team)
-        raise SettingError(
-            f"A team's robots have their names as serial numbers ({names}), but --serial was given "
-            "too. Leave it away, or rename them with: fieldmon change --robots"
-        )
-    from fieldmon.drive.one_drive import one_drive
-
-    with one_drive(file, f"a team ({options.manufacturer})", is_team=True):
-        _team_day(options, season, on, settings)
-    return True
-
-
-def _team_day(
-    options: DriveOptions, season: Season, on: date, settings: MonitoringSettings
-) -> None:
-    """Let a season's team drive what is left of its day, and write what came of it."""
-    from fieldmon.drive.recording import Recording
-    from fieldmon.drive.team_season import TeamSeason, robots_of
-    from fieldmon.drive.vda5050.mqtt import Broker
-    from fieldmon.drive.vda5050.team import drive_team
-
-    robots = robots_of(settings.team)
-    own = dict(zip((one.name for one in robots), _options_of_each(options, robots), strict=True))
-    _refuse_written_over(season, own.values())
-    refuse_too_wide(season, settings.team)
-    today = TeamSeason(season, on, options.manufacturer)
-    tell_assumed(season.assumed(settings))
-    tell_past_midnight(on, settings)
-    _tell_left_out([one.name for one in today.team if one not in today.robots])
-    if today.batch is not None:
-        typer.echo(f"{on} goes on (batch {today.batch}).")
-        _tell_plan(goes_on=today.goes_on)
-    before = {one.name: len(season.worked(on, one.name)) for one in today.robots}
-    recordings = {
-        one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
-        for one in today.robots
-    }
-    broker = Broker.of(options.broker)
-    begun: dict[str, DrivenDay] = {}
-    driven = begun
-    try:
-        driven = drive_team(today, broker, _robot_name(options), _say, recordings, begun)
-    except KeyboardInterrupt:  # who would not wait
-        today.stops += 1
-    finally:  # whatever ended it
-        for name in sorted(begun):
-            _write(begun[name], on, own[name], name, before[name])
-            begun_s = begun[name].begun_s
-            planned_s = season.begun_s(on, name) if begun_s is None else begun_s
-            begins = _begins(season, on, planned_s)
-            noted = recordings[name], begun[name]
-            _write_bag(noted, begins, own[name], goes_on=before[name] > 0)
-    missing = dict.fromkeys(each.broken for each in driven.values() if each.broken)
-    _tell_replanned(today.replanned - 1)
-    if today.stops:
-        _tell_stopped(season, on, today.batch)
-        raise SystemExit(STOPPED_CODE)
-    if missing:
-        raise SettingError(" ".join(missing))
-
-
-def _options_of_each(
-    options: DriveOptions, robots: tuple[TeamMember, ...]
-) -> Iterator[DriveOptions]:
-    """Yield what each robot of a team is told: its own files, and its name as its serial."""
-    from fieldmon.cli.team_files import files_of_each
-
-    asked = [path for path in (options.output, options.bag) if path is not None]
-    files = files_of_each(asked, robots) if asked else [[] for _ in robots]
-    for one, paths in zip(robots, files, strict=True):
-        own = iter(paths)
-        output = next(own) if options.output is not None else None
-        bag = next(own) if options.bag is not None else None
-        yield replace(options, output=output, bag=bag, serial=one.name)
-
-
-def _tell_left_out(scouts: list[str]) -> None:
-    """Print who of a team does not drive."""
-    if scouts:
-        typer.echo(
-            f"Left out, as scouts go on foot: {', '.join(scouts)}. fieldmon plan writes their "
-            "routes.",
-            err=True,
-        )
-
-
-def _tell_others(season: Season, on: date, left_out: Sequence[tuple[int, int]]) -> None:
-    """Print that others are out, and what is left to them."""
-    if not (codes := season.codes_on(on)):
-        return
-    out = "is out with a route" if len(codes) == 1 else "are out with routes"
-    theirs = f"{' and '.join(codes)} {out} of their own"
-    if rows := ", ".join(f"{first}-{last}" for first, last in sorted(left_out)):
-        theirs += f"; the robot leaves rows {rows} to them"
-    said = [f"{theirs}."]
-    if None in codes.values():
-        said.append("Whoever has a code for the whole plot may be sent to the same plants.")
-    typer.echo(" ".join(said), err=True)
-
-
-def _tell_before(season: Season, on: date, name: str, at: int) -> None:
-    """Print that other robots were driven on a day, and where this one is taken to stand."""
-    drives = {
-        one.source.removesuffix(f" {on}")
-        for one in season.batches()
-        if one.kind == "findings" and not one.undone and one.source.endswith(f" {on}")
-    }
-    if others := sorted(other for other in drives - {name} if "/" in other):
-        where = "the gate" if at < 0 else f"plant {at}, where that ended"
-        were = "was" if len(others) == 1 else "were"
-        typer.echo(
-            f"{' and '.join(others)} {were} driven on {on} before. {name} is taken to stand at "
-            f"{where}.",
-            err=True,
-        )
-
-
-def _tell_plan(*, goes_on: bool) -> None:
-    """Print by which plan a day goes on."""
-    typer.echo(
-        "It follows what is left of the plan given out last."
-        if goes_on
-        else "Planned anew: the plan given out last is done, or results or hours changed it."
-    )
-
-
-def _tell_replanned(n: int) -> None:
-    """Print how often a day was planned anew while it was driven."""
-    from fieldmon.compute.wording import counted
-
-    if n:
-        typer.echo(f"Planned anew {counted(n, 'time')} after finds or delays; each plan is kept.")
-
-
-def _tell_stopped(season: Season, on: date, batch: int | None) -> None:
-    """Print what is kept of a day that somebody stopped."""
-    from fieldmon.compute.wording import counted
-
-    n = counted(0 if batch is None else season.contents([batch])[batch].n, "result")
-    typer.echo(f"{n} of {on} in the season; the same command goes on from there.")
-
-
-def _begins(season: Season, on: date, begun_s: float) -> datetime:
-    """Return the moment from which the seconds of a day's driving count."""
-    from fieldmon.plot.local_clock import local_clock
-
-    begins = datetime.combine(on, time()) + timedelta(seconds=begun_s)
-    return local_clock(season.plot.field).moment(begins.date(), begins.time())
-
-
-def _write_bag(
-    noted: tuple[Recording, DrivenDay],
-    begins: datetime,
-    options: DriveOptions,
-    *,
-    goes_on: bool = False,
-) -> None:
-    """Write the bag, if asked for: of a day that goes on, beside that of what was driven before."""
-    if options.bag is None:
-        return
-    from fieldmon.drive.bag import write_bag
-
-    to = _next_part(options.bag, Path.exists) if goes_on else options.bag
-    recording, driven = noted
-    recording.end(driven)
-    bag, *layouts = write_bag(recording, begins, to)
-    beside = " and ".join(path.name for path in layouts)
-    typer.echo(f"Bag written to {bag}; layouts beside it: {beside}")
-
-
-def _next_part(path: Path, is_there: Callable[[Path], bool]) -> Path:
-    """Return where what was driven since a day went on is written: beside what was before."""
-    to, part = path, 2
-    while is_there(to):
-        to, part = path.with_stem(f"{path.stem}-{part}"), part + 1
-    return to
-
-
 @contextmanager
 def _driver(
     options: DriveOptions, plot: Plot, worker: Robot, believed: tuple[Any, date]
@@ -528,8 +215,8 @@ def _driver(
         from fieldmon.drive.vda5050.fleet import live_robot
         from fieldmon.drive.vda5050.mqtt import Broker
 
-        who = _robot_name(options)
-        with live_robot(Broker.of(options.broker), who, str(believed[1]), _say) as live:
+        who = options.robot_name()
+        with live_robot(Broker.of(options.broker), who, str(believed[1]), say) as live:
             live.sees = recording.see
             yield live, recording
         return
@@ -557,7 +244,7 @@ def _home_when_told(robot: DrivingRobot, driven: DrivenDay, name: str) -> Iterat
         if driven.ends > 1 or not live.has_order:
             raise KeyboardInterrupt
         with suppress(RuntimeError):  # where something is being printed
-            _say(STOPPING[0].format(names=name))
+            say(STOPPING[0].format(names=name))
 
     live.stops = lambda: driven.ends
     try:
@@ -565,7 +252,7 @@ def _home_when_told(robot: DrivingRobot, driven: DrivenDay, name: str) -> Iterat
             yield
     except KeyboardInterrupt:
         if live.has_order:
-            _say(f"{STOPPING[1]} The robot still ends what it was ordered last.")
+            say(f"{STOPPING[1]} The robot still ends what it was ordered last.")
         raise
     if driven.ends:
         raise KeyboardInterrupt
@@ -606,61 +293,3 @@ def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None
     elif options.rough:
         ground = rough_ground(plot.grid, options.rough, options.seed)
     return Physics(body, options.gnss, options.seed, ground)
-
-
-def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before: int = 0) -> None:
-    """Say what a day came to, and write its tables; `before` were inspected in an earlier run."""
-    from fieldmon.compute.wording import counted
-    from fieldmon.drive.day_tables import day_table, in_words, stop_table, stops_path
-
-    who = f"{name}, {on}" if options.serial == name else f"{on}"
-    typer.echo(f"{who}: {in_words(driven)}")
-    if before:
-        typer.echo(
-            f"This is since it went on: {counted(before, 'inspection')} of the day before that "
-            "are in the season only."
-        )
-    if options.output is None:
-        return
-    from fieldmon.io.atomic_write import write_whole
-
-    to = options.output
-    if before:
-        to = _next_part(to, lambda path: path.exists() or stops_path(path).exists())
-    write_whole(to, day_table(driven, on, name, before))
-    write_whole(stops_path(to), stop_table(driven))
-    typer.echo(f"Written to {to} and {stops_path(to)}")
-
-
-def _refuse_written_over(season: Season | None, each: Collection[DriveOptions]) -> None:
-    """Refuse files that cannot be written, and tables that would replace what was filled in."""
-    from fieldmon.drive.bag import require_bag
-    from fieldmon.drive.day_tables import is_driven_table, stops_path
-    from fieldmon.io.atomic_write import require_place
-
-    outputs = [one.output for one in each if one.output is not None]
-    files = [file for path in outputs for file in (path, stops_path(path))]
-    for file in files:
-        require_place(file)
-    for one in each:
-        if one.bag is not None:
-            require_bag(one.bag)
-    refuse_unrecorded(season, [file for file in files if not is_driven_table(file)])
-
-
-def _robot_name(options: DriveOptions) -> RobotName:
-    from fieldmon.drive.vda5050.mqtt import RobotName
-    from fieldmon.drive.vda5050.versions import known_version
-
-    return RobotName(options.manufacturer, options.serial, known_version(options.vda))
-
-
-def _name(options: DriveOptions) -> str:
-    """Return what the robot is called in tables and batches."""
-    if options.robot is Drives.VDA5050:
-        return f"{options.manufacturer}/{options.serial}"
-    return str(options.robot)
-
-
-def _say(told: str) -> None:
-    typer.echo(told, err=True)

@@ -20,10 +20,7 @@ from fieldmon.cli.options import (
     MaybePlotFile,
     PlotFiles,
     RecordsFile,
-    Robots,
     StartTime,
-    TeamworkOptions,
-    WorkerOptions,
     sampler_settings,
 )
 from fieldmon.cli.pest_options import SAYS_ITSELF, PestOptions, prior_of
@@ -31,6 +28,7 @@ from fieldmon.cli.report_languages import Language, checked_language
 from fieldmon.cli.sampler_names import OneSampler
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import WorkStart, clock, day
+from fieldmon.cli.worker_options import Robots, TeamworkOptions, WorkerOptions
 from fieldmon.compute.ranges import CHANCE, SEED
 from fieldmon.compute.wording import counted, estimate
 from fieldmon.errors import SettingError

@@ -7,9 +7,11 @@ import io
 import re
 import signal
 import time
+from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import islice
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
@@ -32,7 +34,7 @@ from fieldmon.planning.many_plots import plan_task
 from fieldmon.samplers.own import label_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable, Iterator
     from concurrent.futures import Future
     from datetime import datetime
     from pathlib import Path
@@ -55,6 +57,7 @@ _FEW = 6
 _NAMED = 3
 
 Row = dict[str, Any]
+Work = Callable[[str, "Task"], Row]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +79,8 @@ class EstateDay:
     began: datetime
 
 
-_day: list[EstateDay] = []
+# of a worker process alone: what it was begun with, which is not sent with each plot
+_BEGUN_WITH: list[EstateDay] = []
 
 
 def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None = None) -> None:
@@ -168,11 +172,15 @@ def _plan(
             row = one.result()
             rows[row["file"]] = row | {"digest": digests[row["file"]]}
 
-    pool = _pool(min(workers, len(tasks)), day) if len(tasks) > _FEW else _here(day)
+    pool, work = _pool(min(workers, len(tasks)), day) if len(tasks) > _FEW else _here(day)
+
+    def submit(name: str, task: Task) -> Future[Row]:
+        return pool.submit(work, name, task)
+
     names, saved = list(tasks), time.monotonic()
     with progress("Planning", len(names)) as bar:
         try:
-            for one in _ended(pool, tasks.items(), keep):
+            for one in _ended(submit, tasks.items(), keep):
                 one.result()
                 bar.update(1)
                 if time.monotonic() - saved > _EVERY_S:
@@ -187,30 +195,30 @@ def _plan(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _pool(workers: int, day: EstateDay) -> Executor:
-    return ProcessPoolExecutor(workers, get_context("spawn"), _prepare, (day,))
+def _pool(workers: int, day: EstateDay) -> tuple[Executor, Work]:
+    """Return worker processes that know the day, and what each does."""
+    return ProcessPoolExecutor(workers, get_context("spawn"), _prepare, (day,)), _work_as_begun
 
 
-def _here(day: EstateDay) -> Executor:
+def _here(day: EstateDay) -> tuple[Executor, Work]:
     """Return this process: a few plots are planned before others have started."""
     from fieldmon.simulation.executor import here
 
-    _day[:] = [day]
-    return here().pool
+    return here().pool, partial(_work, day)
 
 
 def _ended(
-    pool: Executor,
+    submit: Callable[[str, Task], Future[Row]],
     tasks: Iterable[tuple[str, Task]],
     keep: Callable[[Future[Row]], None],
 ) -> Iterator[Future[Row]]:
-    """Hand tasks to a pool, some ahead of it; yield each as it ends, `keep` hears of it before."""
+    """Hand over tasks, some ahead; yield each as it ends, `keep` hears of it before."""
     waiting = iter(tasks)
 
     def more(n: int) -> set[Future[Row]]:
         handed: set[Future[Row]] = set()
         for item in islice(waiting, n):
-            one = pool.submit(_work, *item)
+            one = submit(*item)
             one.add_done_callback(keep)
             handed.add(one)
         return handed
@@ -225,12 +233,17 @@ def _ended(
 def _prepare(day: EstateDay) -> None:
     """Make a worker process ready; the stop key is for the process that waits for it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _day[:] = [day]
+    _BEGUN_WITH[:] = [day]
 
 
-def _work(name: str, task: Task) -> Row:
-    """Plan one plot in a worker process and write its route; return its row of the summary."""
-    (day,) = _day
+def _work_as_begun(name: str, task: Task) -> Row:
+    """Plan one plot on the day with which this worker process was begun."""
+    (day,) = _BEGUN_WITH
+    return _work(day, name, task)
+
+
+def _work(day: EstateDay, name: str, task: Task) -> Row:
+    """Plan one plot and write its route; return its row of the summary."""
     row = dict.fromkeys(_COLUMNS, "") | {"plot": task.plot.name, "file": name}
     try:
         choices = PlantingChoices(**task.orders.planting)  # type: ignore[arg-type]

@@ -14,18 +14,16 @@ from fieldmon.cli.options import (
     Feature,
     MaybePlotFile,
     Outputs,
-    Passing,
     PlotFiles,
     RecordsFile,
-    Robots,
     StartTime,
     WorkDate,
-    WorkerOptions,
 )
 from fieldmon.cli.outputs import ChanceMap
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.sampler_names import OneSamplerOrOwn
 from fieldmon.cli.times import WorkStart, clock, day
+from fieldmon.cli.worker_options import Passing, Robots, WorkerOptions
 from fieldmon.samplers import USUAL_SAMPLER
 
 Now = Annotated[

@@ -14,12 +14,13 @@ from fieldmon.cli.messages import (
     tell_drafts,
 )
 from fieldmon.cli.option_groups import with_options
-from fieldmon.cli.options import MoveMinutes, Robots, StartTime, WorkDate, WorkerOptions
+from fieldmon.cli.options import MoveMinutes, StartTime, WorkDate
 from fieldmon.cli.outputs import write_route
 from fieldmon.cli.progress import progress
 from fieldmon.cli.season_files import opened
 from fieldmon.cli.team_files import members_of, tell_member
 from fieldmon.cli.times import clock, day, day_on
+from fieldmon.cli.worker_options import Robots, WorkerOptions
 from fieldmon.compute.wording import counted
 from fieldmon.errors import SettingError
 

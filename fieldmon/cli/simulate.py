@@ -21,12 +21,12 @@ from fieldmon.cli.options import (
     SeasonDays,
     VisitEvery,
     WorkDate,
-    WorkerOptions,
     refuse_idle_every,
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.sampler_names import OWN, known_or_own
 from fieldmon.cli.times import day, day_on
+from fieldmon.cli.worker_options import WorkerOptions
 from fieldmon.compute.ranges import CHANCE, SEED, SHARE
 from fieldmon.compute.wording import counted
 from fieldmon.samplers import COMPARED, sampler_with

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from fieldmon.cli.drive import BrokerName, Maker, Version
+from fieldmon.cli.drive_options import BrokerName, Maker, Version
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import of_robot, within
 from fieldmon.compute.ranges import CHANCE, SEED

@@ -12,20 +12,13 @@ from fieldmon.cli.files_to_plot import estate
 from fieldmon.cli.messages import Terminal, tell_assumed
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import of_robot, within
-from fieldmon.cli.options import (
-    Bearing,
-    BothFaces,
-    Headland,
-    PlantSpacing,
-    RobotTimesName,
-    RowSpacing,
-    VisitEvery,
-)
+from fieldmon.cli.options import Bearing, BothFaces, Headland, PlantSpacing, RowSpacing, VisitEvery
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.progress import counting
 from fieldmon.cli.sampler_names import OWN
 from fieldmon.cli.study_output import can_be_folder, going_on
 from fieldmon.cli.times import day, day_on
+from fieldmon.cli.worker_options import RobotTimesName
 from fieldmon.compute.ranges import CHANCE, DAYS, SEASONS, SEED, SHARE
 from fieldmon.samplers import COMPARED
 

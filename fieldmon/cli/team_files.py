@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from datetime import datetime, time
 
-    from fieldmon.cli.options import WorkerOptions
+    from fieldmon.cli.worker_options import WorkerOptions
     from fieldmon.io.readers.team import StatedMember
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fieldmon.drive.errand import Errand, Float
-    from fieldmon.monitoring.estimates.monitor import PlantToInspect
+    from fieldmon.monitoring.estimates.asked_day import PlantToInspect
     from fieldmon.plot.travel import Aisles
 
 

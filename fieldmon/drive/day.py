@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fieldmon.drive.errand import DayToDrive, DrivingRobot, Float, Visit
-    from fieldmon.monitoring.estimates.monitor import PlantToInspect
+    from fieldmon.monitoring.estimates.asked_day import PlantToInspect
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
 

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fieldmon.monitoring.estimates.monitor import PlantToInspect
+    from fieldmon.monitoring.estimates.asked_day import PlantToInspect
     from fieldmon.plot.travel import Aisles
 
     Float = NDArray[np.float64]

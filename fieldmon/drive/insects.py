@@ -13,7 +13,7 @@ from fieldmon.planning.workday import draw_detections
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from fieldmon.monitoring.estimates.monitor import PlantToInspect
+    from fieldmon.monitoring.estimates.asked_day import PlantToInspect
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.simulation.start import Start
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from fieldmon.drive.errand import Errand, Float
     from fieldmon.drive.ground import UnevenGround
-    from fieldmon.monitoring.estimates.monitor import PlantToInspect
+    from fieldmon.monitoring.estimates.asked_day import PlantToInspect
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
 

@@ -11,7 +11,7 @@ from fieldmon.drive.day_clock import second_now, time_of
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.days.day_ahead import DayAhead, through
-from fieldmon.monitoring.estimates.monitor import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.monitoring.estimates.asked_day import AskedDay, PlantToInspect, plant_to_inspect
 from fieldmon.monitoring.phones.scouts import inside
 from fieldmon.monitoring.settings.shift_work import Besides
 from fieldmon.pests.weather import DAY_S

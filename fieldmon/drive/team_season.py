@@ -17,7 +17,7 @@ from fieldmon.drive.season_day import (
     left_of_plan,
 )
 from fieldmon.errors import SettingError
-from fieldmon.monitoring.estimates.monitor import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.monitoring.estimates.asked_day import AskedDay, PlantToInspect, plant_to_inspect
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.travel import GATE, travel_s
 

@@ -85,8 +85,9 @@ KEEP = {
     "state/sample_estate.py": {"plots"},
     "state/scout_page.py": {"files"},
     "state/web_maps.py": {"ASKED"},
-    "words/language.py": {"_ASKED", "_DAYS", "_TRANSLATED", "_catalogue", "_known", "_said_again",
-                          "_separators", "for_reports"},
+    "words/blanks.py": {"_separators"},
+    "words/language.py": {"_ASKED", "_DAYS", "_TRANSLATED", "_known", "_said_again", "for_reports"},
+    "words/translations.py": {"catalogue_of"},
 }  # fmt: skip
 
 

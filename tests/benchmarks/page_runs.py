@@ -18,7 +18,7 @@ import numpy as np
 
 from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
-from fieldmon.monitoring.changes import transactions
+from fieldmon.monitoring.file import connections
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.plot import Plot
 from tests.app.driving import go, opened
@@ -43,8 +43,8 @@ def begun(path: Path, n_plants: int) -> int:
 def main() -> None:
     """Print the processor time of each page."""
     n_plants = int(sys.argv[1]) if len(sys.argv) > 1 else N_PLANTS
-    connect, files = transactions.connect, []
-    transactions.connect = lambda *of: files.append(of[0]) or connect(*of)
+    connect, files = connections.connect, []
+    connections.connect = lambda *of: files.append(of[0]) or connect(*of)
     with tempfile.TemporaryDirectory() as folder:
         os.environ["FIELDMON_SEASONS"] = folder
         sys.stdout.write(f"{begun(Path(folder) / 'Timed.gpkg', n_plants):,} plants\n")

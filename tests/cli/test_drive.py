@@ -1,19 +1,15 @@
 """`fieldmon drive`: a day driven on a plot, or recorded in a season."""
 
-from datetime import date
-
 import pytest
 
 from fieldmon.drive.bag import read_bag
 from fieldmon.drive.charged_robot import ChargedRobot
-from fieldmon.drive.day import DrivenDay, DrivenStop
-from fieldmon.drive.errand import Visit
 from fieldmon.drive.one_drive import one_drive
 from fieldmon.drive.season_day import SeasonDay
 from fieldmon.errors import ObservationError
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.phones.scouts import let_in
-from tests.cli.estate import BEGINS, ZIP, filled_in, table
+from tests.cli.estate import BEGINS, ZIP, table
 
 PLOT = ("drive", ZIP, "--feature", "Nursery", "--hours", "0.3", "--date", BEGINS)
 
@@ -26,40 +22,6 @@ def test_a_day_is_driven_as_charged_and_its_tables_written(run, tmp_path):
     (day,) = table(tmp_path / "day.csv")
     assert (day["robot"], day["stuck"], day["charged_s"]) == ("charged", "0", day["driven_s"])
     assert len(table(tmp_path / "day.stops.csv")) == int(day["stops"]) > 10
-
-
-def test_a_sheet_that_was_filled_in_is_not_written_over_by_a_season_that_is_driven(
-    run, season, tmp_path
-):
-    run("plan", season, "--date", BEGINS, "--no-bound", "-o", "day.csv")
-    filled_in(tmp_path / "day.csv", {0}, 1)
-    held, kept = (tmp_path / "day.csv").read_bytes(), season.read_bytes()
-    code, _, err, made = run("drive", season, "--date", BEGINS, "--made-up", "-o", "day.csv")
-    assert (code, made) == (2, set())
-    assert "day.csv would be written over, but it was filled in and holds 1 result" in err
-    assert ((tmp_path / "day.csv").read_bytes(), season.read_bytes()) == (held, kept)
-    run("change", season, "--robots", "2")
-    (tmp_path / "day.csv").rename(tmp_path / "day-robot-2.csv")
-    words = ("--robot", "vda5050", "--broker", "127.0.0.1:1", "-o", "day.csv")
-    code, _, err, made = run("drive", season, "--date", BEGINS, *words)
-    assert (code, made) == (2, set())
-    assert "day-robot-2.csv would be written over, but it was filled in" in err
-    assert (tmp_path / "day-robot-2.csv").read_bytes() == held
-
-
-def test_a_driven_day_writes_over_its_own_tables_only(run, tmp_path):
-    sheet = tmp_path / "day.stops.csv"
-    sheet.write_text("order,row,number,found\n1,1,1,yes\n")
-    code, _, err, made = run(*PLOT, "-o", "day.csv")
-    assert (code, made) == (2, set())
-    assert "day.stops.csv would be written over, but was filled in" in err
-    sheet.unlink()
-    for _ in range(2):
-        code, _, err, _ = run(*PLOT, "-o", "day.csv")
-        assert code == 0, err
-    code, _, err, _ = run(*PLOT, "-o", "nowhere/day.csv")
-    assert code == 2
-    assert "The folder nowhere must exist" in err
 
 
 def test_a_day_is_driven_with_wheels_and_kept_as_a_bag(run, tmp_path):
@@ -187,36 +149,6 @@ def test_a_season_that_another_command_drives_is_refused(run, season):
     assert "but a team (fieldmon) drives season.gpkg now. Wait for its end: one command" in err
 
 
-def test_a_robot_that_goes_on_for_another_is_told_where_it_is_taken_to_stand(run, season):
-    on = date.fromisoformat(BEGINS)
-    day = SeasonDay(Season(season), on, "fieldmon/A", name="A")
-    stop = day.ask()
-    day.tell(found=False)
-    words = ("--date", BEGINS, "--robot", "vda5050", "--broker", "127.0.0.1:1")
-    told = f"fieldmon/A was driven on {BEGINS} before. fieldmon/B is taken to stand at plant "
-    _, _, err, _ = run("drive", season, *words, "--serial", "B")
-    assert f"{told}{stop.plant}, where that ended." in err
-    _, _, err, _ = run("drive", season, *words, "--serial", "A")
-    assert "was driven" not in err
-
-
-def test_a_team_is_driven_by_its_robots_and_not_by_one_that_is_made_up(run, season):
-    run("change", season, "--robots", "2")
-    kept = season.read_bytes()
-    code, _, err, _ = run("drive", season, "--date", BEGINS, "--made-up")
-    assert code == 2
-    assert "Give --robot vda5050" in err
-    assert season.read_bytes() == kept
-
-
-def test_a_teams_robots_have_their_own_serial_numbers_and_none_is_given(run, season):
-    run("change", season, "--robots", "2")
-    words = ("--robot", "vda5050", "--serial", "A", "--broker", "127.0.0.1:1")
-    code, _, err, _ = run("drive", season, "--date", BEGINS, *words)
-    assert code == 2
-    assert "names as serial numbers (robot-1, robot-2), but --serial was given too" in err
-
-
 def test_a_day_on_a_plot_that_is_stopped_writes_what_was_driven(run, tmp_path, monkeypatch):
     visit, left = ChargedRobot.visit, iter([True] * 3)
 
@@ -232,39 +164,6 @@ def test_a_day_on_a_plot_that_is_stopped_writes_what_was_driven(run, tmp_path, m
     assert "nothing was written" not in err
     assert len(table(tmp_path / "day.stops.csv")) == 3
     assert len([*read_bag(tmp_path / "day.mcap", ("/finds",))]) == 3
-
-
-@pytest.mark.parametrize("stops", [0, 1, 2])
-def test_a_team_that_breaks_off_writes_the_tables_of_those_that_drove(
-    run, season, tmp_path, monkeypatch, stops
-):
-    def drive_team(day, *told):
-        stop, day.stops = day.member("robot-1").ask(), stops
-        driven = DrivenDay([DrivenStop(stop, Visit(found=False), 40.0, 40.0)])
-        told[-1].update({"robot-1": driven, "robot-2": DrivenDay(broken="It has no order.")})
-        if stops > 1:
-            raise KeyboardInterrupt
-        return told[-1]
-
-    monkeypatch.setattr("fieldmon.drive.vda5050.team.drive_team", drive_team)
-    run("change", season, "--robots", "2")
-    words = ("--date", BEGINS, "--robot", "vda5050", "-o", "day.csv")
-    code, out, err, made = run("drive", season, *words)
-    assert code == (130 if stops else 2), err
-    assert "nothing was written" not in err
-    assert ("It has no order." in err) == (not stops)
-    wanted = {f"day-robot-{n}{end}" for n in (1, 2) for end in (".csv", ".stops.csv")}
-    assert {one.name for one in made} == wanted  # also of who came to no plant, as of one robot
-    assert [table(tmp_path / f"day-robot-{n}.csv")[0]["stops"] for n in (1, 2)] == ["1", "0"]
-    assert (f"0 results of {BEGINS} in the season" in out) == bool(stops)
-
-
-def test_a_team_of_scouts_has_nobody_who_drives(run, season, tmp_path):
-    (tmp_path / "team.csv").write_text("name,who\nAnn,scout\nDan,scout\n")
-    run("change", season, "--robots", "team.csv")
-    code, _, err, _ = run("drive", season, "--date", BEGINS, "--robot", "vda5050")
-    assert code == 2
-    assert "driven by robots, but the team has none: Ann, Dan." in err
 
 
 @pytest.mark.parametrize("words", [["--hours", "0.1"], ["--sampler", "naive"], ["--scout"]])

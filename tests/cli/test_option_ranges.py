@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.cli.option_ranges import of_robot, refusing, within
-from fieldmon.cli.options import WorkerOptions
+from fieldmon.cli.worker_options import WorkerOptions
 from fieldmon.decisions.sprayer import Sprayer, TreatmentCosts
 from fieldmon.errors import SettingError
 from fieldmon.io.spray_rate import RATE_L_HA

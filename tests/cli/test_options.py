@@ -9,7 +9,6 @@ from fieldmon.cli.options import (
     FileOptions,
     PlotFiles,
     RowOptions,
-    WorkerOptions,
     refuse_idle_every,
     sampler_of,
     sampler_settings,
@@ -17,16 +16,7 @@ from fieldmon.cli.options import (
 from fieldmon.errors import SettingError
 from fieldmon.io.options import PlotOptions, ReadOptions, RecordOptions
 from fieldmon.io.plot_request import PlantingChoices, PlotSources, RecordSource
-from fieldmon.plot.robot import Robot, scout
 from fieldmon.samplers import SAMPLERS
-
-
-def test_a_worker_is_the_robot_or_the_scout_but_for_what_is_said():
-    assert WorkerOptions().robot() == Robot()
-    assert WorkerOptions(scout=True).robot() == scout()
-    said = WorkerOptions(hours=3.0, speed=7.2, turn=0.0).robot()
-    assert (said.hours, said.speed_m_s, said.turn_180_s) == (3.0, 2.0, 0.0)
-    assert said.look_s == Robot().look_s
 
 
 def test_rows_are_as_said_and_left_open_where_nothing_is():

@@ -9,6 +9,7 @@ import pytest
 
 from fieldmon.cli import progress
 from fieldmon.monitoring.changes import transactions
+from fieldmon.monitoring.file import connections
 
 COMMANDS = {
     "plan": (),
@@ -35,8 +36,8 @@ def held(season, tmp_path):
 
 
 def test_every_command_says_who_keeps_it_waiting_within_its_patience(run, held, monkeypatch):
-    assert transactions._PATIENCE_S + transactions._GLANCE_S <= 31.0
-    monkeypatch.setattr(transactions, "_PATIENCE_S", 0.3)
+    assert connections._PATIENCE_S + transactions._GLANCE_S <= 31.0
+    monkeypatch.setattr(connections, "_PATIENCE_S", 0.3)
     monkeypatch.setattr(transactions, "_GLANCE_S", 0.1)
     for command, words in COMMANDS.items():
         began = monotonic()
@@ -48,7 +49,7 @@ def test_every_command_says_who_keeps_it_waiting_within_its_patience(run, held, 
 
 
 def test_the_seconds_are_counted_on_the_screen_while_it_waits(run, held, monkeypatch):
-    monkeypatch.setattr(transactions, "_PATIENCE_S", 2.0)
+    monkeypatch.setattr(connections, "_PATIENCE_S", 2.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     monkeypatch.setattr(progress, "_SILENT_S", 0.0)
     _, _, err, _ = run("status", held)

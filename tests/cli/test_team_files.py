@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from shapely import MultiPolygon, box
 
-from fieldmon.cli.options import WorkerOptions
 from fieldmon.cli.team_files import files_of_each, members_of, tell_member
+from fieldmon.cli.worker_options import WorkerOptions
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season

@@ -8,7 +8,7 @@ from pathlib import Path
 from fieldmon.drive.day import DrivenDay, DrivenStop
 from fieldmon.drive.day_tables import day_table, in_words, is_driven_table, stop_table, stops_path
 from fieldmon.drive.errand import Visit
-from fieldmon.monitoring.estimates.monitor import PlantToInspect
+from fieldmon.monitoring.estimates.asked_day import PlantToInspect
 
 STOP = PlantToInspect(7, 2, 3, (0.0, 0.0), 10.0, 40.0, 0.84)
 DAY = DrivenDay(

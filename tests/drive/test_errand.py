@@ -3,7 +3,7 @@
 import numpy as np
 
 from fieldmon.drive.errand import Errand, Visit
-from fieldmon.monitoring.estimates.monitor import PlantToInspect
+from fieldmon.monitoring.estimates.asked_day import PlantToInspect
 
 
 def test_an_errand_says_itself_as_people_count():

@@ -5,7 +5,7 @@ import numpy as np
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.drive.insects import Insects
 from fieldmon.infestation.insects.spread import Spread
-from fieldmon.monitoring.estimates.monitor import PlantToInspect
+from fieldmon.monitoring.estimates.asked_day import PlantToInspect
 from fieldmon.simulation.start import Start
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring.file import phone_tables, schema
-from fieldmon.monitoring.phones.findings import Finding
+from fieldmon.monitoring.phones.sent_findings import Finding
 from tests.monitoring.seasons import BEGINS
 
 #: 09:00 on the plot (Israel, summer time)

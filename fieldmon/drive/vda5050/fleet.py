@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fieldmon.compute.ranges import AllowedRange
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.vda5050.crossing import Crossing
 from fieldmon.drive.vda5050.messages import (
@@ -28,6 +27,7 @@ from fieldmon.drive.vda5050.messages import (
     side_of,
 )
 from fieldmon.drive.vda5050.mqtt import Wire
+from fieldmon.drive.vda5050.robot_clock import RobotClock, day_s
 from fieldmon.errors import FieldmonError, ObservationError, SettingError
 from fieldmon.plot.clearance import STRAY_M
 from fieldmon.plot.grid import plant_numbers
@@ -53,9 +53,6 @@ _FREE_M = 0.3
 _OVER = {"FINISHED", "FAILED"}
 # errors with which a robot cannot go on with its order; 2.1 has only the last
 _ENDS = {"CRITICAL", "FATAL"}
-_DAY_S = AllowedRange(0.0, 86_400.0)
-# seconds by which its first result may be ahead of our clock before that is said
-_AHEAD_S = 1800.0
 
 
 class Vda5050Robot:
@@ -103,13 +100,12 @@ class Vda5050Robot:
         self.stops: Callable[[], int] = lambda: 0
         self._has_order, self._is_lost, self._told_until = False, False, False
         self._state: dict[str, Any] | None = None
-        self._told, self._odd_clock = "", False
+        self._told = ""
         self._traffic = traffic
-        #: seconds of the day that are gone by the plot's clock; None: by the robot's own
-        self.clock: Callable[[], float] | None = None
+        self._day_clock = RobotClock(say)
         #: told where the robot says that it is: seconds, and ``(2,)`` metres of the plot's frame
         self.sees: Callable[[float, Float], None] | None = None
-        self._begun, self._began, self._order_s = time.monotonic(), datetime.now(UTC), math.nan
+        self._began = datetime.now(UTC)
 
     def begin(self, aisles: Aisles, at_m: Float, gone_s: float) -> None:
         """Take the plot's metres for those east and north of its datum."""
@@ -118,13 +114,20 @@ class Vda5050Robot:
         self._places = lambda line_m: east_north.xy_m(frame.lonlat(line_m))
         self._east_north, self._grid = east_north, aisles.grid
         self._known["strays_m"] = _FREE_M if aisles.clearance is None else STRAY_M
-        self._gone_s, self._begun = gone_s, time.monotonic()
-        self._began = datetime.now(UTC)
-        self._own_clock, self._heard_at = False, time.monotonic()
-        self._clock_behind_s, self._order_s = 0.0, math.nan
+        self._day_clock.begin(gone_s)
+        self._began, self._heard_at = datetime.now(UTC), time.monotonic()
         self._towards_m: Float | None = None
         if self._traffic is not None:
             self._crossing = Crossing(self._traffic, self._name, aisles, at_m)
+
+    @property
+    def clock(self) -> Callable[[], float] | None:
+        """Seconds of the day that are gone by the plot's clock; None: by the robot's own."""
+        return self._day_clock.of_plot
+
+    @clock.setter
+    def clock(self, of_plot: Callable[[], float] | None) -> None:
+        self._day_clock.of_plot = of_plot
 
     @property
     def has_order(self) -> bool:
@@ -153,7 +156,7 @@ class Vda5050Robot:
 
         def finished(state: dict[str, Any]) -> dict[str, Any] | None:
             if not there and state["lastNodeSequenceId"] >= node["sequenceId"]:
-                there.append(self._state_s(state))
+                there.append(self._day_clock.state_s(state))
             return self._finished(state, action)
 
         said = self._done(order, finished)
@@ -171,7 +174,7 @@ class Vda5050Robot:
                 f"{result.wrong}: the plant counts as not inspected."
             )
         found = result.found if is_done else None
-        done_s = self._at_s(result.day_s)
+        done_s = self._day_clock.result_s(result.day_s)
         there_s = min(there[0], done_s) if there else None
         return Visit(found, done_s, stuck=self._ended(self._over()), there_s=there_s)
 
@@ -193,7 +196,7 @@ class Vda5050Robot:
             return self._not_there(said)
         if self._traffic is not None:
             self._crossing.arrived(GATE)
-        return Visit(None, self._at_s(_day_s(said)))
+        return Visit(None, self._day_clock.result_s(day_s(said)))
 
     def _cleared(self, line_m: Float, plant: int) -> tuple[Float, str | None]:
         """Return what is left of a way once all aisles on it are the robot's; or why it never is.
@@ -229,7 +232,7 @@ class Vda5050Robot:
 
     def _not_there(self, why: str) -> Visit:
         """Return what came of an errand on which the robot did not get to its end."""
-        return Visit(None, self._now_s(), stuck=self._ended(why), there=False)
+        return Visit(None, self._day_clock.now_s(), stuck=self._ended(why), there=False)
 
     def _ended(self, why: str) -> str:
         """Say at once that the robot moves no more today, and where, if there is a reason."""
@@ -429,7 +432,7 @@ class Vda5050Robot:
         """Say that a robot was never heard yet; raise `SettingError` once it takes too long."""
         if self._state is not None:
             return
-        name, waited_s = "/".join(self._wire.robot[:2]), time.monotonic() - self._begun
+        name, waited_s = "/".join(self._wire.robot[:2]), self._day_clock.waited_s
         if waited_s > self._patience_s:
             raise SettingError(
                 f"A robot called {name} must be at the broker, but none was heard for "
@@ -469,9 +472,8 @@ class Vda5050Robot:
         if kind != "state" or self._late(message):
             return False
         self._state, self._is_lost = message, False
-        if math.isnan(self._order_s) and message["orderId"] == self._known["orderId"]:
-            self._order_s = _seconds(_day_s(message))
-            self._clock_behind_s = max(0.0, self._gone_s - self._order_s)
+        if message["orderId"] == self._known["orderId"]:
+            self._day_clock.hear_order(message)
         self._see(message)
         if self._stands():
             self._tell("The robot is paused, or driven by hand; waiting.")
@@ -486,7 +488,7 @@ class Vda5050Robot:
         if self.sees is None or not is_ours or place is None or not place["positionInitialized"]:
             return
         lonlat = self._east_north.lonlat(np.array([[place["x"], place["y"]]]))
-        self.sees(self._state_s(state), self._grid.frame.xy_m(lonlat)[0])
+        self.sees(self._day_clock.state_s(state), self._grid.frame.xy_m(lonlat)[0])
 
     def _stands(self) -> bool:
         """Tell whether somebody has stopped the robot."""
@@ -525,69 +527,6 @@ class Vda5050Robot:
             f"The robot's battery is at {low:g} %, under {self._least_battery:g} %: the day ends "
             "here. Charge it."
         )
-
-    def _state_s(self, state: dict[str, Any]) -> float:
-        """Return when a state was told, as `_at_s` counts, where the robot told its clock."""
-        told_s = math.nan if self.clock is not None else _seconds(_day_s(state))
-        at_s = told_s + self._clock_behind_s
-        return self._now_s() if _DAY_S.broken(told_s) else at_s
-
-    def _at_s(self, told_s: object) -> float:
-        """Return the robot's own clock if it says one and it counts; else ours.
-
-        It never goes backwards.
-        """
-        if self.clock is not None:
-            self._gone_s = self._now_s()
-        if self.clock is not None or told_s is None:
-            return self._now_s()
-        at_s = _seconds(told_s)
-        if _DAY_S.broken(at_s):
-            if not self._odd_clock:
-                self._odd_clock = True
-                self._say(
-                    "The robot's day_s must be the seconds since its day began, 0 to 86400, but it "
-                    f"is {str(told_s)[:20]}. Where it is not, our own clock counts."
-                )
-            return self._now_s()
-        if not self._own_clock and at_s < self._gone_s:  # as of one that was started anew
-            took_s = at_s - self._order_s  # by its own clock, if it told that before
-            is_told = took_s >= 0.0
-            self._clock_behind_s = (self._gone_s + took_s if is_told else self._now_s()) - at_s
-            self._say(
-                "The robot's clock (day_s) is behind the last result of the day: it is counted on "
-                "from there."
-            )
-        ahead_s = at_s - self._now_s()
-        if not self._own_clock and ahead_s > _AHEAD_S:
-            self._say(
-                f"By the robot's clock (day_s) {ahead_s / 3600.0:.1f} h more of the day have gone "
-                "than by ours: they count as worked. If its day begins with this drive, so must "
-                "its day_s."
-            )
-        self._own_clock = True
-        at_s += self._clock_behind_s
-        self._gone_s, self._begun = max(at_s, self._gone_s), time.monotonic()
-        return self._gone_s
-
-    def _now_s(self) -> float:
-        if self.clock is not None:
-            return max(self.clock(), self._gone_s)
-        return self._gone_s + time.monotonic() - self._begun
-
-
-def _day_s(state: dict[str, Any]) -> object:
-    """Return what a state says of the robot's own clock; None: nothing."""
-    told = [one for one in state.get("information", []) if one.get("infoType") == "day_s"]
-    return told[-1].get("infoDescription") if told else None
-
-
-def _seconds(told: object) -> float:
-    """Return seconds that were told; NaN where they are none."""
-    try:
-        return float(str(told))
-    except ValueError:
-        return math.nan
 
 
 @contextmanager

@@ -3,58 +3,50 @@
 Decisions
 ---------
 - A column is known by its name in several languages, its unit by brackets or the end of the name
-  (``Temp (°C)``, ``wind_km_h``), or by a line of units below the names. A unit of something else
-  is refused. Without one, temperatures tell theirs if they can; a wind is left out until its unit
-  is told, for nothing tells it; rain is taken as mm, and it is said.
+  (``Temp (°C)``, ``wind_km_h``), or by a line of units below the names.
 - Values that no weather on earth has are left out if they are few. If they are many, the unit or
   the column is wrong, and the file is refused.
-- What services leave unsaid of their tables is in `weather_services`, times are in `weather_times`.
+- What services leave unsaid of their tables is in `weather_services`, times are in
+  `weather_times`, units in `weather_units`, what was forecast in `weather_forecast`.
 """
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ChoiceNeeded, FileProblem
-from fieldmon.infestation.records import PRESENT
+from fieldmon.errors import FileProblem
 from fieldmon.io.formats.layer import text
 from fieldmon.io.formats.open_layer import open_layer
 from fieldmon.io.import_report import (
     Imported,
     ImportMessage,
-    Remedy,
     doubtful,
     dropped,
-    guessed,
     seen,
 )
-from fieldmon.io.parse.columns import plain
-from fieldmon.io.parse.result_words import meaning
 from fieldmon.io.parse.values import numbers
 from fieldmon.io.parse.weather_columns import (
     KIND_OF,
     UNITS,
-    WRITTEN,
     WeatherColumn,
     half_days,
     weather_columns,
 )
 from fieldmon.io.readers.running_rain import what_fell
+from fieldmon.io.readers.weather_forecast import column_of_forecast, forecast_lines, is_forecast
 from fieldmon.io.readers.weather_json import is_weather_json, rows_of_json
 from fieldmon.io.readers.weather_rows import WeatherRows
 from fieldmon.io.readers.weather_services import columns_of_service, service_of
 from fieldmon.io.readers.weather_stations import must_be_one_station
 from fieldmon.io.readers.weather_times import is_time_name, time_columns, times_of
+from fieldmon.io.readers.weather_units import MOST_NONSENSE, is_rate, units_of
 from fieldmon.io.sandbox.unpack import members
 from fieldmon.pests.weather import HOUR_S, MEASURED
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
-
     from numpy.typing import NDArray
 
     from fieldmon.io.formats.layer import Layer
@@ -65,14 +57,6 @@ if TYPE_CHECKING:
     from fieldmon.io.sandbox.workroom import Workroom
     from fieldmon.pests.weather import Floats, Weather
 
-# as a share of what was measured: more than so much nonsense is a wrong unit
-_MOST_NONSENSE = 0.05
-# without a unit: no place is warmer than this on average, or ever
-_WARMEST_MEAN_C, _WARMEST_C, _SURELY_F, _WARMEST_F = 35.0, 50.0, 60.0, 135.0
-# nowhere are days so much warmer than their nights, month by month
-_FARTHEST_APART_F = 54.0
-# no weather without a unit lies beyond in Kelvin: -40 to 60 °C
-_KELVIN = (233.15, 333.15)
 # numbers that stand for what is missing: no weather is ever so
 _MARKS = (-99999.0, -9999.9, -9999.0, -999.9, -999.0, -99.9, -99.0, 999.0, 999.9, 9999.0, 9999.9,
           99999.0)  # fmt: skip
@@ -82,13 +66,6 @@ _CALM = frozenset({"calm", "---", "windstill", "רגוע", "vrb"})
 _VARIABLE = 990.0
 _POINTS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
            "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW")  # fmt: skip
-# in plain names of columns, and in their cells
-_FORECAST = re.compile(r"forecast|prognos|vorhersag|previs|pronostic|verwacht|תחזית|חזוי|توقع")
-_FORECAST_IN_SHORT = frozenset({"f", "fc", "prev"})
-_MEASURED = re.compile(
-    r"measured|observ|actual|gemessen|messung|beobacht|mesure|medid|misurat|gemeten|waargenomen"
-    r"|נמדד|מדוד|مقاس|مرصود|^(m|o|obs|real|past|reel)$"
-)
 
 
 def weather_in(source: Source, options: WeatherOptions, workroom: Workroom) -> Imported[Weather]:
@@ -134,15 +111,15 @@ def rows_of_table(layer: Layer, options: WeatherOptions) -> tuple[WeatherRows, l
     messages += [seen(worded("Columns of weather: {names}.", names=names_read)), *said]
     timed = times_of(layer, when, options, service)
     taken = {*when.names, *(one.name for one in columns)}
-    telling = _column_of_forecast(layer, taken)
-    taken |= {*filter(_is_forecast, layer.columns), *([telling] if telling else [])}
+    telling = column_of_forecast(layer, taken)
+    taken |= {*filter(is_forecast, layer.columns), *([telling] if telling else [])}
     must_be_one_station(layer, timed.at, taken)
     messages += timed.messages
     if _step_s(timed.at) > HOUR_S:
         messages += _about_one_extreme(columns)
     measured, said = _measured(layer, columns, timed, service, options)
     messages += said
-    forecast, said = _forecast(layer, telling)
+    forecast, said = forecast_lines(layer, telling)
     messages += said
     return WeatherRows(timed.at, measured, forecast, timed.zone, options.zone or ""), messages
 
@@ -165,12 +142,12 @@ def _measured(
         values = numbers(layer.columns[column.name], options.decimal)
         cells[column], said = _without_marks(values, column)
         messages += said
-        if column.measure == "rain_mm" and not (service.title or _is_rate(column, options)):
+        if column.measure == "rain_mm" and not (service.title or is_rate(column, options)):
             cells[column], said = what_fell(
                 column.name, cells[column], timed.at, options.rain_is, timed.zone
             )
             messages += said
-    unit_of, said = _units_of(cells, options)
+    unit_of, said = units_of(cells, options)
     messages += said
     for column, unit in unit_of.items():
         measured[column.measure] = UNITS[unit].ours(cells[column], _step_s(timed.at))
@@ -263,175 +240,6 @@ def _without_units(layer: Layer) -> tuple[Layer, dict[str, str]]:
     return layer.take(np.arange(1, len(layer))), bare
 
 
-def _is_rate(column: WeatherColumn, options: WeatherOptions) -> bool:
-    """Return whether a column says how much fell in some time."""
-    unit = UNITS.get(column.unit or options.unit("rain"))
-    return unit is not None and unit.per_s > 0
-
-
-def _units_of(
-    cells: dict[WeatherColumn, Floats], options: WeatherOptions
-) -> tuple[dict[WeatherColumn, str], list[ImportMessage]]:
-    """Return the unit of each column that need not be left out, and what is to be said."""
-    units, said, bare = {}, [], {}
-    for column, values in cells.items():
-        kind = KIND_OF[column.measure]
-        told = column.unit.casefold().replace(" ", "") or options.unit(kind)
-        said += _about_other_unit(column, options.unit(kind))
-        if kind == "temperature" and not told:
-            bare[column] = values
-            continue
-        unit, about = _unit_of(column, kind, told)
-        said += about
-        if unit:
-            units[column] = unit
-    if bare:
-        unit, about = _temperature_unit({one.name: values for one, values in bare.items()})
-        said += about
-        units |= dict.fromkeys(bare, unit)
-    return units, said
-
-
-def _about_other_unit(column: WeatherColumn, chosen: str) -> list[ImportMessage]:
-    """Return a doubt about a unit that was chosen for a column which states another."""
-    stated, wanted = UNITS.get(column.unit.casefold().replace(" ", "")), UNITS.get(chosen)
-    if stated is None or wanted is None or stated == wanted:
-        return []
-    said = worded(
-        "{name} was read in {unit!r}, its own unit, and not in {chosen!r}, which was chosen.",
-        name=column.name,
-        unit=column.unit,
-        chosen=chosen,
-    )
-    return [doubtful(said)]
-
-
-def _unit_of(column: WeatherColumn, kind: str, told: str) -> tuple[str, list[ImportMessage]]:
-    """Return the unit of a column, empty where it must be left out, and what is to be said."""
-    if told:
-        if told not in UNITS or UNITS[told].kind != kind:
-            if kind == "humidity":
-                said = worded(
-                    "The unit of {name} is {told!r} and not %. It was left out; nothing needs it.",
-                    name=column.name,
-                    told=told,
-                )
-                return "", [dropped(said)]
-            raise FileProblem(
-                worded(
-                    "The column {name!r} must be in {known}, but its unit is {told!r}. Correct "
-                    "the name of the column, or its unit.",
-                    name=column.name,
-                    known=WRITTEN[kind],
-                    told=told,
-                )
-            )
-        return told, []
-    if kind == "speed":
-        remedy = Remedy("wind_unit", "km/h", worded("Name the unit"), ("m/s", "mph", "kn"))
-        said = worded("{name} has no unit, so the wind was left out.", name=column.name)
-        return "", [dropped(said, None, remedy)]
-    if kind == "rain":
-        remedy = Remedy("rain_unit", "in", worded("Read as inches"))
-        said = worded("{name} has no unit; read as millimetres.", name=column.name)
-        return "mm", [guessed(said, None, remedy)]
-    return "%", []
-
-
-def _temperature_unit(columns: dict[str, Floats]) -> tuple[str, list[ImportMessage]]:
-    """Return the unit that a table's temperatures tell together; ask where it could be either."""
-    knowns = {name: _known(values) for name, values in columns.items()}
-    names = ", ".join(columns)
-    name = max(columns, key=lambda one: float(knowns[one].max(initial=-np.inf)))
-    most = float(knowns[name].max(initial=-np.inf))
-    highest = _highest(columns[name], knowns[name])
-    if all(_looks_like_kelvin(known) for known in knowns.values() if known.size):
-        raise ChoiceNeeded(
-            worded(
-                "{names} {n:has|have} no unit and {n:goes|go} up to {most:g}, as temperatures in "
-                "Kelvin do. Are they in Kelvin, or in tenths of a degree?",
-                names=names,
-                n=len(columns),
-                most=highest,
-            ),
-            "temperature_unit",
-            ("K", "0.1 C", "0.1 F"),
-        )
-    if most > _WARMEST_F:
-        raise ChoiceNeeded(
-            worded(
-                "{name} has no unit and goes up to {most:g}, which is neither Celsius nor "
-                "Fahrenheit. Is it in tenths?",
-                name=name,
-                most=highest,
-            ),
-            "temperature_unit",
-            ("0.1 C", "0.1 F", "K"),
-        )
-    if most > _SURELY_F:
-        _must_be_near(knowns)
-        said = worded(
-            "{names} {n:has|have} no unit; read as Fahrenheit, for {name} goes up to {most:g}.",
-            names=names,
-            n=len(columns),
-            name=name,
-            most=highest,
-        )
-        remedy = Remedy("temperature_unit", "C", worded("Read as Celsius"), ("0.1 C",))
-        return "f", [guessed(said, None, remedy)]
-    if most > _WARMEST_C or any(k.size and k.mean() > _WARMEST_MEAN_C for k in knowns.values()):
-        raise ChoiceNeeded(
-            worded(
-                "{names} {n:has|have} no unit, and what {n:it holds|they hold} could be Celsius "
-                "or Fahrenheit. Which is it?",
-                names=names,
-                n=len(columns),
-            ),
-            "temperature_unit",
-            ("F", "C"),
-        )
-    remedy = Remedy("temperature_unit", "F", worded("Read as Fahrenheit"))
-    said = worded("{names} {n:has|have} no unit; read as Celsius.", names=names, n=len(columns))
-    return "c", [guessed(said, None, remedy)]
-
-
-def _known(values: Floats) -> Floats:
-    """Return what was measured, in order, without the highest: a few broken ones tell nothing."""
-    known = np.sort(values[~np.isnan(values)])
-    return known[: len(known) - int(_MOST_NONSENSE * len(known))]
-
-
-def _highest(values: Floats, known: Floats) -> float:
-    """Return the highest of values that is not far beyond what is `known`, in order."""
-    if not known.size:
-        return float("nan")
-    most = float(known[-1])
-    return float(np.nanmax(values[values <= most + 2.0 * (most - float(np.median(known)))]))
-
-
-def _looks_like_kelvin(known: Floats) -> bool:
-    """Tell whether values in order, all but a few of the lowest, are temperatures in Kelvin."""
-    least = known[int(_MOST_NONSENSE * len(known))]
-    return bool(_KELVIN[0] <= least and known[-1] <= _KELVIN[1])
-
-
-def _must_be_near(knowns: dict[str, Floats]) -> None:
-    """Refuse temperatures that are too far apart to be all in Fahrenheit."""
-    middles = {name: float(np.median(known)) for name, known in knowns.items() if known.size}
-    low, high = min(middles, key=middles.__getitem__), max(middles, key=middles.__getitem__)
-    if (apart_f := middles[high] - middles[low]) <= _FARTHEST_APART_F:
-        return
-    raise FileProblem(
-        worded(
-            "{low} and {high} must be in one unit, but as Fahrenheit {high} is mostly {apart:.0f} "
-            "degrees warmer. Write the unit of each behind its name, as {high} (F).",
-            low=low,
-            high=high,
-            apart=apart_f,
-        )
-    )
-
-
 def _directions(layer: Layer, column: WeatherColumn, options: WeatherOptions) -> Floats:
     """Return where the wind came from, degrees; compass points are read too, calm is none."""
     cells = [text(v) for v in layer.columns[column.name]]
@@ -448,65 +256,6 @@ def _directions(layer: Layer, column: WeatherColumn, options: WeatherOptions) ->
     return values
 
 
-def _is_forecast(name: str) -> bool:
-    """Return whether a column of this name says what was forecast."""
-    return _FORECAST.search(plain(name)) is not None
-
-
-def _column_of_forecast(layer: Layer, taken: Collection[str]) -> str | None:
-    """Return the column that says what was forecast, by its name or, as *type* does, by each cell.
-
-    `taken` hold something else.
-    """
-    named = next((name for name in layer.columns if _is_forecast(name)), None)
-    free = (name for name in layer.columns if name not in taken)
-    return named or next((name for name in free if _tells_forecast(layer.columns[name])), None)
-
-
-def _tells_forecast(cells: NDArray[np.object_]) -> bool:
-    """Return whether each cell says in words that it was forecast or measured, and some the one."""
-    is_forecast = False
-    for name in (plain(text(cell)) for cell in cells):
-        if not _MEASURED.search(name):
-            if not _FORECAST.search(name):
-                return False
-            is_forecast = True
-    return is_forecast
-
-
-def _forecast(layer: Layer, column: str | None) -> tuple[NDArray[np.bool_], list[ImportMessage]]:
-    """Return which rows a column calls forecast, and a doubt about those of which it is unclear."""
-    if column is None:
-        return np.zeros(len(layer), bool), []
-    cells = [text(v) for v in layer.columns[column]]
-    # F is forecast, but false beside T
-    words = {cell.casefold() for cell in cells}
-    found = {cell: _is_word_for_forecast(cell, truths="t" in words) for cell in set(cells)}
-    unclear = [cell for cell in cells if cell and found[cell] is None]
-    flags = np.array([found[cell] is True for cell in cells], bool)
-    if not unclear:
-        return flags, []
-    said = worded(
-        "{name} says of {n} {n:line|lines} neither that {n:it was|they were} forecast nor that "
-        "{n:it was|they were} measured (the first says {cell!r}); taken as measured.",
-        name=column,
-        n=len(unclear),
-        cell=unclear[0],
-    )
-    return flags, [doubtful(said)]
-
-
-def _is_word_for_forecast(cell: str, *, truths: bool) -> bool | None:
-    """Return whether a cell says that its line was forecast; None: it is no word for either."""
-    name = plain(cell)
-    if _MEASURED.search(name):
-        return False
-    if _FORECAST.search(name) or (name in _FORECAST_IN_SHORT and not (truths and name == "f")):
-        return True
-    result = meaning(cell)
-    return None if result is None else result == PRESENT
-
-
 def _possible(rows: WeatherRows, name: str) -> tuple[WeatherRows, list[ImportMessage]]:
     """Return rows without values that no weather has; refuse them where those are many."""
     messages, measured = [], {}
@@ -515,7 +264,7 @@ def _possible(rows: WeatherRows, name: str) -> tuple[WeatherRows, list[ImportMes
         wrong = ~np.isnan(values) & ((values < low) | (values > high))
         n, of = int(np.count_nonzero(wrong)), int(np.count_nonzero(~np.isnan(values)))
         # nothing needs the humidity
-        if n > max(_MOST_NONSENSE * of, 1) and measure != "humidity_pct":
+        if n > max(MOST_NONSENSE * of, 1) and measure != "humidity_pct":
             worst = float(values[wrong][0])
             raise FileProblem(
                 worded(

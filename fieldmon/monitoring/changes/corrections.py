@@ -20,7 +20,7 @@ from fieldmon.monitoring.changes.outside_changes import OutsideChange
 from fieldmon.monitoring.file import rows_that_count
 from fieldmon.monitoring.file.geopackage import touch
 from fieldmon.monitoring.file.schema import INSPECTED, INSPECTIONS
-from fieldmon.monitoring.inspecting import batches, inspection_lots
+from fieldmon.monitoring.inspecting import batches, inspection_lots, undone_batches
 from fieldmon.monitoring.inspecting.contradictions import Contradictions, corrected_against
 from fieldmon.monitoring.inspecting.inspection_table import time_text
 from fieldmon.plot.local_clock import local_clock
@@ -111,7 +111,7 @@ def must_have_come(field: Field, on: date, at: time | None) -> None:
 
 def made(db: sqlite3.Connection, row: int) -> tuple[date, time | None]:
     """Return when one inspection that counts was made, by the clock; None: no time is known."""
-    batches.counting(db, row)
+    undone_batches.counting(db, row)
     wanted = "SELECT date, time FROM inspections WHERE fid = ?"
     day, at = db.execute(wanted, (row,)).fetchone()
     return date.fromisoformat(day[:10]), None if at is None else time.fromisoformat(at)

@@ -10,14 +10,15 @@ given away, as a certification report gives it, tells of that.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from datetime import datetime
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.wording import chance_figure, estimate, filled, worded, written
+from fieldmon.compute.wording import worded, written
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspection_columns import BESIDE, InspectionColumn
+from fieldmon.monitoring.changes.log_entry import LogEntry, Numbers
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.file.geopackage import touch
 from fieldmon.monitoring.settings import settings_log
@@ -32,113 +33,10 @@ if TYPE_CHECKING:
 #: in `fieldmon`: how many entries the log has, and the last one's digest
 _HEAD = "log"
 _NOTHING = "0" * 64
-#: what batches are numbered now, by their numbers of before; None: nobody knows
-Numbers = dict[int, int | None]
 #: before the number of a batch, in names of states
 _BATCH = "batch "
 #: what a log does not hold but is held to: by name, and how it is read
 _PLOT = ("arrays", "plots", "places", "observations")
-
-
-@dataclass(frozen=True)
-class LogEntry:
-    """One entry of the log.
-
-    Parameters
-    ----------
-    number
-        From 1.
-    at
-        When it was written, UTC.
-    kind
-        ``"begins"``, ``"seen"``, ``"noted"``, ``"planned"``, ``"advised"``, ``"treated"``,
-        ``"undone"``, ``"corrected"``, ``"changed"``, ``"labels"``, ``"merged"`` or ``"saved"``.
-    who
-        Whose doing; empty: nobody said.
-    what
-        What happened, by name.
-    digest
-        Of it and of all before it.
-    numbers
-        What batches that it names are numbered now, where a merge numbered them anew; None: nobody
-        knows, as an earlier version merged.
-    """
-
-    number: int
-    at: str
-    kind: str
-    who: str
-    what: dict[str, Any]
-    digest: str
-    numbers: Numbers = field(default_factory=dict)
-
-    def sentence(self, most: int | None = None) -> str:
-        """Return what happened, in words; of corrections so many at `most`, None: each."""
-        what = _Blank(self.what)
-        kind = "changed back" if self.kind == "changed" and what.get("back") else self.kind
-        kind = "corrected here" if kind == "corrected" and what.get("here") else kind
-        if isinstance(number := what.get("expected"), int | float):
-            what["expected"] = estimate(number)
-        if self.kind == "changed":  # earlier versions wrote the names of the parts alone
-            what.setdefault("said", self.what.get("names", "?"))
-        if self.kind == "corrected" and (said := what.get("said")):
-            more = [] if most is None or len(said) <= most else ["..."]
-            what["rows"] = "; ".join([*said[:most], *more])
-        anew = "; batches were numbered anew" if what.get("moved") else ""
-        undone = f"; undone there: {', '.join(gone)}" if (gone := what.get("undone")) else ""
-        chosen = f"; taken over: {'; '.join(over)}" if (over := what.get("chosen")) else ""
-        told = _SAID[kind]
-        if not what.get("source", "?"):  # recorded by a program that named no file
-            told = told.removeprefix("{source}: ")
-        said = filled(told, what) + chosen + undone + anew
-        for old, now in self.numbers.items():
-            said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
-        if self.kind in ("seen", "merged") and (added := what.get("more")):
-            said += f"; {added}"
-        if detects := what.get("detects"):
-            said += f"; told to find {', '.join(map(_percent, detects))} of what is there"
-        return said
-
-    def names(self, batch: int) -> bool:
-        """Return whether its sentence tells of a batch by that number."""
-        undone = self.kind == "undone" and f"Batch {batch} was " in self.what.get("said", "")
-        return undone or self.what.get("batch") == batch
-
-    def __str__(self) -> str:
-        """Return which entry it is, for a sentence about it."""
-        return f"entry {self.number} ({self.at[:16]} UTC, {self.kind})"
-
-
-def _percent(chance: float) -> str:
-    return str(chance_figure(chance))
-
-
-class _Blank(dict[str, Any]):
-    def __missing__(self, key: str) -> str:
-        return "?"
-
-
-_SAID = {
-    "begins": "the log begins: {why}",
-    "seen": "{source}: {found} found, {clean} clean, {skipped} could not be inspected, "
-    "batch {batch}",
-    "noted": "{source}: {more} to what was known, batch {batch}",
-    "planned": "{date}: {stops} {stops:stop|stops} by {sampler}, "
-    "about {expected} of them visibly infested",
-    "advised": "{date}: {said}",
-    "treated": "{date}: {said}, batch {batch}",
-    "undone": "{said}",
-    "corrected": "changes of another program taken as corrections: {rows}",
-    "corrected here": "corrected: {rows}",
-    "changed": "settings: {said}",
-    "changed back": "settings, the last change taken back: {said}",
-    "labels": "{labels} {labels:label|labels} from {source}",
-    "merged": "another copy of the season taken in: {new} {new:inspection|inspections}, "
-    "{entries} {entries:entry|entries}",
-    "saved": "saved from a damaged file",
-}
-
-
 # what is done by settings, which the entry names: see `settings_log.marks`
 _BY_SETTINGS = ("planned", "seen")
 

@@ -1,4 +1,4 @@
-"""A season's file as a database: opened, migrated, locked; every problem a sentence."""
+"""A season's file as a database: its transactions, versions and copies; problems are sentences."""
 
 from __future__ import annotations
 
@@ -6,10 +6,7 @@ import os
 import secrets
 import sqlite3
 import tempfile
-import threading
-import time
 from contextlib import closing, contextmanager, suppress
-from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,8 +15,8 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.io.atomic_write import HELD, require_folder, sqlite_code
 from fieldmon.monitoring.changes import outside_changes, season_log
-from fieldmon.monitoring.file import journals, qgis_project
-from fieldmon.monitoring.file.file_problems import damaged, no_file, sentences
+from fieldmon.monitoring.file import connections, journals, qgis_project
+from fieldmon.monitoring.file.file_problems import damaged, no_file
 from fieldmon.monitoring.file.geopackage import APPLICATION_ID
 from fieldmon.monitoring.file.migrations import MIGRATIONS
 from fieldmon.monitoring.file.schema import (
@@ -37,27 +34,13 @@ from fieldmon.monitoring.file.schema import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from contextlib import AbstractContextManager
+    from collections.abc import Iterator
 
 KIND = "season"
-# another window's transaction takes well under a second; a backup program may hold the file longer
-_PATIENCE_S = 30.0
 # whether a file is a season at all is asked of many files in passing
 _GLANCE_S = 0.5
-# whoever waits for a file asks again so often, and is told so once it takes longer than a moment
-_ASK_AGAIN_S, _MOMENT_S = 0.25, 1.0
 #: how a file of SQLite begins
 MAGIC = b"SQLite format 3\x00"
-# to merge a million inspections takes half of so many steps of SQLite, which last a minute; a
-# stranger's view or trigger may never end
-_MOST_STEPS, _STEPS = 3_000_000_000, 1_000_000
-# the files that a thread keeps open within `kept_open`, by path and inode; None: outside of it
-_KEPT = threading.local()
-# how long is waited for others at most within `waiting_at_most`, in its threads, too
-_MOST_S: ContextVar[float] = ContextVar("most_s")
-# the files that a thread reads as of one moment within `Store.one_moment`, by path
-_STILL = threading.local()
 
 
 def is_season(path: str | Path) -> bool:
@@ -67,7 +50,7 @@ def is_season(path: str | Path) -> bool:
             return False
         # through SQLite: whoever else opens and closes a database takes away the locks that other
         # threads of the same program hold on it
-        with closing(connect(Path(path), _GLANCE_S)) as db:
+        with closing(connections.connect(Path(path), _GLANCE_S)) as db:
             mark = db.execute("PRAGMA application_id").fetchone()[0]
             return mark == APPLICATION_ID and _version(db) is not None
     except sqlite3.Error as error:
@@ -89,7 +72,7 @@ def glance(path: Path, query: str, values: tuple[object, ...]) -> tuple[object, 
     """
     for how in ("mode=ro", "mode=ro&immutable=1"):
         address = f"{path.absolute().as_uri()}?{how}"
-        with suppress(sqlite3.Error, FileProblem), closing(connect(address, 0.0)) as db:
+        with suppress(sqlite3.Error, FileProblem), closing(connections.connect(address, 0.0)) as db:
             _refuse_views(db, path)
             row: tuple[object, ...] | None = db.execute(query, values).fetchone()
             return row
@@ -160,8 +143,11 @@ class Store:
         """
         target = Path(to).absolute()
         _refuse_old(target, to)
-        _must_be_there(self.path)
-        with _sentences(self.path, target), closing(connect(self.path)) as db:
+        connections.must_be_there(self.path)
+        with (
+            connections.sentences_of(self.path, target),
+            closing(connections.connect(self.path)) as db,
+        ):
             _into_one_file(db)
             if db.execute("PRAGMA journal_mode").fetchone()[0] == "wal":
                 held = sqlite3.OperationalError("database is locked")
@@ -190,7 +176,7 @@ class Store:
         _refuse_old(target, path)
         with _draft_folder(target) as folder:
             draft = Path(folder) / "season.gpkg"
-            with _sentences(target), closing(connect(draft)) as db:
+            with connections.sentences_of(target), closing(connections.connect(draft)) as db:
                 db.execute("BEGIN")
                 lay_out(db)
                 set_meta(db, "kind", KIND)
@@ -204,12 +190,12 @@ class Store:
     @contextmanager
     def reading(self, into: Path | None = None) -> Iterator[sqlite3.Connection]:
         """Give a consistent view of the file; what is read goes `into` another, if it is told."""
-        still = _still().get(self.path)
-        with _sentences(self.path, into):
+        still = connections.held_still().get(self.path)
+        with connections.sentences_of(self.path, into):
             if still is not None:
                 yield still
                 return
-            with _opened(self.path) as db:
+            with connections.opened(self.path) as db:
                 db.execute("BEGIN")
                 yield db
 
@@ -219,7 +205,7 @@ class Store:
 
         Whoever writes waits until it ends. What a thread does not write within it, it writes after.
         """
-        still = _still()
+        still = connections.held_still()
         if self.path in still:
             yield
             return
@@ -237,10 +223,13 @@ class Store:
 
         `patience_s`: how long to wait for others; None: as long as for any command.
         """
-        if self.path in _still():  # it would wait for itself
+        if self.path in connections.held_still():  # it would wait for itself
             raise RuntimeError("What is read as of one moment must not be written within it.")
-        _must_be_there(self.path)
-        with _sentences(self.path), closing(connect(self.path, patience_s)) as db:
+        connections.must_be_there(self.path)
+        with (
+            connections.sentences_of(self.path),
+            closing(connections.connect(self.path, patience_s)) as db,
+        ):
             # EXTRA: once this returns, not even a power cut brings the old state back
             db.execute("PRAGMA synchronous = EXTRA")
             _into_one_file(db)
@@ -266,142 +255,17 @@ class Store:
             raise damaged(self.path, said[0])
 
 
-@contextmanager
-def kept_open() -> Iterator[None]:
-    """Let this thread open each season's file once for all that it reads within this block.
-
-    Opening it costs many times what is mostly read. Each reading still sees what the file says at
-    that moment, and between them nothing is locked.
-    """
-    if _kept() is not None:
-        yield
-        return
-    _KEPT.files = {}
-    try:
-        yield
-    finally:
-        files, _KEPT.files = _KEPT.files, None
-        for db in files.values():
-            db.close()
-
-
-@contextmanager
-def waiting_at_most(seconds: float) -> Iterator[None]:
-    """Let nobody wait longer for another program that holds a season's file, within this block."""
-    before = _MOST_S.set(seconds)
-    try:
-        yield
-    finally:
-        _MOST_S.reset(before)
-
-
-def _patience_s() -> float:
-    return min(_PATIENCE_S, _MOST_S.get(_PATIENCE_S))
-
-
-def wait_until_free(
-    path: Path,
-    tell: Callable[[float], None],
-    *,
-    to_write: bool = False,
-    patience_s: float | None = None,
-) -> bool:
-    """Wait while another program holds a season's file; return whether it is free in the end.
-
-    `tell` hears again and again for how many seconds that has been; `patience_s`: how long to wait,
-    None: as long as for any command. What else is wrong with a file is said when it is opened.
-    """
-    patience_s = _patience_s() if patience_s is None else patience_s
-    if path in _still() or not path.is_file():
-        return True
-    began = time.monotonic()
-    with (
-        _sentences(path),
-        _opened(path) as db,
-        _patience(db, min(_ASK_AGAIN_S, patience_s)),
-    ):
-        while not _is_free(db, to_write=to_write):
-            waited_s = time.monotonic() - began
-            if waited_s >= patience_s:
-                return False
-            if waited_s >= _MOMENT_S:
-                tell(waited_s)
-    return True
-
-
-@contextmanager
-def _patience(db: sqlite3.Connection, seconds: float) -> Iterator[None]:
-    """Let a connection wait for others so long within this block."""
-    (usual_ms,) = db.execute("PRAGMA busy_timeout").fetchone()
-    db.execute(f"PRAGMA busy_timeout = {round(1000 * seconds)}")
-    try:
-        yield
-    finally:
-        db.execute(f"PRAGMA busy_timeout = {usual_ms}")
-
-
-def _is_free(db: sqlite3.Connection, *, to_write: bool) -> bool:
-    try:
-        db.execute("BEGIN IMMEDIATE" if to_write else "BEGIN")
-        db.execute("SELECT 1 FROM sqlite_master LIMIT 1").fetchone()
-    except sqlite3.DatabaseError as error:
-        return sqlite_code(error) not in HELD
-    finally:
-        if db.in_transaction:
-            db.execute("ROLLBACK")
-    return True
-
-
-def _still() -> dict[Path, sqlite3.Connection]:
-    if not hasattr(_STILL, "files"):
-        _STILL.files = {}
-    files: dict[Path, sqlite3.Connection] = _STILL.files
-    return files
-
-
-def _kept() -> dict[tuple[Path, int], sqlite3.Connection] | None:
-    return getattr(_KEPT, "files", None)
-
-
-@contextmanager
-def _opened(path: Path) -> Iterator[sqlite3.Connection]:
-    """Give a connection for one transaction: one that this thread keeps, if it may."""
-    _must_be_there(path)
-    files = _kept()
-    if files is None:
-        with closing(connect(path)) as db:
-            yield db
-        return
-    # another file of the same name is another season
-    of_file = path, path.stat().st_ino
-    # one that is at work belongs to whoever reads around this
-    if of_file in files:
-        db = files.pop(of_file)
-        _limit(db)
-    else:
-        db = connect(path)
-    try:
-        yield db
-    finally:
-        if of_file in files:
-            db.close()
-        else:
-            if db.in_transaction:
-                db.execute("ROLLBACK")
-            files[of_file] = db
-
-
 def copy_season(path: Path, to: Path, named: Path | None = None) -> None:
     """Copy a season as it is at this moment, by SQLite's own means; raise if it is damaged.
 
     `named`: what the copy will be called, for sentences.
     """
-    _must_be_there(path)
+    connections.must_be_there(path)
     written = named or to
     with (
-        _sentences(path, written),
-        closing(connect(path)) as db,
-        closing(connect(to)) as copy,
+        connections.sentences_of(path, written),
+        closing(connections.connect(path)) as db,
+        closing(connections.connect(to)) as copy,
     ):
         db.backup(copy)
         copy.execute("PRAGMA journal_mode = DELETE")
@@ -412,14 +276,8 @@ def copy_season(path: Path, to: Path, named: Path | None = None) -> None:
 
 def _name_in_project(path: Path, named: Path) -> None:
     """Let QGIS open the file that it opens the project of, not the one that was copied."""
-    with _sentences(path, named), closing(connect(path)) as db:
+    with connections.sentences_of(path, named), closing(connections.connect(path)) as db:
         qgis_project.rename(db, named.name)
-
-
-def _must_be_there(path: Path) -> None:
-    """Refuse a file that is away, if for a moment: SQLite would put an empty one in its place."""
-    if not path.is_file():
-        raise no_file(path)
 
 
 def _put(draft: Path, target: Path) -> None:
@@ -467,31 +325,6 @@ def get_meta(db: sqlite3.Connection, key: str) -> str | None:
     return None if row is None else str(row[0])
 
 
-def _sentences(path: Path, into: Path | None = None) -> AbstractContextManager[None]:
-    """Say what is wrong with a file, as `sentences` does of one that is waited for as usual."""
-    return sentences(path, _patience_s(), into)
-
-
-def connect(path: Path | str, patience_s: float | None = None) -> sqlite3.Connection:
-    """Open a file that may be a stranger's: whatever it makes SQLite do comes to an end.
-
-    A text is its address, as SQLite takes it.
-    """
-    # autocommit: transactions begin and end where the code says so
-    patience_s = _patience_s() if patience_s is None else patience_s
-    is_address = isinstance(path, str)
-    db = sqlite3.connect(path, timeout=patience_s, isolation_level=None, uri=is_address)
-    db.execute("PRAGMA trusted_schema = OFF")
-    _limit(db)
-    return db
-
-
-def _limit(db: sqlite3.Connection) -> None:
-    """Let what is done with a file from now on, until its next transaction, come to an end."""
-    left = iter(range(_MOST_STEPS // _STEPS))
-    db.set_progress_handler(lambda: next(left, None) is None, _STEPS)
-
-
 def _refuse_views(db: sqlite3.Connection, path: Path) -> None:
     """Refuse a file in which what must be a table of the season is a view, which may be endless."""
     ours = {table.name for table in TABLES}
@@ -514,7 +347,7 @@ def _into_one_file(db: sqlite3.Connection) -> None:
     That program may still have it open: then it stays so until it is closed.
     """
     if db.execute("PRAGMA journal_mode").fetchone()[0] == "wal":
-        with _patience(db, 0.0), suppress(sqlite3.OperationalError):
+        with connections.patience(db, 0.0), suppress(sqlite3.OperationalError):
             db.execute("PRAGMA journal_mode = DELETE")
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES
 from fieldmon.monitoring.changes import logged_days
 from fieldmon.monitoring.days.day_ahead import DayAhead, WorkPart
-from fieldmon.monitoring.phones.findings import CLOCK_IS_WRONG
 from fieldmon.monitoring.phones.scouts import overlapping, scouts_on
+from fieldmon.monitoring.phones.sent_findings import CLOCK_IS_WRONG
 from fieldmon.monitoring.settings.shift_work import made_by
 from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import local_clock

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import dataclass, replace
 from datetime import date, datetime, timedelta
 from functools import reduce
 from typing import TYPE_CHECKING
@@ -27,7 +27,13 @@ from fieldmon.monitoring.inspecting import batches, inspection_table
 from fieldmon.monitoring.phones import people, photos, scouts
 from fieldmon.monitoring.phones.people import as_written
 from fieldmon.monitoring.phones.scouts import Scout
-from fieldmon.monitoring.settings.settings import seconds
+from fieldmon.monitoring.phones.sent_findings import (
+    CLOCK_IS_WRONG,
+    Finding,
+    SentFindings,
+    what_is_said,
+    when_seen,
+)
 from fieldmon.monitoring.settings.settings_log import settings_of
 from fieldmon.planning.members import person_key
 from fieldmon.plot.local_clock import local_clock, utc_now, utc_text
@@ -38,77 +44,11 @@ if TYPE_CHECKING:
 
     from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring.season.season_file import Season, SeasonChange
-    from fieldmon.plot.local_clock import LocalClock
 
 SOURCE = "phone"
 #: what one person may tell in a day: ten times what anybody can inspect
 MOST_A_DAY = 20_000
-#: a clock as wrong as this was set wrong; less is the way through the network
-CLOCK_IS_WRONG = timedelta(minutes=2)
 _WEEK = timedelta(days=7)
-
-
-@dataclass(frozen=True)
-class Finding:
-    """What somebody tells of one plant, or that an earlier finding is taken back.
-
-    Parameters
-    ----------
-    id
-        Made where it was told, unlike any other: a UUID.
-    at
-        When, by the clock of the phone; it names its zone.
-    plant, result
-        Number in the grid, and `CLEAN`, `FOUND` or `SKIPPED`; None where it only takes back.
-    count, stage, leaves
-        Of a find: pests counted, their stage, leaves looked at.
-    notes
-        Text.
-    lonlat, accuracy_m
-        Where the phone was, and how well it knew.
-    on
-        The day it is meant for, where that is not today; another one than `at` has no time.
-    after
-        The least that the time can be, by the season's clock; None: nothing is known.
-    known_at
-        When, by the season's clock as far as the phone knew it then; None: it did not.
-    off_route
-        Whether the plant was not on the route.
-    undoes
-        Id of the finding that it takes back.
-    detects
-        Chance to see an infested plant that is inspected; None: it is that of the season.
-    """
-
-    id: str
-    at: datetime
-    plant: int | None = None
-    result: int | None = None
-    count: float | None = None
-    stage: str = ""
-    leaves: float | None = None
-    notes: str = ""
-    lonlat: tuple[float, float] | None = None
-    accuracy_m: float | None = None
-    on: date | None = None
-    off_route: bool = False
-    undoes: str = ""
-    after: datetime | None = None
-    detects: float | None = None
-    known_at: datetime | None = None
-
-    def content(self) -> str:
-        """Return what it says as JSON, the same for the same finding whichever version told it."""
-        return json.dumps(_said(asdict(self)), default=str, sort_keys=True, ensure_ascii=False)
-
-
-#: what a finding has where nothing is said
-_UNSAID = {one.name: one.default for one in fields(Finding)}
-
-
-def _said(content: dict[str, object]) -> dict[str, object]:
-    """Return what of a finding's content is said; older files hold what is not, too."""
-    return {name: value for name, value in content.items() if value != _UNSAID.get(name)}
 
 
 @dataclass(frozen=True)
@@ -161,7 +101,7 @@ def take(
     shift = fast if abs(fast) > CLOCK_IS_WRONG else timedelta()
     with season.changing() as change:
         scout = scouts.key_owner_in(change.db, season, key)
-        letter = _SentFindings([*findings], (received, sent), received, shift)
+        letter = SentFindings([*findings], (received, sent), received, shift)
         return _take(season, change, scout, letter)
 
 
@@ -203,7 +143,7 @@ def take_saved(season: Season, saved: PhoneFile, who: str = "") -> tuple[Taken, 
                 for one in here.findings
                 if as_written(known, one.who or who) == name
             ]
-            letter = _SentFindings(told, (received, received + shift), arrived, shift)
+            letter = SentFindings(told, (received, received + shift), arrived, shift)
             taken += _take(season, change, Scout(name, None, ""), letter)
         for one in here.photos:
             new, problem = False, ""
@@ -241,7 +181,7 @@ def of_others(season: Season, saved: PhoneFile) -> tuple[str, ...]:
 
 
 def _take(
-    season: Season, change: SeasonChange, scout: Scout, letter: _SentFindings
+    season: Season, change: SeasonChange, scout: Scout, letter: SentFindings
 ) -> tuple[Taken, ...]:
     """Keep what somebody tells, each finding once."""
     findings = letter.findings
@@ -274,28 +214,6 @@ def _take(
         )
         for one in findings
     )
-
-
-@dataclass(frozen=True)
-class _SentFindings:
-    """What came at once.
-
-    Parameters
-    ----------
-    findings
-        What is told.
-    clocks
-        Ours and the phone's as it came.
-    arrived
-        When it left the phone: none of it was told after that.
-    shift
-        By how much the phone's clock was ahead then.
-    """
-
-    findings: list[Finding]
-    clocks: tuple[datetime, datetime]
-    arrived: datetime
-    shift: timedelta
 
 
 def taken_back(season: Season, who: str, on: date) -> tuple[str, ...]:
@@ -336,7 +254,7 @@ def _known(db: sqlite3.Connection, ids: list[str]) -> dict[str, tuple[str, str]]
 
 
 def _differs(one: Finding, known: dict[str, tuple[str, str]]) -> str:
-    if _said(json.loads(known[one.id][0])) == json.loads(one.content()):
+    if what_is_said(json.loads(known[one.id][0])) == json.loads(one.content()):
         return ""
     return worded("Another finding has the same id; the first one was kept.")
 
@@ -354,7 +272,7 @@ def _limit(db: sqlite3.Connection, scout: Scout, now: datetime, news: int) -> No
 
 
 def _write(
-    season: Season, change: SeasonChange, scout: Scout, letter: _SentFindings
+    season: Season, change: SeasonChange, scout: Scout, letter: SentFindings
 ) -> tuple[dict[str, str], int, list[Inspections]]:
     """Write findings and their inspections.
 
@@ -398,7 +316,7 @@ def _of_another(db: sqlite3.Connection, scout: Scout, one: Finding) -> dict[str,
     return {one.id: said}
 
 
-def _inspection(season: Season, one: Finding, letter: _SentFindings) -> Inspections:
+def _inspection(season: Season, one: Finding, letter: SentFindings) -> Inspections:
     """Return a finding as an inspection; raise `ObservationError` where it names none."""
     if one.plant is None or one.result not in RESULT_NAMES:
         raise ObservationError(
@@ -415,7 +333,7 @@ def _inspection(season: Season, one: Finding, letter: _SentFindings) -> Inspecti
                 count=one.count,
             )
         )
-    day, second = _when(local_clock(season.plot.field), one, letter)
+    day, second = when_seen(local_clock(season.plot.field), one, letter)
     count = np.nan if one.count is None or one.result != FOUND else one.count
     return Inspections.of(
         np.array([one.plant]),
@@ -426,50 +344,6 @@ def _inspection(season: Season, one: Finding, letter: _SentFindings) -> Inspecti
         detects=np.array([np.nan if one.detects is None else one.detects]),
         notes=np.array([one.notes], object),
     )
-
-
-def _when(clock: LocalClock, one: Finding, letter: _SentFindings) -> tuple[date, float]:
-    """Return a finding's day, and its second or NaN; raise `ObservationError` if no day is sure.
-
-    No time is believed after its arrival, or before the least that it can be.
-    """
-    received, named = letter.arrived, one.on
-    least = one.after if one.after is None or one.after <= received + CLOCK_IS_WRONG else None
-    earliest = None if least is None else least - CLOCK_IS_WRONG
-    at = _moment(one, letter, earliest)
-    local, is_believed = clock.at(at), _can_be(at, letter, earliest)
-    if named is not None:
-        return named, seconds(local.time()) if is_believed and named == local.date() else np.nan
-    if is_believed:
-        return local.date(), seconds(local.time())
-    day = clock.at(received).date()
-    if least is None or clock.at(least).date() != day:
-        raise ObservationError(
-            worded(
-                "The clock of the phone was wrong when this was recorded ({at}), so nobody knows "
-                "its day. Record it by hand.",
-                at=f"{local:%Y-%m-%d %H:%M}",
-            )
-        )
-    return day, np.nan
-
-
-def _moment(one: Finding, letter: _SentFindings, earliest: datetime | None) -> datetime:
-    """Return when a finding was made: by what its clock was off then, else as it sends.
-
-    A phone that sleeps does not notice that its clock is set ahead. Where that may have been since
-    it last heard the season's clock, what it is off as it sends tells more.
-    """
-    put_right = one.at - letter.shift
-    if one.known_at is None or not _can_be(one.known_at, letter, earliest):
-        return put_right
-    set_ahead = one.known_at - put_right
-    asleep = timedelta() if one.after is None else one.known_at - one.after
-    return put_right if CLOCK_IS_WRONG < set_ahead <= asleep else one.known_at
-
-
-def _can_be(at: datetime, letter: _SentFindings, earliest: datetime | None) -> bool:
-    return at <= letter.arrived + CLOCK_IS_WRONG and (earliest is None or at >= earliest)
 
 
 def _insert(db: sqlite3.Connection, row: tuple[object, ...], told: str) -> int:

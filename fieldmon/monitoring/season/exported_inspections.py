@@ -22,7 +22,8 @@ from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT, IDEN
 from fieldmon.infestation.records import PRESENT
 from fieldmon.io.options import source_name
 from fieldmon.io.readers.inspection_file.inspection_rows import is_mark
-from fieldmon.monitoring.changes.transactions import connect, copy_season
+from fieldmon.monitoring.changes.transactions import copy_season
+from fieldmon.monitoring.file.connections import connect
 from fieldmon.monitoring.file.rows_that_count import COUNTS
 from fieldmon.monitoring.inspecting import inspection_table, repeated_recordings
 from fieldmon.monitoring.season.season_copies import own_names

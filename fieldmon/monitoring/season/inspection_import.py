@@ -11,7 +11,8 @@ from fieldmon.compute.wording import first_few, worded
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.io.import_report import doubtful
 from fieldmon.io.options import Upload, source_name
-from fieldmon.monitoring.changes.transactions import MAGIC, connect, copy_season, is_season
+from fieldmon.monitoring.changes.transactions import MAGIC, copy_season, is_season
+from fieldmon.monitoring.file.connections import connect
 from fieldmon.monitoring.inspecting import repeated_recordings
 from fieldmon.monitoring.inspecting.batches import Recorded
 from fieldmon.monitoring.phones import findings

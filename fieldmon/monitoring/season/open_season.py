@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from fieldmon.compute.day_arguments import Day, TimeOfDay
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.monitoring.changes.season_log import LogEntry
+    from fieldmon.monitoring.changes.log_entry import LogEntry
     from fieldmon.monitoring.settings.shift_work import ShiftWork
     from fieldmon.monitoring.treating.closures import Closure, EntryWait
     from fieldmon.monitoring.treating.treatment import Treatment

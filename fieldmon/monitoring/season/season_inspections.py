@@ -22,8 +22,9 @@ from fieldmon.monitoring.inspecting import (
     inspection_table,
     numbered_inspections,
     repeated_recordings,
+    undone_batches,
 )
-from fieldmon.monitoring.inspecting.batches import Recorded, Undone
+from fieldmon.monitoring.inspecting.batches import Recorded
 from fieldmon.monitoring.inspecting.contradictions import (
     Contradictions,
     contradicting,
@@ -32,6 +33,7 @@ from fieldmon.monitoring.inspecting.contradictions import (
     known_before,
     said_before,
 )
+from fieldmon.monitoring.inspecting.undone_batches import Undone
 from fieldmon.monitoring.phones.people import as_written, names_written, written_in
 from fieldmon.monitoring.season.season_corrections import SeasonCorrections
 from fieldmon.monitoring.settings.settings_log import settings_of
@@ -331,18 +333,18 @@ class SeasonInspections(SeasonCorrections):
         signs = self.plot.grid.line_signs
         with self._lock, self.store.writing() as db:
             if inspection is None:
-                number, before = batches.to_undo(db, batch)
-                changed, said = batches.undo(db, number, signs)
+                number, before = undone_batches.to_undo(db, batch)
+                changed, said = undone_batches.undo(db, number, signs)
                 what = {"batch": number, **({"but": before} if before else {})}
             else:
-                changed, said = batches.undo_one(db, inspection, signs)
+                changed, said = undone_batches.undo_one(db, inspection, signs)
                 what = {}
             self._note_undone(db, who, changed, said, **what)
-            again = batches.to_redo(db, changed)
+            again = undone_batches.to_redo(db, changed)
             if again is None:
                 return Undone(said, None)
             but = season_log.left_out_of(db, again)
-            return Undone(said, again, batches.to_redo_first(db, again, but))
+            return Undone(said, again, undone_batches.to_redo_first(db, again, but))
 
     def redo(self, batch: int, who: str = "") -> str:
         """Let a `batch` that was undone count again; `who` does so, for the log.
@@ -368,7 +370,7 @@ class SeasonInspections(SeasonCorrections):
         """
         with self._lock, self.store.writing() as db:
             but = season_log.left_out_of(db, batch)
-            changed, said = batches.redo(db, batch, but, self.plot.grid.line_signs)
+            changed, said = undone_batches.redo(db, batch, but, self.plot.grid.line_signs)
             told = phone_tables.undo_as_told(db)
             changed |= {number for number, _ in told}
             for one in changed:

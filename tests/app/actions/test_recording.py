@@ -1,29 +1,27 @@
-"""What was found is recorded once, and undone."""
+"""What was found is recorded once, from each form and from files."""
 
 import json
 import shutil
 import uuid
-from datetime import UTC, date, datetime, time, timedelta
+from datetime import date, time, timedelta
 from pathlib import Path
 
 import numpy as np
 import pytest
 import streamlit as st
 
-from app.actions import recording
+from app.actions import contradicting, recording
 from app.show import plant_history
-from app.state import seasons_folder, unconfirmed
+from app.state import seasons_folder
 from app.state.choices import WHOSE_DAY
 from app.state.fresh_boxes import FreshBoxes
-from app.state.unconfirmed import Unconfirmed
 from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
-from fieldmon.plot import local_clock
-from fieldmon.plot.grid import plant_at, plant_numbers
+from fieldmon.plot.grid import plant_numbers
 from tests.app.actions.test_scouting import of_two
 from tests.app.chosen import a_plot, in_season
-from tests.app.driving import begun, boxed, go, metric, opened, press, texts_of
+from tests.app.driving import boxed, go, metric, opened, press, texts_of
 from tests.monitoring.changes.test_outside_changes import moved_to, outside
 from tests.monitoring.seasons import a_season
 
@@ -89,36 +87,6 @@ def test_in_a_team_who_inspected_or_treated_is_who_is_said_to_have(season_app, s
     send(season_app, "route")
     assert season().history.inspections.who.tolist()[-1] == "Dan"
     assert season().batches()[0].who == "Dan"
-
-
-@pytest.mark.parametrize(
-    ("who", "later", "why"), [("Dana", 0, "Dana"), ("", 1, "17 Nov, and this page is about")]
-)
-def test_what_is_of_another_person_or_day_is_undone_after_a_question(
-    season_app, season, who, later, why
-):
-    on = date(2026, 11, 16) + timedelta(days=later)
-    season().record(Inspections.of([3, 4], [0, 1], on), "phone", who)
-    go(season_app, "record")
-    press(season_app, "Undo")
-    assert len(season().history.inspections) == 2
-    assert why in season_app.warning[-1].value.replace("\u2068", "").replace("\u2069", "")
-    press(season_app, "Leave it")
-    press(season_app, "Undo")
-    press(season_app, "Take it back")
-    assert not len(season().history.inspections)
-    press(season_app, "Redo")
-    assert len(season().history.inspections) == 2
-
-
-def test_what_was_recorded_long_ago_can_be_shown_and_undone(season_app, season):
-    for k in range(22):
-        season().record(Inspections.of([k], [0], date(2026, 11, 16)), "typed in")
-    go(season_app, "record")
-    assert not [one for one in season_app.button if one.key == "undo 2"]
-    press(season_app, "Show 2 more")
-    season_app.button(key="undo 2").click().run()
-    assert len(season().history.inspections) == 21
 
 
 def test_a_plant_that_was_pulled_out_is_recorded_as_gone(season_app, season):
@@ -510,162 +478,6 @@ def test_of_a_plant_with_two_faces_the_one_tapped_is_recorded_and_none_is_guesse
     assert choices.season.history.inspections.plant.tolist() == [second]
 
 
-def contradicted(app, season, n=4):
-    """Record finds, then say of the same plants and one more that they are clean."""
-    season().plan(date(2026, 11, 16))
-    plants = season().kept_route(date(2026, 11, 16))[:n]
-    season().record(Inspections.of(plants, np.ones(n, int), np.datetime64("2026-11-16")), "file")
-    go(app, "record")
-    boxed(app.number_input, "stops_done").set_value(n + 1)
-    send(app, "route")
-    assert f"{n} results from route table contradict" in app.warning[0].value
-    assert "recorded as found, now clean" in texts_of(app)
-    assert len(season().history.inspections) == n, "nothing is added silently"
-
-
-@pytest.mark.parametrize(("key", "results"), [
-    ("leave_out", [1, 1, 1, 1, 0]), ("confirm", [1, 1, 1, 1, 0, 0, 0, 0, 0]),
-    ("record_none", [1, 1, 1, 1]),
-])  # fmt: skip
-def test_what_contradicts_the_same_day_is_shown_and_confirmed(season_app, season, key, results):
-    contradicted(season_app, season)
-    season_app.button(key=key).click().run()
-    assert not season_app.exception
-    assert not season_app.warning
-    assert season().history.inspections.result.tolist() == results
-
-
-def test_a_file_of_another_day_says_of_which_day_it_was_recorded(season_app, season):
-    go(season_app, "record")
-    season_app.date_input[0].set_value(date(2026, 11, 17)).run()
-    rows = b"row,number,found,date\n1,1,1,2026-11-16\n4,1,0,2026-11-16\n"
-    boxed(season_app.file_uploader, "findings_file").upload("day16.csv", rows).run()
-    season_app.button(key="record_file").click().run()
-    assert season().history.inspections.date.astype(str).tolist() == ["2026-11-16"] * 2
-    shown = [*season_app.success, *season_app.warning]
-    assert any("Recorded for Mon 16 Nov, not for Tue 17 Nov." in one.value for one in shown)
-
-
-def test_what_is_recorded_of_a_day_that_has_not_come_is_said_on_the_pages_of_today(
-    season_app, season
-):
-    go(season_app, "record")
-    season_app.date_input[0].set_value(date(2026, 12, 20)).run()
-    for name, value in {"one_row": 3, "one_plant": 4, "one_result": FOUND}.items():
-        season_app.session_state[key_of(season_app, name)] = value
-    season_app.run()
-    send(season_app, "one")
-    said = "of **Sun 20 Dec**, which has not come: it is Mon 16 Nov."
-    assert any("1 recorded" in one.value and said in one.value for one in season_app.warning)
-    season_app.date_input[0].set_value(date(2026, 11, 16)).run()
-    for page in ("today", "season"):
-        go(season_app, page)
-        (told,) = (one.value for one in season_app.warning if said in one.value)
-        assert "undo it in *Record*" in told
-        assert f"corrected there, too: choose its plant, then *{texts.CORRECT_WHEN}*." in told
-    season().undo()
-    assert not any(said in one.value for one in go(season_app, "today").warning)
-
-
-@pytest.mark.parametrize("key", ["leave_out", "confirm", "holds"])
-def test_what_was_left_out_of_a_file_is_said_once_what_contradicts_is_settled(
-    season_app, season, key
-):
-    plant, day = np.array([plant_at(season().plot.grid, 1, 1)]), np.datetime64("2026-11-16")
-    season().record(Inspections.of(plant, np.array([CLEAN]), day), "file")
-    go(season_app, "record")
-    rows = b"row,number,found\n1,1,1\n4,1,0\n4,2,maybe\n9999,1,1\n"
-    boxed(season_app.file_uploader, "findings_file").upload("contra.csv", rows).run()
-    season_app.button(key="record_file").click().run()
-    assert "1 result from contra.csv contradicts" in season_app.warning[0].value
-    season_app.button(key=key).click().run()
-    assert len(season().history.inspections) == (3 if key == "confirm" else 2)
-    (said,) = (one.value for one in season_app.warning)
-    assert "recorded" in said
-    assert "maybe" in said
-    assert "9999" in said
-
-
-def test_the_new_results_hold_as_corrections_until_these_are_undone(season_app, season):
-    contradicted(season_app, season)
-    assert season_app.button(key="holds").label == "The new ones hold"
-    season_app.button(key="holds").click().run()
-    assert not season_app.exception
-    assert "4 corrections taken" in season_app.success[0].value
-    assert season().history.inspections.result.tolist() == [0] * 5
-    assert season().verify() == ()
-    corrections = next(one for one in season().batches() if one.kind == "corrections")
-    season_app.button(key=f"undo {corrections.number}").click().run()
-    assert sorted(season().history.inspections.result.tolist()) == [0, 1, 1, 1, 1]
-    season_app.button(key=f"redo {corrections.number}").click().run()
-    assert season().history.inspections.result.tolist() == [0] * 5
-
-
-def test_one_contradiction_is_asked_about_as_one(season_app, season):
-    contradicted_one(season_app, season)
-    assert season_app.button(key="holds").label == "The new one holds"
-    assert season_app.button(key="confirm").label == "Record this too, both hold"
-    # a day is said as everywhere on the page
-    assert "on Mon 16 Nov: recorded as found, now clean" in texts_of(season_app)
-
-
-def contradicted_one(app, season):
-    """Record a find, then say of the same plant that it is clean."""
-    season().plan(date(2026, 11, 16))
-    plant, day = season().kept_route(date(2026, 11, 16))[:1], np.datetime64("2026-11-16")
-    season().record(Inspections.of(plant, np.array([1]), day), "file")
-    go(app, "record")
-    boxed(app.number_input, "stops_done").set_value(1)
-    send(app, "route")
-
-
-def test_where_all_contradicts_there_are_no_others_to_record(season_app, season):
-    contradicted_one(season_app, season)
-    assert season_app.warning[0].value.endswith("Nothing is recorded yet. Which holds?")
-    keys = [button.key for button in season_app.button]
-    assert "confirm" in keys
-    assert "leave_out" not in keys
-
-
-def test_what_waits_is_not_asked_about_on_another_day(season_app, season):
-    contradicted(season_app, season)
-    for day, asked in ((17, 0), (16, 1)):
-        season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, day)).run()
-        said = [one.value for one in season_app.warning if "contradict" in one.value]
-        assert len(said) == asked
-
-
-def test_what_contradicts_nothing_any_more_can_be_recorded(season_app, season):
-    contradicted(season_app, season)
-    season().undo()
-    season_app.run()
-    assert "5 results from route table are not recorded yet" in season_app.warning[0].value
-    assert not [one for one in season_app.button if one.key in ("leave_out", "confirm")]
-    season_app.button(key="record_these").click().run()
-    assert not season_app.warning
-    assert season().history.inspections.result.tolist() == [0] * 5
-
-
-def test_what_was_taken_back_in_another_window_is_said_without_words_of_commands(
-    season_app, season
-):
-    plants = np.arange(3)
-    season().record(Inspections.of(plants, np.ones(3, int), np.datetime64("2026-11-16")), "file")
-    go(season_app, "record")
-    (undo,) = [one for one in season_app.button if one.label == "Undo"]
-    season().undo()
-    undo.click().run()
-    assert season_app.error[0].value == texts.UNDONE_BEFORE
-
-
-def test_another_season_is_not_asked_about_what_waits_in_this_one(season_app, season):
-    contradicted(season_app, season)
-    season_app.selectbox(key="season").set_value("Sample estate").run()
-    begun(season_app, "Other")
-    go(season_app, "record")
-    assert not season_app.warning
-
-
 def test_what_two_people_said_otherwise_is_shown_with_who_said_it(season_app, season):
     plant, day = np.array([7]), np.datetime64("2026-11-16")
     season().record(Inspections.of(plant, np.array([1]), day), "", "Ann")
@@ -719,7 +531,7 @@ def test_what_was_not_recorded_yet_is_there_again_after_a_reload(season_app, sea
 
 def broken_off(monkeypatch, typed=None):
     """Let the next run of Record be broken off before its buttons, as by what is typed then."""
-    shown, breaks = recording.ask_about_contradictions, [True]
+    shown, breaks = contradicting.ask_about_contradictions, [True]
 
     def ask(choices):
         if breaks:
@@ -729,7 +541,7 @@ def broken_off(monkeypatch, typed=None):
             st.rerun()
         shown(choices)
 
-    monkeypatch.setattr(recording, "ask_about_contradictions", ask)
+    monkeypatch.setattr(contradicting, "ask_about_contradictions", ask)
 
 
 @pytest.mark.parametrize("is_more_typed", [False, True])
@@ -801,30 +613,3 @@ def test_what_is_recorded_into_a_season_that_was_renamed_meanwhile_is_said_not_t
     season_app.run()
     (said,) = season_app.error
     assert said.value == texts.SEASON_GONE.format(name=name)
-
-
-def test_those_that_are_known_are_none_of_the_others_to_record(season_app, season):
-    route = season().kept_route(date(2026, 11, 16))
-    plants = route if len(route) else np.arange(8)
-    on = np.datetime64("2026-11-16")
-    season().record(Inspections.of(plants[:5], [1, 0, 0, 0, 1], on, count=[4, 0, 0, 0, 7]), "file")
-    brought = Inspections.of(plants[:7], [0, 0, 0, 0, 1, 0, 0], on, count=[np.nan] * 4 + [7, 0, 0])
-    for taken, label in ((7, "Leave these out, record 2 others"), (5, "Leave these out")):
-        kept = Unconfirmed(season().key, "2026-11-16", brought.take(slice(taken)), "copy", "", ())
-        season_app.session_state[unconfirmed._KEY] = kept
-        go(season_app, "record")
-        assert season_app.button(key="leave_out").label == label
-
-
-def test_past_midnight_the_answer_names_the_day_that_a_find_was_kept_for(
-    season_app, season, monkeypatch
-):
-    go(season_app, "record")
-    for name, value in {"one_row": 3, "one_plant": 4, "one_result": FOUND}.items():
-        season_app.session_state[key_of(season_app, name)] = value
-    season_app.run()
-    late = datetime(2026, 11, 17, 0, 5, tzinfo=UTC)
-    monkeypatch.setattr(local_clock, "utc_now", lambda: late)
-    season_app.button(key="record_one").click().run()
-    assert season().history.inspections.date.astype(str).tolist() == ["2026-11-16"]
-    assert "Recorded for Mon 16 Nov, not for Tue 17 Nov." in season_app.success[0].value

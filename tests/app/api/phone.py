@@ -7,7 +7,7 @@ import uuid
 from datetime import UTC, datetime
 
 from app.api.season_api import application
-from fieldmon.monitoring.changes import transactions
+from fieldmon.monitoring.file import connections
 from tests.app.api.asking import Cut, exchange, of_season, scope_of
 
 #: how a request may end
@@ -81,12 +81,12 @@ class _at_the_server:  # noqa: N801 - reads as what it is
         self.ending, self.steps = ending, chance.randrange(1, 60)
 
     def __enter__(self):
-        self.kept = transactions.connect
+        self.kept = connections.connect
         if self.ending in {"full disk", "stopped"}:
-            transactions.connect = self._connect
+            connections.connect = self._connect
 
     def __exit__(self, *_):
-        transactions.connect = self.kept
+        connections.connect = self.kept
 
     def _connect(self, *of):
         db = self.kept(*of)

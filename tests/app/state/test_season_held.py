@@ -13,6 +13,7 @@ from app.views import plots as plots_view
 from app.words import texts
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring.changes import transactions
+from fieldmon.monitoring.file import connections
 from tests.app.driving import broken, go, press, texts_of
 from tests.pages import Page
 
@@ -28,10 +29,10 @@ def another_program(path, how="EXCLUSIVE"):
 
 @pytest.fixture
 def impatient(monkeypatch):
-    monkeypatch.setattr(transactions, "_PATIENCE_S", 0.2)
+    monkeypatch.setattr(connections, "_PATIENCE_S", 0.2)
     monkeypatch.setattr(transactions, "_GLANCE_S", 0.01)
-    monkeypatch.setattr(transactions, "_ASK_AGAIN_S", 0.02)
-    monkeypatch.setattr(transactions, "_MOMENT_S", 0.0)
+    monkeypatch.setattr(connections, "_ASK_AGAIN_S", 0.02)
+    monkeypatch.setattr(connections, "_MOMENT_S", 0.0)
 
 
 class Place(list):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import fieldmon
-from app.words import catalogues, language
+from app.words import catalogues, translations
 from app.words.language import LIBRARY
 from fieldmon import errors
 from tests.app.words.known_texts import catalogue, entries
@@ -65,7 +65,7 @@ def test_a_text_whose_english_changed_keeps_its_translation_until_somebody_looke
     path = tmp_path / "he.po"
     path.write_bytes(catalogues.path_of("he").read_bytes())
     monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
-    monkeypatch.setattr(language, "FOLDER", tmp_path)
+    monkeypatch.setattr(translations, "FOLDER", tmp_path)
     own = next(entry for entry in entries() if entry.words == old)
     changed = catalogues.TextEntry(own.context, new)
     wanted = [changed if entry == own else entry for entry in entries()]
@@ -76,14 +76,14 @@ def test_a_text_whose_english_changed_keeps_its_translation_until_somebody_looke
     assert written[0].startswith("#, fuzzy")
     assert written[1] == f'#| msgid "{old}"'
     assert before[-1] == written[-1] == f'msgstr "{kept}"'
-    assert language._catalogue.__wrapped__("he").pgettext(own.context, new) == ""
+    assert translations.catalogue_of.__wrapped__("he").pgettext(own.context, new) == ""
     # whoever looked at it takes the marks out
     mark = "#, python-brace-format\n" if "{" in new else ""
     text = path.read_text().replace("\n".join(written[:2]) + "\n", mark)
     path.write_text(text)
     assert catalogues.update("he") == []
     assert path.read_text() == text
-    assert language._catalogue.__wrapped__("he").pgettext(own.context, new) == kept
+    assert translations.catalogue_of.__wrapped__("he").pgettext(own.context, new) == kept
 
 
 def test_what_was_long_and_counted_is_kept_whole(tmp_path, monkeypatch):
@@ -132,8 +132,8 @@ _ELSEWHERE = {
     "cli", "compute", "drive", "samplers", "simulation", "studies",
     "decisions/leaves.py", "decisions/taylor.py", "infestation/belief.py",
     "infestation/hotspots.py", "infestation/inspections.py", "infestation/insects/kernels.py",
-    "infestation/records.py", "infestation/insects/spread.py", "monitoring/estimates/monitor.py",
-    "planning/routes", "plot/frames.py", "plot/positions.py",
+    "infestation/records.py", "infestation/insects/spread.py", "monitoring/estimates/asked_day.py",
+    "monitoring/estimates/monitor.py", "planning/routes", "plot/frames.py", "plot/positions.py",
 }  # fmt: skip
 _SAYS = {"seen", "repaired", "guessed", "dropped", "doubtful", "ask_for_crs"}
 _LABEL = {"Remedy": 2, "ask_for_crs": 2}

@@ -14,7 +14,7 @@ from babel.messages.pofile import read_po
 
 import fieldmon
 from app.state import chosen_language
-from app.words import catalogues, language, texts
+from app.words import catalogues, language, texts, translations
 from tests.app.driving import PAGES, go, map_of, opened, texts_of
 from tests.app.words.known_texts import catalogue, entries
 
@@ -137,7 +137,7 @@ def test_a_draft_is_spoken_by_its_address_with_english_where_it_has_no_words(
     for code in OTHERS:
         shutil.copy(catalogues.path_of(code), tmp_path)
     (tmp_path / "de.po").write_text("\n".join([lines, "", *more]), encoding="utf-8")
-    monkeypatch.setattr(language, "FOLDER", tmp_path)
+    monkeypatch.setattr(translations, "FOLDER", tmp_path)
     assert opened(lang="de").selectbox(key=chosen_language.KEY).value == "en"
     monkeypatch.setattr(language, "DRAFTS", {"de": "Deutsch"})
     app = opened(lang="de")

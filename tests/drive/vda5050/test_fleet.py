@@ -103,25 +103,6 @@ def test_a_plant_that_could_not_be_looked_at_stays_unknown(broker, plot, robot, 
     assert len(day.plants) == len(driven.stops) - len(skipped)
 
 
-@pytest.mark.parametrize("odd", ["nan", "inf", "1.79e9", "-5", "noon"])
-def test_a_clock_that_counts_no_day_is_said_once_and_ours_goes_on(plot, odd):
-    said = []
-    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "clock", said.append)
-    driver.begin(plot.aisles, np.zeros(2), 100.0)
-    assert driver._at_s("110") == 110.0
-    assert 110.0 <= driver._at_s(odd) <= driver._at_s(odd) < 86_400.0
-    assert driver._at_s("86400") == 86_400.0
-    assert [odd in one for one in said] == [True]
-
-
-def test_a_clock_that_is_hours_ahead_with_the_first_result_is_said_once(plot):
-    said = []
-    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "clock", said.append)
-    driver.begin(plot.aisles, np.zeros(2), 0.0)
-    assert [driver._at_s("9000"), driver._at_s("20000")] == [9000.0, 20_000.0]
-    assert ["2.5 h more of the day" in one for one in said] == [True]
-
-
 @pytest.mark.parametrize("is_wide", [True, False])
 def test_a_robot_may_pass_as_far_from_a_node_as_its_ways_keep_off_plants(
     broker, plot, robot, is_wide
@@ -465,16 +446,6 @@ def test_what_is_no_message_is_passed_by_and_said(broker, plot, robot, monitor, 
     assert any("must be" in sentence for sentence in told)
 
 
-def test_the_clock_of_a_robot_that_was_started_anew_is_counted_on_and_said(plot):
-    said = []
-    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "clock", said.append)
-    driver.begin(plot.aisles, np.zeros(2), 3600.0)
-    first = driver._at_s("40.0")
-    assert first >= 3600.0
-    assert [driver._at_s(told) - first for told in ("70.5", "95.0", None)][:2] == [30.5, 55.0]
-    assert ["behind the last result" in one for one in said] == [True]
-
-
 def test_the_first_stop_after_going_on_takes_as_long_as_by_the_robots_own_clock(plot):
     """Also of one that is faster than ours."""
     heard, header = queue.Queue(), header_of(*ROBOT)
@@ -483,4 +454,4 @@ def test_the_first_stop_after_going_on_takes_as_long_as_by_the_robots_own_clock(
     information = [{"infoType": "day_s", "infoLevel": "INFO", "infoDescription": "12.5"}]
     heard.put(("state", encoded("state", header, STATE | {"information": information})))
     assert driver._hear()
-    assert [driver._at_s(told) for told in ("56.5", "100.5")] == [3644.0, 3688.0]
+    assert [driver._day_clock.result_s(told) for told in ("56.5", "100.5")] == [3644.0, 3688.0]

@@ -19,7 +19,7 @@ from fieldmon.drive.vda5050.messages import (
 )
 from fieldmon.drive.vda5050.rules import problems
 from fieldmon.errors import ObservationError
-from fieldmon.monitoring.estimates.monitor import PlantToInspect
+from fieldmon.monitoring.estimates.asked_day import PlantToInspect
 
 STOP = PlantToInspect(7, 2, 3, (35.0, 30.0), 100.0, 41.0, 0.84)
 FIRST = {"orderId": "day", "orderUpdateId": 0, "node": None, "strays_m": 0.1}

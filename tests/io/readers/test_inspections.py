@@ -98,17 +98,6 @@ def test_plants_are_named_by_row_and_number_in_every_dialect():
         assert (numbered.line.tolist(), numbered.number.tolist()) == ([2], [3])
 
 
-def test_plants_that_the_plot_does_not_have_are_named_and_left_out():
-    imported = read(
-        "plant,row,number,found\n60,,,x\n,9,1,x\n,1,11,x\n,2147483647,2147483647,x\n-4,,,x\n5,,,x\n"
-    )
-    assert imported.value.plant.tolist() == [5]
-    said = " ".join(f.sentence for f in imported.of(Severity.DROPPED))
-    assert "plant 60 is none of 0 to 59" in said
-    assert "there is no plant 1 in row 9" in said
-    assert "there is no plant 11 in row 1" in said
-
-
 # --- times -------------------------------------------------------------------------------------
 
 
@@ -124,36 +113,6 @@ def test_without_a_time_the_day_is_the_planned_one_or_the_one_told():
 
 
 # --- the same finding --------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "other",
-    [
-        "8,x,3,Noa,2026-11-18T08:30",
-        "7,no,,Noa,2026-11-18T08:30",
-        "7,x,4,Noa,2026-11-18T08:30",
-        "7,x,,Noa,2026-11-18T08:30",
-        "7,x,3,Amir,2026-11-18T08:30",
-        "7,x,3,Noa,2026-11-18T08:41",
-        "7,x,3,Noa,",
-    ],
-)
-def test_any_other_inspection_is_another_one(other):
-    head = "plant,found,count,who,time\n"
-    assert len(read(f"{head}7,x,3,Noa,2026-11-18T08:30\n{other}\n").value) == 2
-
-
-def test_notes_and_blanks_make_no_other_inspection():
-    head = "plant,found,count,who,time,notes\n"
-    rows = "7,x,3,Noa,2026-11-18T08:30,leaf\n7,x,3.0, Noa ,2026-11-18T08:30:00,thorns\n"
-    rows += "7,x,3,Noa,2026-11-18,\n"
-    assert read(head + rows).value.notes.tolist() == ["leaf; thorns"]
-
-
-def test_what_a_file_says_twice_is_taken_once():
-    imported = read("plant,found\n7,x\n8,no\n7,yes\n")
-    assert imported.value.plant.tolist() == [7, 8]
-    assert any("says again" in f.sentence for f in imported.messages)
 
 
 # --- the formats -------------------------------------------------------------------------------
@@ -363,15 +322,6 @@ def test_whatever_stands_in_cells_ends_in_findings_or_in_a_sentence(columns, tak
     assert all(one.endswith((".", "?")) for one in sentences)
 
 
-def test_a_mistyped_position_is_told_once():
-    lon, lat = GRID.frame.lonlat(GRID.xy_m[:3]).T
-    rows = [f"{x},{y},no" for x, y in zip(lon, [lat[0], 303.52, lat[2]], strict=True)]
-    imported = read("\n".join(["lon,lat,found", *rows]))
-    (left_out,) = imported.of(Severity.DROPPED)
-    assert left_out.feature == "record 2"
-    assert "/ 303.52 is no position" in left_out.sentence
-
-
 def test_a_record_without_a_date_is_left_out_and_said_where_others_have_one():
     brought = dated(read("plant,result,date\n1,found,2026-04-06\n2,clean,\n3,clean,2026-04-07\n"))
     assert brought.value.plant.tolist() == [1, 3]
@@ -387,12 +337,6 @@ def test_a_record_without_a_date_is_left_out_and_said_where_others_have_one():
         dated(unread)
 
 
-def test_a_number_that_nothing_bears_out_is_said_to_count_from_zero():
-    alone = "record names a plant by its number alone: taken as files given out count them, 0 to 59"
-    assert any(alone in str(one) for one in read("plant,count\n1,2\n").messages)
-    assert not any(alone in str(one) for one in read("plant,row,number,count\n1,1,2,2\n").messages)
-
-
 def test_a_file_that_contradicts_itself_says_with_which_records_and_what_became_of_all():
     told = read("row,plant,found,confidence\n1,1,x,.3\n1,2,no,.9\n1,1,no,.8\n99,1,no,.2\n")
     said = [message.sentence for message in told.messages]
@@ -402,19 +346,6 @@ def test_a_file_that_contradicts_itself_says_with_which_records_and_what_became_
     assert shown in said
     assert "Of 4 records 3 were taken, of 2 plants; 1 was left out." in said
     assert "It is not used: each record counts in full as its result says." in said
-
-
-def test_leaves_of_a_plant_are_one_inspection_found_if_any_leaf_is():
-    head = "plant,date,leaf,count\n"
-    told = read(f"{head}7,2026-11-18,1,0\n7,2026-11-18,2,3\n7,2026-11-18,3,2\n8,2026-11-18,1,0\n")
-    assert told.value.plant.tolist() == [7, 8]
-    assert told.value.result.tolist() == [FOUND, CLEAN]
-    np.testing.assert_array_equal(told.value.count, [5, np.nan])
-    (said,) = (m.sentence for m in told.of(Severity.GUESSED) if "single leaves" in m.sentence)
-    assert said.startswith("3 records of single leaves became 1 inspection of whole plants")
-    twice = read(f"{head}7,2026-11-18,1,0\n7,2026-11-18,1,3\n")
-    assert twice.value.result.tolist() == [CLEAN, FOUND]
-    assert any("both found and clean" in m.sentence for m in twice.messages)
 
 
 @pytest.mark.parametrize("elsewhere", [7, 8])
@@ -430,15 +361,3 @@ def test_several_species_are_a_question(elsewhere):
     assert any("Mites and mite were taken for one pest" in m.sentence for m in spelt.messages)
     as_one = read(text.format(elsewhere), InspectionOptions().choose("columns", "species="))
     assert as_one.value.plant.tolist() == [7, elsewhere]
-
-
-@pytest.mark.parametrize(
-    ("times", "n"), [(("8", "17"), 2), (("early", "late"), 2), (("early", "early"), 1)]
-)
-def test_hours_tell_visits_apart_and_so_do_times_that_nobody_can_read(times, n):
-    first, second = times
-    text = f"plant,date,hour,found\n7,2026-11-18,{first},x\n7,2026-11-18,{second},x\n"
-    told = read(text)
-    assert len(told.value) == n
-    unread = any("times are none ('early'" in m.sentence for m in told.messages)
-    assert unread is (first == "early")

@@ -14,7 +14,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fieldmon.compute.wording import estimate
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND
@@ -26,7 +25,7 @@ from fieldmon.monitoring.phones.scouts import let_in
 from fieldmon.monitoring.treating import treatments
 from fieldmon.plot.local_clock import LocalClock
 from tests.monitoring.phone import NOW, a_finding, without_records
-from tests.monitoring.seasons import BEGINS, on, state, three_results
+from tests.monitoring.seasons import BEGINS, state, three_results
 
 N = 7
 CLOCK = LocalClock("UTC")
@@ -167,25 +166,6 @@ def test_the_log_says_what_was_seen_planned_advised_treated_and_undone_by_whom(p
     assert season.check_against_log() == ()
     assert [one.number for one in log] == list(range(1, 9))
     assert list(season_log.lines(log, CLOCK))[-1].endswith(log[-1].digest)
-
-
-def test_what_a_program_records_without_a_name_is_logged_without_one(path):
-    season = Season(path)
-    season.record(three_results(5))
-    assert season.log()[-1].sentence().startswith("0 found, 3 clean, 0 could not be inspected, ")
-
-
-def test_the_log_speaks_of_one_thing_as_of_one():
-    one = {"stops": 1, "labels": 1, "new": 1, "entries": 1, "source": "a.csv", "said": "x"}
-    told = [
-        season_log.LogEntry(1, "", kind, "", one, "").sentence()
-        for kind in ("planned", "labels", "merged")
-    ]
-    assert told == [
-        "?: 1 stop by ?, about ? of them visibly infested",
-        "1 label from a.csv",
-        "another copy of the season taken in: 1 inspection, 1 entry",
-    ]
 
 
 @pytest.mark.parametrize(
@@ -350,17 +330,6 @@ def test_the_digest_of_a_batch_is_of_all_that_its_rows_say_in_order(inspected, t
     assert state == sha256(content.encode()).hexdigest()[:32]
 
 
-def test_what_was_planned_is_told_as_the_plan_told_it(path):
-    season = Season(path)
-    for k in range(1, 6):
-        route = season.plan(on(k)).route
-        said = season.log()[-1].sentence()
-        assert said.endswith(f"about {estimate(route.expected_visible)} of them visibly infested")
-    # half a plant is not rounded twice
-    entry = replace(season.log()[-1], what={**season.log()[-1].what, "expected": 14.509})
-    assert "about 15 of them" in entry.sentence()
-
-
 def test_a_batch_is_of_whom_its_entry_names(path):
     season, given = Season(path), three_results()
     season.record(replace(given, who=np.array(["Ben", "Ann", "Ben"], object)), "file")
@@ -368,20 +337,3 @@ def test_a_batch_is_of_whom_its_entry_names(path):
     told, seen = season.batches(), [one for one in season.log() if one.kind == "seen"]
     assert [one.who for one in told][::-1][-2:] == [one.who for one in seen][-2:]
     assert [one.who for one in told][:2] == ["Dan", "Ann, Ben"]
-
-
-def test_a_change_of_settings_is_told_from_what_to_what(path):
-    season = Season(path)
-    first = season.settings
-    season.change(replace(first, robot=first.robot.with_hours(6.0), sampler="naive"), first)
-    season.undo_change()
-    changed = [one.sentence() for one in season.log() if one.kind == "changed"]
-    back = "sampler naive to adaptive; hours 6 to 1.5"
-    assert changed == [
-        "settings: sampler adaptive to naive; hours 1.5 to 6",
-        f"settings, the last change taken back: {back}",
-    ]
-    of_old = {"names": "robot, sampler", "now": {}}
-    assert season_log.LogEntry(1, "", "changed", "", of_old, "").sentence() == (
-        "settings: robot, sampler"
-    )

@@ -6,19 +6,17 @@ import shutil
 import sqlite3
 import time
 from contextlib import closing, contextmanager
-from functools import partial
-from itertools import count
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pyogrio
 import pytest
 
 from fieldmon.errors import FileProblem
-from fieldmon.monitoring import Season, is_season, kept_open
-from fieldmon.monitoring.changes import transactions
+from fieldmon.monitoring import Season, is_season
 from fieldmon.monitoring.changes.transactions import Store
+from fieldmon.monitoring.file import connections
+from tests.monitoring.file.test_connections import ENDLESS
 from tests.monitoring.open_elsewhere import as_qgis, beside
 from tests.monitoring.seasons import BEGINS, state, three_results
 from tests.monitoring.working import day_by_day, one_by_one, started
@@ -103,15 +101,6 @@ def test_other_files_are_no_seasons(path, tmp_path):
             Season(tmp_path / name)
 
 
-def test_a_file_held_by_another_program_is_a_sentence(path, monkeypatch):
-    monkeypatch.setattr("fieldmon.monitoring.changes.transactions._PATIENCE_S", 0.2)
-    season = Season(path)
-    with closing(sqlite3.connect(path)) as other:
-        other.execute("BEGIN EXCLUSIVE")
-        with pytest.raises(FileProblem, match="another program"):
-            season.record(three_results(), "x")
-
-
 def test_who_writes_is_alone_from_the_first_moment(path):
     """Or two who read first and then write would both write what only one of them has seen."""
     with (
@@ -154,7 +143,7 @@ def reader_of(path):
 
 
 def test_reading_and_planning_what_is_planned_already_wait_for_no_reader(path, monkeypatch):
-    monkeypatch.setattr("fieldmon.monitoring.changes.transactions._PATIENCE_S", 0.2)
+    monkeypatch.setattr("fieldmon.monitoring.file.connections._PATIENCE_S", 0.2)
     season = Season(path)
     season.plan(BEGINS)
     with reader_of(path):
@@ -185,14 +174,14 @@ def test_a_copy_is_whole_and_one_file_whoever_works_on_the_season(path, tmp_path
 
 
 def test_a_season_is_moved_only_while_nobody_else_has_it_open(path, tmp_path, monkeypatch):
-    monkeypatch.setattr(transactions, "_PATIENCE_S", 0.0)
+    monkeypatch.setattr(connections, "_PATIENCE_S", 0.0)
     store, to = Season(path).store, tmp_path / "moved" / "season.gpkg"
     to.parent.mkdir()
     with closing(as_qgis(path)) as qgis:
         qgis.execute("UPDATE inspections SET notes = 'not yet in the file' WHERE fid = 5")
         with pytest.raises(FileProblem):
             store.move(to)
-    with closing(transactions.connect(path)) as other:
+    with closing(connections.connect(path)) as other:
         other.execute("BEGIN IMMEDIATE")
         with pytest.raises(FileProblem):
             store.move(to)
@@ -256,7 +245,7 @@ def test_a_file_that_cannot_be_written_is_a_sentence(path):
 
 
 def test_a_full_disk_is_that_of_the_file_that_is_written(path, tmp_path, monkeypatch):
-    connect = transactions.connect
+    connect = connections.connect
 
     def small(file, patience_s=None):
         db = connect(file, patience_s)
@@ -264,38 +253,10 @@ def test_a_full_disk_is_that_of_the_file_that_is_written(path, tmp_path, monkeyp
             db.execute("PRAGMA max_page_count = 8")
         return db
 
-    monkeypatch.setattr(transactions, "connect", small)
+    monkeypatch.setattr(connections, "connect", small)
     with pytest.raises(FileProblem, match=r"room on the disk for \S*copy.gpkg, but it is full"):
         Store(path).back_up(tmp_path / "copy.gpkg")
     assert not (tmp_path / "copy.gpkg").exists()
-
-
-def test_what_is_kept_open_is_opened_once_says_what_is_new_and_locks_nothing(path, monkeypatch):
-    season, opened, connect = Season(path), [], transactions.connect
-    days = season.days()
-    monkeypatch.setattr(transactions, "_PATIENCE_S", 0.0)
-    with kept_open():
-        before = season.revision
-        monkeypatch.setattr(
-            transactions, "connect", lambda *of: opened.append(of[0]) or connect(*of)
-        )
-        assert season.settings.begins == BEGINS
-        with season.store.reading() as db, season.store.reading() as inner:
-            assert db is not inner
-        with kept_open():  # a page within a page
-            assert season.days() == days
-        assert opened == [path]  # for the reading within a reading
-        Season(path).record(three_results(), "another window")
-        n = len(opened)
-        assert season.revision != before
-        assert len(season.history.inspections) == 15
-        assert len(opened) == n
-        with closing(sqlite3.connect(path, timeout=0)) as other:
-            other.execute("BEGIN EXCLUSIVE")
-            with pytest.raises(FileProblem, match="must be free"):
-                season.revision  # noqa: B018 - it reads
-    season.revision  # noqa: B018
-    assert len(opened) == n + 1
 
 
 def test_a_file_that_is_away_for_a_moment_finds_its_place_empty(path):
@@ -309,62 +270,6 @@ def test_a_file_that_is_away_for_a_moment_finds_its_place_empty(path):
     assert season.record(three_results()).new == 3
 
 
-def test_a_file_that_takes_the_place_of_one_kept_open_is_the_one_that_is_read(path, tmp_path):
-    season = Season(path)
-    with kept_open():
-        before = season.revision
-        shutil.copy(path, tmp_path / "other.gpkg")
-        Season(tmp_path / "other.gpkg").record(three_results(), "elsewhere")
-        (tmp_path / "other.gpkg").replace(path)
-        assert season.revision != before
-
-
-@contextmanager
-def held(path, how):
-    """Hold a season's file as another program does."""
-    with closing(sqlite3.connect(path, isolation_level=None)) as db:
-        db.execute(f"BEGIN {how}")
-        yield db
-        if db.in_transaction:
-            db.execute("ROLLBACK")
-
-
-@pytest.mark.parametrize(
-    ("how", "read", "written"),
-    [("EXCLUSIVE", False, False), ("IMMEDIATE", True, False), ("DEFERRED", True, True)],
-)
-def test_who_waits_for_a_held_season_hears_for_how_long(path, monkeypatch, how, read, written):
-    monkeypatch.setattr(transactions, "_ASK_AGAIN_S", 0.01)
-    monkeypatch.setattr(transactions, "_MOMENT_S", 0.0)
-    # each look at the clock takes 20 ms, however busy the machine is
-    looks = count()
-    clock = SimpleNamespace(monotonic=lambda: 0.02 * next(looks))
-    monkeypatch.setattr(transactions, "time", clock)
-    with held(path, how):
-        for to_write, free in ((False, read), (True, written)):
-            told = []
-            wait = partial(transactions.wait_until_free, path, told.append, to_write=to_write)
-            assert wait(patience_s=0.05) == free
-            assert told == sorted(told)
-            assert bool(told) != free
-
-
-def test_the_wait_is_over_when_the_other_program_lets_go(path, monkeypatch):
-    monkeypatch.setattr(transactions, "_ASK_AGAIN_S", 0.01)
-    monkeypatch.setattr(transactions, "_MOMENT_S", 0.0)
-    with held(path, "EXCLUSIVE") as other, kept_open():
-        assert transactions.wait_until_free(path, lambda _: other.execute("ROLLBACK"))
-        assert Season(path).history.inspections is not None
-
-
-def test_nobody_waits_for_a_file_that_is_not_there(tmp_path):
-    assert transactions.wait_until_free(tmp_path / "none.gpkg", print, to_write=True)
-    assert not [*tmp_path.iterdir()]
-
-
-_ENDLESS = "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT x FROM c"
-
-
 def a_view_instead(path, name):
     """Let a layer be a view that never ends, as a stranger may."""
     with closing(sqlite3.connect(path)) as db:
@@ -374,7 +279,7 @@ def a_view_instead(path, name):
             db.execute(f"DROP {kind} {one}")
         db.execute(f"DROP TABLE {name}")
         made = ", ".join(f"x + {k} AS {column}" for k, column in enumerate(columns, 1))
-        db.execute(f"CREATE VIEW {name} AS SELECT {made} FROM ({_ENDLESS}) WHERE x < 0")  # noqa: S608
+        db.execute(f"CREATE VIEW {name} AS SELECT {made} FROM ({ENDLESS}) WHERE x < 0")  # noqa: S608
         db.commit()
 
 
@@ -388,25 +293,3 @@ def test_a_layer_that_is_an_endless_view_is_refused_and_never_read(path):
     with pytest.raises(FileProblem, match="is none in"):
         Season(path)
     assert time.process_time() - began < 5
-
-
-def test_a_trigger_that_never_ends_is_given_up_and_nothing_is_changed(path, monkeypatch):
-    monkeypatch.setattr(transactions, "_MOST_STEPS", 20_000_000)
-    with closing(sqlite3.connect(path)) as db:
-        never = f"DELETE FROM hot_spots WHERE fid IN ({_ENDLESS})"  # noqa: S608
-        db.execute(f"CREATE TRIGGER x AFTER INSERT ON inspections BEGIN {never}; END")
-        db.commit()
-    season = Season(path)
-    with pytest.raises(FileProblem, match="come to an end, but a view or a trigger in"):
-        season.record(three_results(), "monday")
-    assert state(path) == 12
-
-
-def test_of_a_kept_file_each_transaction_may_take_as_many_steps(path, monkeypatch):
-    store = Store(path)
-    monkeypatch.setattr(transactions, "_MOST_STEPS", 3_000_000)
-    counted = f"SELECT count(*) FROM (SELECT x FROM ({_ENDLESS} LIMIT 100000))"  # noqa: S608
-    with kept_open():
-        for _ in range(5):
-            with store.reading() as db:
-                assert db.execute(counted).fetchone() == (100_000,)

@@ -8,9 +8,9 @@ import pytest
 
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.changes import transactions
 from fieldmon.monitoring.days.day_ahead import WorkPart, planned_again, route_ahead
 from fieldmon.monitoring.days.scouts_out import scouts_out
+from fieldmon.monitoring.file import connections
 from fieldmon.monitoring.phones import scouts
 from fieldmon.monitoring.phones.findings import take
 from fieldmon.planning.members import team_of
@@ -94,10 +94,8 @@ def test_a_person_is_one_though_an_older_file_writes_the_name_in_two_ways(fresh)
 
 
 def test_the_file_is_read_as_often_for_many_people_as_for_one(fresh, monkeypatch):
-    opened, connect = [], transactions.connect
-    monkeypatch.setattr(
-        transactions, "connect", lambda *told: opened.append(told) or connect(*told)
-    )
+    opened, connect = [], connections.connect
+    monkeypatch.setattr(connections, "connect", lambda *told: opened.append(told) or connect(*told))
     times = []
     for k in range(3):
         scouts.let_in(fresh, f"scout {k}", (1 + 2 * k, 2 + 2 * k))

@@ -83,14 +83,6 @@ def test_a_season_asked_and_told_is_the_compiled_one_stop_for_stop(plot, start, 
     assert some_found > 0
 
 
-def test_the_same_plant_is_asked_for_until_it_is_told_of(plot):
-    with Monitor(plot, robot=Robot(hours=1)).day() as day:
-        assert day.ask() == day.ask()
-        day.tell(found=False)
-        with pytest.raises(ObservationError, match="asked for"):
-            day.tell(found=False)
-
-
 def test_a_plant_that_cannot_be_inspected_stays_unknown_and_is_not_asked_for_again(plot):
     monitor = Monitor(plot, robot=Robot(hours=1))
     before = monitor.chance.copy()
@@ -165,33 +157,6 @@ def test_days_and_nights_take_turns(plot):
     monitor.night()
     assert monitor.day_number == 1
     assert "day 2" in repr(monitor)
-
-
-def test_a_clock_that_goes_backwards_is_refused(plot):
-    with Monitor(plot, robot=Robot(hours=1)).day() as day:
-        day.ask()
-        day.tell(found=False, at_s=500.0)
-        day.ask()
-        with pytest.raises(ObservationError, match="go on"):
-            day.tell(found=False, at_s=400.0)
-
-
-def test_the_clock_never_goes_behind_what_is_gone_as_charged(plot):
-    day = Monitor(plot, robot=Robot(hours=1)).day()
-    day.ask()
-    day.tell(found=False)
-    gone_s = day.gone_s
-    day.ask()
-    for at_s in (gone_s - 30.0, np.nan, np.inf):
-        with pytest.raises(ObservationError, match="The day's clock must go on"):
-            day.tell(found=False, at_s=at_s)
-    with pytest.raises(ObservationError, match="stay below 1,000,000,000 s since the day began"):
-        day.tell(True, at_s=1e9)
-    with pytest.raises(SettingError, match="must be in seconds, but it is '90'"):
-        day.tell(found=False, at_s="90")
-    assert (day.gone_s, len(day.plants)) == (gone_s, 1)
-    day.tell(found=False, at_s=gone_s)
-    assert day.gone_s == gone_s
 
 
 class Nobody(Sampler):

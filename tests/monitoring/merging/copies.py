@@ -17,13 +17,14 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.file import label_table, phone_tables, schema
-from fieldmon.monitoring.inspecting import batches, inspection_table
+from fieldmon.monitoring.inspecting import batches, inspection_table, undone_batches
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merge import merge_copies
 from fieldmon.monitoring.phones import findings, photos
-from fieldmon.monitoring.phones.findings import Finding, _SentFindings
+from fieldmon.monitoring.phones.findings import _SentFindings
 from fieldmon.monitoring.phones.photos import Photo
 from fieldmon.monitoring.phones.scouts import Scout
+from fieldmon.monitoring.phones.sent_findings import Finding
 from fieldmon.monitoring.settings import settings_log
 from fieldmon.monitoring.settings.settings import MonitoringSettings, as_json, from_json
 from fieldmon.monitoring.treating.applications import Application
@@ -69,9 +70,9 @@ def record(db, rng, who):
         store(db, found, who)  # the same once more
     counting = [fid for (fid,) in db.execute("SELECT fid FROM inspections WHERE undone = 0")]
     if counting and rng.random() < 0.3:
-        undone(db, *batches.undo_one(db, rng.choice(counting)))
+        undone(db, *undone_batches.undo_one(db, rng.choice(counting)))
     elif rng.random() < 0.2 and any(not one.undone for one in batches.all_of(db)):
-        undone(db, *batches.undo(db, None))
+        undone(db, *undone_batches.undo(db, None))
 
 
 def store(db, found, who):

@@ -5,7 +5,7 @@ from collections import Counter
 import pytest
 
 from fieldmon.monitoring.changes import season_log
-from fieldmon.monitoring.inspecting import batches, inspection_table
+from fieldmon.monitoring.inspecting import batches, inspection_table, undone_batches
 from tests.monitoring.merging.copies import (
     PAIRS,
     apart,
@@ -99,7 +99,7 @@ def test_a_photo_is_shown_as_long_as_its_finding_counts_in_either_copy():
         marks = {row[:2] for rows in brought for row in rows}
         twice = {photo for photo, n in Counter(photo for photo, _ in marks).items() if n > 1}
         for number in [one.number for one in batches.all_of(ours) if not one.undone][::2]:
-            batches.undo(ours, number)
+            undone_batches.undo(ours, number)
             assert inspection_table.not_what_they_say(ours) == []
             assert photos_shown(ours) >= not_taken_back(ours, brought) - twice
         for db in (one, other, ours, theirs):

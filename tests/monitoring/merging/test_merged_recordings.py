@@ -8,7 +8,7 @@ import pytest
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.inspecting import batches
+from fieldmon.monitoring.inspecting import batches, undone_batches
 from fieldmon.monitoring.merging.merge import merge_copies
 from tests.monitoring.merging.copies import PAIRS, apart, copied, merge, result, that_count
 
@@ -36,7 +36,7 @@ def test_what_stood_back_for_something_undone_counts_again_and_merging_keeps_it_
                 )
             }
             before = {row[0] for row in that_count(ours)}
-            batches.undo(ours, number)
+            undone_batches.undo(ours, number)
             assert {row[0] for row in that_count(ours)} == before - (own - others)
             came_back += len(own & others)
         merge_copies(theirs, ours)  # to whom nobody said so yet

@@ -12,7 +12,7 @@ import pytest
 
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.inspecting import batches
+from fieldmon.monitoring.inspecting import batches, undone_batches
 from fieldmon.monitoring.merging.merge import merge_copies
 from fieldmon.monitoring.treating import treatments
 from fieldmon.monitoring.treating.applications import Application
@@ -167,7 +167,7 @@ def test_treatments_of_three_copies_come_out_the_same_in_every_order(first):
                 filled |= rng.choice(({}, {"reentry_hours": 12.0}))
                 sprayed(db, next(moments), said, filled, noted=rng.random() < 0.8)
             if rng.random() < 0.3:
-                batches.undo(db, None)
+                undone_batches.undo(db, None)
         outcomes = []
         for order in permutations(copies):
             ours = copied(order[0])
@@ -191,7 +191,7 @@ def test_treatments_of_three_copies_come_out_the_same_in_every_order(first):
             # undoing leaves what merging would leave
             number = live[0]["batch"] if live else None
             if number is not None:
-                batches.undo(ours, number)
+                undone_batches.undo(ours, number)
                 undone = content(ours)["treatments"]
                 merge(ours, order[0])
                 assert content(ours)["treatments"] == undone

@@ -16,7 +16,6 @@ from fieldmon.io.readers.phone_file import PhoneFile, SavedRecord, fields_of
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.phones import findings, photos, scouts
 from fieldmon.monitoring.phones.findings import (
-    Finding,
     of_others,
     take,
     take_saved,
@@ -24,6 +23,7 @@ from fieldmon.monitoring.phones.findings import (
     taken_back_before,
 )
 from fieldmon.monitoring.phones.photos import Photo
+from fieldmon.monitoring.phones.sent_findings import Finding
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.robot import Robot
@@ -161,31 +161,6 @@ def test_of_two_findings_with_one_id_in_a_letter_the_first_is_kept(season, key):
     assert [row[1] for row in told(season)[1]] == [3]
 
 
-@pytest.mark.parametrize(
-    ("ahead", "clock"), [(0, "09:00:00"), (20, "09:00:20"), (-7 * 3600, "09:00:00")]
-)
-def test_a_wrong_clock_is_put_right_and_both_times_are_kept(season, key, ahead, clock):
-    """The phone says when it sends; a clock that is hours off was set wrong."""
-    phone = NOW + timedelta(seconds=ahead)
-    take(season, key, [a_finding(3, at=phone)], phone)
-    with season.store.reading() as db:
-        kept = db.execute("SELECT at_phone, sent_phone, received FROM tellings").fetchone()
-        (row,) = db.execute(
-            "SELECT date, time FROM inspections WHERE fid = (SELECT inspection FROM tellings)"
-        )
-    assert row == ("2026-04-06", clock)
-    assert kept[:2] == (phone.isoformat(), phone.isoformat())
-    assert kept[2].startswith("2026-04-06T06:00:00")
-
-
-def test_what_is_meant_for_another_day_has_no_time(season, key):
-    other = BEGINS + timedelta(days=2)
-    take(season, key, [a_finding(3, on=other)], NOW)
-    done = season.history.inspections.on(other)
-    assert done.plant.tolist() == [3]
-    assert np.isnan(done.second).all()
-
-
 def test_a_key_that_was_taken_back_writes_nothing(season, key):
     scouts.withdraw_key(season, "Ann")
     with pytest.raises(AccessError):
@@ -289,17 +264,6 @@ def test_a_day_later_as_much_may_be_told_again_but_not_a_moment_sooner(season, k
     assert len(told(season)[0]) == 4
 
 
-@pytest.mark.parametrize(("fast_s", "shifted"), [(119.0, False), (121.0, True), (-121.0, True)])
-def test_a_clock_is_put_right_if_it_is_two_minutes_wrong_and_else_believed(
-    season, key, monkeypatch, fast_s, shifted
-):
-    monkeypatch.setattr(findings, "utc_now", lambda: NOW)
-    fast = timedelta(seconds=fast_s)
-    take(season, key, [a_finding(0, at=NOW + fast)], NOW + fast)
-    second = season.history.inspections.second
-    assert second[~np.isnan(second)].tolist() == [9 * 3600.0 + (0.0 if shifted else fast_s)]
-
-
 @pytest.mark.parametrize("count", [0.0, 0.5, 2.5])
 def test_pests_of_a_find_are_whole_and_at_least_one(season, key, count):
     before = len(season.history.inspections)
@@ -308,69 +272,6 @@ def test_pests_of_a_find_are_whole_and_at_least_one(season, key, count):
     assert len(season.history.inspections) == before
     (done,) = take(season, key, [a_finding(3, count=0.0)], NOW)
     assert done.problem == "", "none were counted on a clean plant"
-
-
-def test_a_day_that_is_named_has_times_if_it_is_the_day_of_the_phone(season, key):
-    take(season, key, [a_finding(3, on=BEGINS), a_finding(4, on=BEGINS + timedelta(days=1))], NOW)
-    seen, day = season.history.inspections, BEGINS + timedelta(days=1)
-    assert seen.second[(seen.plant == 3) & (seen.date == np.datetime64(BEGINS))][-1] == 9 * 3600.0
-    assert np.isnan(seen.second[(seen.plant == 4) & (seen.date == np.datetime64(day))]).all()
-
-
-HOUR, DAY = timedelta(hours=1), timedelta(days=1)
-
-
-@pytest.mark.parametrize(
-    ("at", "after", "second"),
-    [
-        (NOW - HOUR, NOW - 2 * HOUR, 8 * 3600.0),
-        (NOW - HOUR, None, 8 * 3600.0),
-        (NOW - DAY, NOW - HOUR, np.nan),  # a battery was empty: the day is sure, the time is not
-        (NOW.replace(year=1970), NOW - HOUR, np.nan),
-        (NOW + 3 * DAY, NOW - HOUR, np.nan),
-        (NOW - DAY, NOW - 2 * DAY, None),  # a day that can be true is believed; of another day here
-        (NOW + 3 * DAY, NOW - DAY, None),
-        (NOW + 3 * DAY, None, None),
-        (NOW.replace(year=1970), None, None),
-    ],
-    ids=str,
-)
-def test_a_time_after_its_arrival_or_before_the_least_it_can_be_is_not_believed(
-    season, key, at, after, second
-):
-    (done,) = take(season, key, [a_finding(37, at=at, after=after)], NOW)
-    seen = season.history.inspections
-    seen = seen.take(seen.plant == 37)
-    assert bool(done.problem) == (second is None)
-    if second is None:
-        assert len(seen) == 0
-    else:
-        assert seen.date.tolist() == [BEGINS]
-        np.testing.assert_equal(seen.second, [second])
-
-
-@pytest.mark.parametrize(
-    ("times", "fast", "hour"),
-    [
-        ((-6, -6, -6), -9, 3),  # the clock went wrong after the tap
-        ((-6, -6, -8), -9, 3),
-        ((3, -6, -6), 0, 3),  # it was set right after the tap
-        ((-1, -2, -3), 1, 7),
-        ((-1, -2, -3), -9, 7),
-        ((7, 1, -3), 9, 7),  # what was taken for the time is still to come, or too early
-        ((7, -5, -3), 9, 7),
-        ((-3, -3, -6), 2, 4),  # it may have been set ahead while the phone slept, before the tap
-    ],
-)
-def test_a_time_is_put_right_by_what_the_clock_was_off_at_the_tap_where_that_is_known(
-    season, key, times, fast, hour
-):  # hours from now, 9 o'clock: by the phone's clock, as it took it, and at least
-    at, known_at, after = (NOW + one * HOUR for one in times)
-    one = a_finding(37, at=at, known_at=known_at, after=after)
-    take(season, key, [one], NOW + fast * HOUR)
-    seen = season.history.inspections
-    seen = seen.take(seen.plant == 37)
-    assert (seen.date.tolist(), seen.second.tolist()) == ([BEGINS], [hour * 3600.0])
 
 
 def test_what_was_taken_by_a_version_that_knew_less_or_kept_more_is_still_the_same(season, key):

@@ -1,0 +1,140 @@
+"""Results that wait because they contradict what is recorded, and what is done with them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import streamlit as st
+
+from ..show import recorded_batches
+from ..state import notices, unconfirmed
+from ..state.fresh_boxes import FreshBoxes
+from ..words import texts
+from ..words.language import in_words
+from .recording_results import listed, recorded, said_of, warn_of_lost
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring.inspecting.batches import Recorded
+
+    from ..state.choices import Choices
+    from ..state.unconfirmed import Unconfirmed
+
+# contradictions that are shown
+_MOST = 20
+
+
+def ask_about_contradictions(choices: Choices) -> None:
+    """Show what waits because it contradicts what is recorded, and what can be done with it."""
+    waiting = unconfirmed.of(choices.key, choices.day)
+    if waiting is None:
+        return
+    season = choices.open_season
+    against = season.contradictions(waiting.results)
+    said = against.sentences(season.plot.grid)
+    if not said:  # what they contradicted was taken back since
+        _ask_anew(choices, waiting)
+        return
+    others = waiting.results.take(_but(against.which, len(waiting.results)))
+    new = season.count_new(others)
+    source = recorded_batches.source(waiting.source)
+    st.warning(texts.CONTRADICTING.format(n=len(said), source=source))
+    st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
+    if len(said) > _MOST:
+        st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
+    with st.container(horizontal=True):
+        for key, label, action in (
+            (
+                "leave_out",
+                texts.LEAVE_OUT.format(n=new) if new else texts.LEAVE_OUT_ONLY,
+                _leave_out,
+            ),
+            ("holds", texts.HOLDS.format(n=len(said)), _record_instead),
+            ("confirm", texts.CONFIRM.format(n=len(said)), _confirm),
+            ("record_none", texts.RECORD_NONE, _drop),
+        ):
+            if key != "leave_out" or len(others):
+                st.button(label, key=key, on_click=action, args=(choices,))
+
+
+def _ask_anew(choices: Choices, waiting: Unconfirmed) -> None:
+    """Ask whether to record what waited and contradicts nothing any more."""
+    n, source = len(waiting.results), recorded_batches.source(waiting.source)
+    st.warning(texts.CONTRADICTING_NO_MORE.format(n=n, source=source))
+    with st.container(horizontal=True):
+        st.button(texts.RECORD_THESE.format(n=n), key="record_these", on_click=_record_these,
+                  args=(choices,))  # fmt: skip
+        st.button(texts.RECORD_NONE, key="record_none", on_click=_drop, args=(choices,))
+
+
+@notices.reporting
+def _record_these(choices: Choices) -> str:
+    """Record what waited, as if it were brought now."""
+    waiting = unconfirmed.of(choices.key, choices.day)
+    if waiting is None:
+        return ""
+    results, source, who = waiting.results, waiting.source, waiting.who
+    done = recorded(choices, results, source, waiting.form, waiting.messages, who)
+    return _said_at_last(choices, waiting, done)
+
+
+@notices.reporting
+def _confirm(choices: Choices) -> str:
+    """Record what contradicts too: both counts as said."""
+    return _settled(choices, slice(None))
+
+
+@notices.reporting
+def _record_instead(choices: Choices) -> str:
+    """Record all, and let what contradicts hold in place of what was recorded."""
+    waiting = unconfirmed.of(choices.key, choices.day)
+    if waiting is None:
+        return ""
+    done = choices.open_season.record_instead(waiting.results, waiting.source, waiting.who)
+    return _end_waiting(choices, waiting, done)
+
+
+@notices.reporting
+def _leave_out(choices: Choices) -> str:
+    """Record what does not contradict."""
+    waiting = unconfirmed.of(choices.key, choices.day)
+    if waiting is None:
+        return ""
+    against = choices.open_season.contradictions(waiting.results).which
+    return _settled(choices, _but(against, len(waiting.results)))
+
+
+def _but(against: np.ndarray, n: int) -> np.ndarray:
+    """Return the numbers of so many results but for those that contradict."""
+    return np.setdiff1d(np.arange(n), against)
+
+
+def _settled(choices: Choices, which: np.ndarray | slice) -> str:
+    waiting = unconfirmed.of(choices.key, choices.day)
+    if waiting is None:
+        return ""
+    taken = waiting.results.take(which)
+    done = choices.open_season.record(taken, waiting.source, waiting.who, confirmed=True)
+    return _end_waiting(choices, waiting, done)
+
+
+def _end_waiting(choices: Choices, waiting: Unconfirmed, done: Recorded) -> str:
+    """Let nothing wait any more; return what was done."""
+    unconfirmed.drop()
+    if waiting.form:
+        FreshBoxes(waiting.form, choices).empty()
+    return _said_at_last(choices, waiting, done)
+
+
+def _said_at_last(choices: Choices, waiting: Unconfirmed, done: Recorded | None) -> str:
+    """Return what was done with results that waited, and what was said of their file."""
+    if done is None:
+        return ""
+    warn_of_lost(waiting.messages)
+    return said_of(choices, done, waiting.results) + listed(
+        message.sentence for message in waiting.messages
+    )
+
+
+def _drop(choices: Choices) -> None:  # noqa: ARG001 - as the others
+    unconfirmed.drop()

@@ -1,0 +1,98 @@
+"""What was recorded, batch by batch, taken back and counting again."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import streamlit as st
+
+from fieldmon.errors import SettingError
+
+from ..show import recorded_batches
+from ..state import notices
+from ..words import texts
+from ..words.language import in_words
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring.inspecting.batches import Batch, BatchContents
+
+    from ..state.choices import Choices
+
+# batches shown, the last ones, and so many more at each press
+_MOST = 20
+_UNDO_ASKED, _SHOWN = "undo asked", "batches shown"
+
+
+def show_batches(choices: Choices) -> None:
+    """Show what was recorded, if anything was, the last one first, each with its undo."""
+    kept = [batch for batch in choices.open_season.batches() if batch.rows]
+    if not kept:
+        return
+    shown = kept[: _MOST + _more_shown(choices)]
+    contents = choices.open_season.contents([batch.number for batch in shown])
+    with st.expander(texts.BATCHES, expanded=True):
+        for batch in shown:
+            _show_batch(choices, batch, contents.get(batch.number))
+        if more := len(kept) - len(shown):
+            st.button(texts.BATCHES_MORE.format(n=min(more, _MOST)), key="batches_more",
+                      on_click=_show_more, args=(choices,))  # fmt: skip
+
+
+def _more_shown(choices: Choices) -> int:
+    """Return how many batches are shown beside the last ones."""
+    key, more = st.session_state.get(_SHOWN, ("", 0))
+    return more if key == choices.key else 0
+
+
+def _show_more(choices: Choices) -> None:
+    st.session_state[_SHOWN] = choices.key, _more_shown(choices) + _MOST
+
+
+def _show_batch(choices: Choices, batch: Batch, contents: BatchContents | None) -> None:
+    said = recorded_batches.line(choices, batch, contents)
+    why = recorded_batches.why_to_ask(choices, batch, contents)
+    n, asked = batch.number, _undo_asked(choices) == batch.number and not batch.undone
+    # side by side, not in columns: a button takes what its word needs in each language
+    with st.container(horizontal=True, vertical_alignment="center", key=f"batch_{n}"):
+        st.markdown(said, width="stretch")
+        if batch.undone:
+            st.button(texts.REDO, key=f"redo {n}", on_click=redo, help=said, args=(choices, n))
+        elif not asked:
+            act = _ask_undo if why else undo
+            st.button(texts.UNDO, key=f"undo {n}", on_click=act, help=said, args=(choices, n))
+    if asked:
+        st.warning(" ".join([texts.UNDO_ASK, *why]))
+        with st.container(horizontal=True, key=f"undo_asked_{n}"):
+            st.button(texts.UNDO_YES, key=f"undo_yes {n}", on_click=undo, args=(choices, n))
+            st.button(texts.UNDO_NO, key=f"undo_no {n}", on_click=_ask_no_undo)
+
+
+def _undo_asked(choices: Choices) -> int | None:
+    """Return the batch of which it is asked whether it is to be undone."""
+    key, batch = st.session_state.get(_UNDO_ASKED, ("", None))
+    return batch if key == choices.key else None
+
+
+def _ask_undo(choices: Choices, batch: int) -> None:
+    st.session_state[_UNDO_ASKED] = choices.key, batch
+
+
+def _ask_no_undo() -> None:
+    st.session_state.pop(_UNDO_ASKED, None)
+
+
+@notices.reporting
+def undo(choices: Choices, batch: int, who: str = "") -> str:
+    """Take a batch back, unless somebody did so in another window; `who` does, for the log."""
+    _ask_no_undo()
+    if batch not in {one.number for one in choices.open_season.batches() if not one.undone}:
+        raise SettingError(texts.UNDONE_BEFORE)
+    return in_words(choices.open_season.undo(batch, who=who))
+
+
+@notices.reporting
+def redo(choices: Choices, batch: int) -> str:
+    """Let a batch that was undone count again, unless somebody did so in another window."""
+    if batch not in {one.number for one in choices.open_season.batches() if one.undone}:
+        raise SettingError(texts.REDONE_BEFORE)
+    return in_words(choices.open_season.redo(batch))

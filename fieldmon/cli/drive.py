@@ -370,7 +370,7 @@ def _team_day(
     if today.batch is not None:
         typer.echo(f"{on} goes on (batch {today.batch}).")
         _tell_plan(goes_on=today.goes_on)
-    before = {one.name: len(season.worked(on, one.name)) for one in today.robots}
+    before = {one.name: len(season.work(on, one.name).inspections) for one in today.robots}
     recordings = {
         one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
         for one in today.robots
@@ -386,7 +386,7 @@ def _team_day(
         for name in sorted(begun):
             _write(begun[name], on, own[name], name, before[name])
             begun_s = begun[name].begun_s
-            planned_s = season.begun_s(on, name) if begun_s is None else begun_s
+            planned_s = season.work(on, name).begun_s if begun_s is None else begun_s
             begins = _begins(season, on, planned_s)
             noted = recordings[name], begun[name]
             _write_bag(noted, begins, own[name], goes_on=before[name] > 0)
@@ -426,7 +426,9 @@ def _tell_left_out(scouts: list[str]) -> None:
 
 def _tell_others(season: Season, on: date, left_out: Sequence[tuple[int, int]]) -> None:
     """Print that others are out, and what is left to them."""
-    if not (codes := season.codes_on(on)):
+    from fieldmon.monitoring.phones.scouts import codes_on
+
+    if not (codes := codes_on(season, on)):
         return
     out = "is out with a route" if len(codes) == 1 else "are out with routes"
     theirs = f"{' and '.join(codes)} {out} of their own"

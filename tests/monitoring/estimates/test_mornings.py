@@ -17,7 +17,7 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.estimates import day_figures
+from fieldmon.monitoring.estimates import day_figures, figures_of_day
 from fieldmon.monitoring.estimates.mornings import Mornings, _arrays_in, _causes, _packed, _unpacked
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.monitoring.treating.treatment import Treatment
@@ -320,9 +320,9 @@ def test_figures_that_another_version_kept_are_worked_out_anew(path, monkeypatch
     on = BEGINS + timedelta(days=LAST - days_before)
     true = Season(path).status(on).estimate
     change(path, "UPDATE days SET low = 0, expected_left = 1")
-    assert Season(path).day_figures(on).expected == 1.0
+    assert figures_of_day.day_figures(Season(path), on).expected == 1.0
     monkeypatch.setattr(season_estimates, "rules", lambda: "of another version")
-    now = Season(path).day_figures(on)
+    now = figures_of_day.day_figures(Season(path), on)
     assert (now.expected, now.low, now.high) == (true.expected, true.low, true.high)
 
 

@@ -312,7 +312,16 @@ class SeasonInspections(SeasonCorrections):
             Their day; None: all days.
         plant
             Their plant, by its number in the grid; None: all plants, in the order of the numbers.
+
+        Raises
+        ------
+        ObservationError
+            If there is no such plant.
         """
+        if plant is not None and not 0 <= plant < (n := len(self.plot.grid)):
+            raise ObservationError(
+                worded("A plant must be 0 to {last}, but it is {plant}.", last=n - 1, plant=plant)
+            )
         with self.store.reading() as db:
             return numbered_inspections(db, on, plant)
 

@@ -318,9 +318,10 @@ class SeasonInspections(SeasonCorrections):
         ObservationError
             If there is no such plant.
         """
-        if plant is not None and not 0 <= plant < (n := len(self.plot.grid)):
+        last = len(self.plot.grid) - 1
+        if plant is not None and not 0 <= plant <= last:
             raise ObservationError(
-                worded("A plant must be 0 to {last}, but it is {plant}.", last=n - 1, plant=plant)
+                worded("A plant must be 0 to {last}, but it is {plant}.", last=last, plant=plant)
             )
         with self.store.reading() as db:
             return numbered_inspections(db, on, plant)

@@ -29,7 +29,8 @@ def test_a_plants_inspections_that_count_come_in_their_order_with_their_numbers(
     assert [one.number for one in season.numbered(on(1))] == [1, 2, 3]
     assert [one.plant for one in season.numbered(on(1))] == [7, 8, 7]
     assert season.numbered(on(1), 8) == season.numbered(plant=8)
-    with pytest.raises(ObservationError, match="A plant must be 0 to 437, but it is 438"):
-        season.numbered(plant=438)
+    for none in (-1, 438):
+        with pytest.raises(ObservationError, match=f"A plant must be 0 to 437, but it is {none}"):
+            season.numbered(plant=none)
     season.correct_time(1, time(6), "Ben", on(0), confirmed=True)
     assert [one.number for one in season.numbered(plant=7)] == [1, 4, 3]

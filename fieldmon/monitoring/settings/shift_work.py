@@ -258,7 +258,7 @@ class DayWork:
     >>> season = fm.Season.create("of_work.gpkg", plot, begins="2026-11-18")
     >>> work = season.work("2026-11-18")
     >>> work.begun_s / 3600, work.left_s() / 3600, len(work.inspections)
-    (6.0, 2.0, 0)
+    (6.0, 12.0, 0)
     """
 
     shifts: ShiftWork

@@ -70,18 +70,18 @@ def test_the_map_of_advice_is_read_at_one_moment(worked, moments):
 def test_what_others_write_within_one_moment_is_seen_after_it(worked):
     season, other = Season(worked), Season(worked)
     with closing(as_qgis(worked)):  # who reads does not stop who writes then
-        with season.one_moment():
+        with season.store.one_moment():
             before = season.revision
             with ThreadPoolExecutor(1) as window:
                 window.submit(other.record, three_results(2), "another window").result()
-            with season.one_moment():  # a part of what is shown
+            with season.store.one_moment():  # a part of what is shown
                 assert season.revision == before
         assert season.revision != before
 
 
 def test_nothing_is_written_within_one_moment(worked):
     season = Season(worked)
-    with season.one_moment():
+    with season.store.one_moment():
         before = len(season.batches())
         with pytest.raises(RuntimeError, match="of one moment"):
             season.record(three_results(), "within")

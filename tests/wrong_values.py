@@ -430,27 +430,20 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
     on, who = {"on": TODAY}, {"who": ""}
     planned = on | {"now": None, "keep": True, "wishes": None}
     recorded = who | {"confirmed": False, "into": None}
-    of_day = ("contradicting", "day_figures", "development", "evening", "forecast", "harvest_from",
-              "learnt", "level_range", "morning", "progress", "status")  # fmt: skip
+    of_day = ("development", "evening", "forecast", "harvest_from",
+              "learnt", "level_range", "morning", "status")  # fmt: skip
     methods = {
         **dict.fromkeys(of_day, on),
         "advice": on | {"asked": None},
-        "advise": on | who | {"said": "a"},
-        "aisles_from": {"gate": None},
-        "cautions": on | {"units": None},
+        "cautions": on | {"units": None, "because_of": None},
         "change": who | {"settings": settings, "seen": settings},
         "contents": {"numbers": [1]},
-        "contradictions": {"inspections": seen},
         "correct": who,
-        "corrections_in": {"copy": season.path},
-        "count_never_recorded": {"inspections": seen},
         "effects": on | {"units": None},
-        "is_copy": {"file": season.path},
-        "is_on_plot_of": {"other": season},
         "keep_labels": who | {"labels": (), "source": ""},
         "kept_route": on | who,
         "merge": {"other": season},
-        "changed_maps": {"whole": True, "tell": None},
+        "numbered": on | {"plant": None},
         "plan": planned | {"who": None},
         "plan_each": planned,
         "record": recorded | {"inspections": seen, "source": ""},

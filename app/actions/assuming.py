@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.infestation.prior.prior_settings import PriorSettings
-from fieldmon.monitoring.settings.settings_words import telling_anew
+from fieldmon.monitoring.estimates.told_anew import telling_anew
 
 from ..show.assumed import of_who_inspects, sentence
 from ..state import assumptions, notices, widget_memory

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
-from fieldmon.monitoring.settings.settings_words import changed, taken_back, telling_anew
+from fieldmon.monitoring.changes.earlier_settings import before_change
+from fieldmon.monitoring.estimates.told_anew import telling_anew
+from fieldmon.monitoring.settings.settings_words import changed, taken_back
 from fieldmon.plot.robot import Robot, scout
 
 from ..state import chosen_day, notices
@@ -196,7 +198,7 @@ def _wanted(
 
 
 def _offer_undo(choices: Choices) -> None:
-    before = choices.open_season.before_change()
+    before = before_change(choices.open_season)
     if before is None:
         return
     what = in_words(changed(choices.open_season.settings, before))
@@ -220,7 +222,7 @@ def _undo(choices: Choices) -> str:
     """Take the last change back, and say what it was and what that makes of days past."""
     season, said = choices.open_season, list[str]()
     settings = season.settings
-    with telling_anew(season, settings, season.before_change() or settings, said.append):
+    with telling_anew(season, settings, before_change(season) or settings, said.append):
         said.append(taken_back(settings, season.undo_change()))
     return " ".join(map(in_words, said))
 

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.monitoring.inspecting.contradictions import contradictions
+from fieldmon.monitoring.inspecting.known_inspections import count_new
+
 from ..show import recorded_batches
 from ..state import notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
@@ -30,13 +33,13 @@ def ask_about_contradictions(choices: Choices) -> None:
     if waiting is None:
         return
     season = choices.open_season
-    against = season.contradictions(waiting.results)
+    against = contradictions(waiting.results, season.inspections)
     said = against.sentences(season.plot.grid)
     if not said:  # what they contradicted was taken back since
         _ask_anew(choices, waiting)
         return
     others = waiting.results.take(_but(against.which, len(waiting.results)))
-    new = season.count_new(others)
+    new = count_new(season, others)
     source = recorded_batches.source(waiting.source)
     st.warning(texts.CONTRADICTING.format(n=len(said), source=source))
     st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
@@ -100,7 +103,7 @@ def _leave_out(choices: Choices) -> str:
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
-    against = choices.open_season.contradictions(waiting.results).which
+    against = contradictions(waiting.results, choices.open_season.inspections).which
     return _settled(choices, _but(against, len(waiting.results)))
 
 

@@ -31,7 +31,7 @@ def show(choices: Choices, plant: int | None) -> None:
     """
     if plant is None:
         return
-    made = choices.open_season.inspections_of(plant)
+    made = choices.open_season.numbered(plant=plant)
     if not made:
         return
     boxes = FreshBoxes(_WHEN, choices)

@@ -106,7 +106,7 @@ def offer_undo(choices: Choices) -> None:
 
 def can_be_longer(choices: Choices) -> bool:
     """Return whether the day shown would go by other hours: one that is past would not."""
-    return not choices.open_season.is_earlier(choices.on)
+    return not choices.open_season.work(choices.on).is_earlier
 
 
 @notices.reporting
@@ -117,9 +117,9 @@ def longer(choices: Choices) -> str:
     """
     settings = choices.open_season.settings
     who = choices.whose_day
-    second = choices.open_season.worked(choices.on, who or "").second
+    second = choices.open_season.work(choices.on, who or "").inspections.second
     # who worked on is hours beyond the end
-    begun_s = choices.open_season.begun_s(choices.on, who or "")
+    begun_s = choices.open_season.work(choices.on, who or "").begun_s
     gone_s = np.nanmax(np.append(second, 0.0)) - begun_s
     robot = settings.robot if who is None else settings.member(who).robot
     hours = max(robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
@@ -134,7 +134,7 @@ def longer(choices: Choices) -> str:
 def ask_start(choices: Choices) -> None:
     """Where the work begins later than planned, offer to begin now."""
     now, starts = choices.clock.now(), chosen_day.work_begins(choices)
-    begun = len(choices.open_season.worked(choices.on, choices.whose_day or ""))
+    begun = len(choices.open_season.work(choices.on, choices.whose_day or "").inspections)
     late = now.date() == choices.on and now > starts
     if not begun and late:
         said = texts.SCOUT_START.format(start=f"{starts:%H:%M}", now=f"{now:%H:%M}")

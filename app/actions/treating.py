@@ -15,6 +15,7 @@ from fieldmon.errors import SettingError
 from fieldmon.io.options import Upload
 from fieldmon.io.read import read_treated
 from fieldmon.monitoring import Application
+from fieldmon.monitoring.days.advised import advise
 from fieldmon.plot.named_rows import plants_in_rows
 
 from ..show import cautions
@@ -167,7 +168,7 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
     plants, read = (_plants(boxes) if zones is None else None), _of_file(boxes)
     zoned = None if zones is None or read is not None else zones()
     if zoned is not None:
-        season.advise(choices.on, zoned.advised)
+        advise(season, choices.on, zoned.advised)
     area = None if zoned is None else zoned.area
     if read is not None:
         area = read.value
@@ -179,8 +180,8 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
         return texts.TREATED_BEFORE
     beware = [
         in_words(one.sentence)
-        for one in season.cautions_because_of(
-            done.batch, choices.on, choices.units.in_sentences(choices.on)
+        for one in season.cautions(
+            choices.on, choices.units.in_sentences(choices.on), because_of=done.batch
         )
     ]
     beware += [in_words(one.sentence) for one in (read.messages if read is not None else ())]

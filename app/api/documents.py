@@ -29,7 +29,10 @@ from fieldmon.monitoring.days.day_ahead import (
 )
 from fieldmon.monitoring.estimates.derived_layers import spot_area
 from fieldmon.monitoring.estimates.history import say_gone
+from fieldmon.monitoring.estimates.last_days import last_date
 from fieldmon.monitoring.estimates.plant_states import hot_spots_on, shown_apart
+from fieldmon.monitoring.estimates.what_was_told import detection_of
+from fieldmon.monitoring.inspecting.contradictions import contradicting
 from fieldmon.monitoring.phones.findings import taken_back, taken_back_before
 from fieldmon.monitoring.phones.photos import photos_of
 from fieldmon.planning.skips import left_out
@@ -125,7 +128,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         # who has no route would be given the hours of a robot that a team does without
         "seconds_left": hours.left_s if ahead.has_route(part) else 0.0,
         "has_route": ahead.has_route(part),
-        "route": _route(route, season.detection_of(on, scout.name)),
+        "route": _route(route, detection_of(season, on, scout.name)),
         "plan": plan,
         # evening: what was found today counts
         "chance": np.round(season.evening(on) * 1000).astype(int).tolist(),
@@ -134,7 +137,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "recorded": np.flatnonzero(recorded).tolist(),
         "gone": np.flatnonzero(history.gone(settings.day(on))).tolist(),
         "today": _said(history.inspections.on(on)),
-        "contradicting": _said(season.contradicting(on)),
+        "contradicting": _said(contradicting(season.inspections.on(on))),
         "taken_back": list(taken_back(season, scout.name, on)),
         "taken_back_before": {
             day: list(ids) for day, ids in taken_back_before(season, scout.name, on).items()
@@ -166,7 +169,7 @@ def rest_document(
         on, part = _day(season, on), WorkPart(scout.rows, scout.name)
         route = planned_again(season, on, part, seconds_left)
         plan = DayAhead.of(season, on).plan_of(part)
-        told = _route(route, season.detection_of(on, scout.name))
+        told = _route(route, detection_of(season, on, scout.name))
     last_heard.note(season.path, scout.name, on, plan)
     return _json({"day": on.isoformat(), "route": told, "plan": plan})
 
@@ -180,7 +183,7 @@ def _day(season: Season, on: date | None) -> date:
     try:
         season.settings.day(today)
     except SettingError:
-        return season.last_date()
+        return last_date(season)
     return today
 
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.monitoring.days.kept_routes import closed_to_kept
+from fieldmon.monitoring.estimates.last_days import recorded_ahead
 from fieldmon.monitoring.treating.cautions import harvest_unsaid
 from fieldmon.monitoring.treating.closures import closed_in_words, closed_plants, is_all_closed
 from fieldmon.planning.skips import left_out_in_words
@@ -79,7 +81,7 @@ def _left_off(choices: Choices, season: Season, plan: DayPlan) -> list[str]:
     units = choices.units.in_sentences(choices.on)
     closed = season.closed(choices.on, choices.whose_day or "", plan.scene.seconds_left)
     said = closed_in_words(closed, choices.plot.grid, units)
-    to_kept = season.closed_to_kept(choices.on, choices.whose_day or "")
+    to_kept = closed_to_kept(season, choices.on, choices.whose_day or "")
     plants = closed_plants(to_kept, len(choices.plot.grid))
     kept = np.count_nonzero(plants[chosen_day.given_out(choices)])
     told = texts.KEPT_CLOSED if len(plan.route) else texts.KEPT_ALL_CLOSED
@@ -95,14 +97,14 @@ def not_come(choices: Choices, last: date) -> str:
         return ""
     day, today = (choices.units.said_day(on, choices.today) for on in (last, choices.today))
     said = texts.NOT_COME.format(day=day, today=today)
-    if not choices.open_season.inspections_on(last):
+    if not choices.open_season.numbered(last):
         return said
     return f"{said} {texts.NOT_COME_CORRECT.format(correct=texts.CORRECT_WHEN)}"
 
 
 def _show_left_out(choices: Choices, season: Season) -> None:
     """Say so on the pages of days before, which show none of it, and which drafts do not count."""
-    ahead = season.recorded_ahead()
+    ahead = recorded_ahead(season)
     if ahead is not None and (said := not_come(choices, ahead)):
         st.warning(said)
     if season.drafts:

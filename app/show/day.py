@@ -14,6 +14,7 @@ from fieldmon.compute.wording import chance_figure
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring.estimates.day_figures import flagged_said
+from fieldmon.monitoring.inspecting.contradictions import contradiction_lines
 from fieldmon.planning.bound_wording import PROVED, share_above
 from fieldmon.planning.explain import explain
 from fieldmon.planning.skips import nothing_left_in_words
@@ -159,9 +160,10 @@ def say_of_day(choices: Choices, plan: DayPlan) -> None:
 
 def say_otherwise(choices: Choices) -> None:
     """Show where two people said otherwise of one plant on the chosen day: both count as said."""
-    said = () if choices.season is None else choices.open_season.contradiction_lines(
-        choices.on, texts.isolated
-    )  # fmt: skip
+    if (season := choices.season) is None:
+        return
+    held = season.inspections.on(choices.on)
+    said = contradiction_lines(held, season.plot.grid, texts.isolated)
     if not said:
         return
     lines = [f"- {in_words(one)}" for one in said[:_MOST_OTHERWISE]]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.infestation.learnt import worth_saying
+from fieldmon.monitoring.estimates.what_was_told import earlier_season_note
 
 from ..state import chosen_day
 from ..words import texts
@@ -31,7 +32,7 @@ def show(choices: Choices) -> None:
         st.caption(texts.NOT_LEARNT)
         _list(one.sentence() for one in said)
         return
-    taught = choices.open_season.earlier_season_note()
+    taught = earlier_season_note(choices.open_season)
     notes = [] if taught is None else [in_words(taught)]
     if not chosen_day.progress(choices).inspected:
         notes.append(texts.LEARNT_AT_FIRST)

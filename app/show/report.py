@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fieldmon.io.import_report import Severity
+from fieldmon.monitoring.inspecting.contradictions import contradiction_lines
 from fieldmon.reports import words
 from fieldmon.reports.certification import certification_report
 from fieldmon.reports.day import (
@@ -68,7 +69,9 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         treatments=() if season is None else treated_on(season, choices.on),
         labels=() if season is None else season.labels(),
         recorded=recorded,
-        otherwise=() if season is None else season.contradiction_lines(choices.on, words.isolated),
+        otherwise=() if season is None else contradiction_lines(
+            season.inspections.on(choices.on), season.plot.grid, words.isolated
+        ),
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
     on = choices.on

@@ -19,7 +19,8 @@ from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior.prior import prior_chance
 from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.monitoring import worked_route
-from fieldmon.monitoring.days import day_ahead, estate_day
+from fieldmon.monitoring.days import day_ahead, estate_day, kept_routes
+from fieldmon.monitoring.estimates import figures_of_day, treatment_effect
 from fieldmon.monitoring.estimates.plant_states import hot_spots_on
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed
 from fieldmon.reports import season as reports
@@ -199,7 +200,7 @@ def kept_route(
 @st.cache_resource(max_entries=_DAYS, show_spinner=False)
 def planned_only(key: str, revision: str, day: str, _season: Season) -> tuple[date, ...]:
     """Return the planned days up to a day of which nothing is recorded."""
-    return _season.planned_only(date.fromisoformat(day))
+    return kept_routes.planned_only(_season, date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=False)
@@ -235,31 +236,31 @@ def kept_days(key: str, revision: str, _season: Season) -> tuple[DayFigures, ...
 @st.cache_resource(max_entries=_DAYS, show_spinner=False)
 def day_figures(key: str, revision: str, day: str, _season: Season) -> DayFigures:
     """Return a day of a season in figures."""
-    return _season.day_figures(date.fromisoformat(day))
+    return figures_of_day.day_figures(_season, date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def progress(key: str, revision: str, day: str, _season: Season) -> Progress:
     """Return how far the inspections are after a day of a season."""
-    return _season.progress(date.fromisoformat(day))
+    return figures_of_day.progress(_season, date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_DAYS, show_spinner=False)
 def still_infested(key: str, revision: str, day: str, _season: Season) -> PlotEstimate:
     """Return how many plants are still infested after a day of a season, flagged ones too."""
-    return _season.still_infested(date.fromisoformat(day))
+    return figures_of_day.still_infested(_season, date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def flagged(key: str, revision: str, day: str, _season: Season) -> float:
     """Return how many plants found are still infested after a day of a season."""
-    return _season.flagged(date.fromisoformat(day))
+    return figures_of_day.flagged(_season, date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_DAYS, show_spinner=False)
 def found_again(key: str, revision: str, day: str, _season: Season) -> FoundAgain | None:
     """Return how many plants taken as treated were found again up to a day of a season."""
-    return _season.found_again(date.fromisoformat(day))
+    return figures_of_day.found_again(_season, date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_MAPS, show_spinner=False)
@@ -281,7 +282,7 @@ def learnt_efficacy(
     key: str, revision: str, day: str, product: str, _season: Season
 ) -> TreatmentEffect | None:
     """Return what a season learnt until a day of how well a product works."""
-    return _season.learnt_efficacy(date.fromisoformat(day), product)
+    return treatment_effect.learnt_efficacy(_season.effects(date.fromisoformat(day)), product)
 
 
 @st.cache_resource(max_entries=FEW, show_spinner=WORKING)

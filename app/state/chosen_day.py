@@ -14,6 +14,7 @@ from fieldmon.infestation.level_range import first_level_range
 from fieldmon.infestation.records import usable
 from fieldmon.monitoring import day_was_worked
 from fieldmon.monitoring.estimates import plant_states
+from fieldmon.monitoring.estimates.last_days import last_date
 from fieldmon.monitoring.settings.shift_work import made_by
 from fieldmon.planning import day_bound
 from fieldmon.plot.local_clock import grid_clock
@@ -303,7 +304,7 @@ def found(choices: Choices) -> NDArray[np.int32]:
 def season_days(choices: Choices) -> list[str]:
     """Return the days (ISO) of a season from its first up to its last or the chosen one."""
     season = choices.open_season
-    until: date = max(choices.on, season.last_date())
+    until: date = max(choices.on, last_date(season))
     first = np.datetime64(season.settings.begins, "D")
     return [str(day) for day in np.arange(first, np.datetime64(until, "D") + 1)]
 

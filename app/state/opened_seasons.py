@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.merging.other_seasons import is_another_now
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -84,7 +85,7 @@ def _forget(file: tuple[Path, int], opening: Opening) -> None:
 def _is_another(season: Season) -> bool:
     """Return whether another season was copied into the file, which keeps its inode then."""
     try:
-        return season.is_another_now()
+        return is_another_now(season)
     except FileProblem:  # it says so to what is asked of it next
         return False
 

@@ -18,7 +18,8 @@ from fieldmon.monitoring.days.estate_routes import (
     too_far,
     walked,
 )
-from fieldmon.monitoring.season import season_copies
+from fieldmon.monitoring.merging import other_seasons
+from fieldmon.monitoring.merging.other_seasons import Ground
 from fieldmon.monitoring.treating.closures import closed_plants
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
@@ -162,8 +163,9 @@ def of_one_plot(names: Iterable[str]) -> tuple[Worded, ...]:
             season = cached.season(seasons_folder.path_of(name))
             seasons.append(season)
             own += [season] if name in wanted else []
-    among = [one for one in seasons if any(map(one.is_on_plot_of, own))]
-    return season_copies.of_one_plot(among, texts.isolated)
+    grounds = [Ground.of(one) for one in own]
+    among = [one for one in seasons if any(map(Ground.of(one).is_that_of, grounds))]
+    return other_seasons.of_one_plot(among, texts.isolated)
 
 
 def planned(plots: list[PlotState], crew: EstateCrew, progress: Progress) -> SharedPlots:

@@ -193,7 +193,7 @@ def change(options: ChangeOptions) -> None:
     Example: fieldmon change season.gpkg --pest spider-mite --weather station.csv
     """
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.settings.settings_words import telling_anew
+    from fieldmon.monitoring.estimates.told_anew import telling_anew
 
     season = Season(options.season)
     seen = season.settings

@@ -235,6 +235,8 @@ def decide(
     """
     from fieldmon.decisions.thresholds import threshold_of
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.days.advised import advise
+    from fieldmon.monitoring.estimates.treatment_effect import learnt_efficacy
     from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 
     threshold = threshold_of(asked.threshold, _own(asked.thresholds))
@@ -248,7 +250,7 @@ def decide(
     )
     kept = Season(asked.season)
     when = default_date(kept, day(asked.on))
-    learnt = kept.learnt_efficacy(when, files.product) if costs.works is None else None
+    learnt = learnt_efficacy(kept.effects(when), files.product) if costs.works is None else None
     settings = AdviceSettings(
         sure=asked.sure,
         sprayer=sprayer.sprayer(kept.plot.grid.row_spacing_m),
@@ -269,7 +271,7 @@ def decide(
     for caution in kept.cautions_if_treated(when, files.product, advice.sprayed):
         typer.echo(f"warning: {caution.sentence}", err=True)
     refused = _write(_AdviceAsked(kept, when, advice, files.product), files.output or [])
-    kept.advise(when, short)
+    advise(kept, when, short)
     if refused is not None:
         raise refused
 

@@ -25,7 +25,9 @@ def tell_left_out(scouts: list[str]) -> None:
 
 def tell_others(season: Season, on: date, left_out: Sequence[tuple[int, int]]) -> None:
     """Print that others are out, and what is left to them."""
-    if not (codes := season.codes_on(on)):
+    from fieldmon.monitoring.phones.scouts import codes_on
+
+    if not (codes := codes_on(season, on)):
         return
     out = "is out with a route" if len(codes) == 1 else "are out with routes"
     theirs = f"{' and '.join(codes)} {out} of their own"

@@ -75,7 +75,7 @@ def _team_day(
     if today.batch is not None:
         typer.echo(f"{on} goes on (batch {today.batch}).")
         tell_plan(goes_on=today.goes_on)
-    before = {one.name: len(season.worked(on, one.name)) for one in today.robots}
+    before = {one.name: len(season.work(on, one.name).inspections) for one in today.robots}
     recordings = {
         one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
         for one in today.robots
@@ -91,7 +91,7 @@ def _team_day(
         for name in sorted(begun):
             write_tables(begun[name], on, own[name], name, before[name])
             begun_s = begun[name].begun_s
-            planned_s = season.begun_s(on, name) if begun_s is None else begun_s
+            planned_s = season.work(on, name).begun_s if begun_s is None else begun_s
             begins = moment_begun(season, on, planned_s)
             noted = recordings[name], begun[name]
             write_bag_of(noted, begins, own[name], goes_on=before[name] > 0)

@@ -64,7 +64,7 @@ def export(
 
 def _table(kept: list[Season], of: str) -> bytes:
     from fieldmon.monitoring.inspecting.certifier_tables import TABLES, csv_bytes
-    from fieldmon.monitoring.season.season_copies import called_apart
+    from fieldmon.monitoring.merging.other_seasons import called_apart
 
     tables = (
         (TABLES[of](season), called)

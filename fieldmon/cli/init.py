@@ -164,6 +164,7 @@ def init(options: InitOptions) -> None:
     import numpy as np
 
     from fieldmon.monitoring import KeptMessage, Season
+    from fieldmon.monitoring.estimates.what_was_told import earlier_season_note
 
     path, (team, at) = options.season, options.team()
     starts = WorkStart(day(options.begins, "--begins"), at)
@@ -180,6 +181,6 @@ def init(options: InitOptions) -> None:
         f"Season begun in {path}: {_counting(known.records, settings)}, about "
         f"{estimate(ahead.expected)} plants believed infested ({ahead.low:,} to {ahead.high:,})."
     )
-    if (taught := season.earlier_season_note()) is not None:
+    if (taught := earlier_season_note(season)) is not None:
         typer.echo(taught)
     typer.echo(f"Next: fieldmon plan {shlex.quote(str(path))} -o route.geojson")

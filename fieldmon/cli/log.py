@@ -32,14 +32,15 @@ def log(
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.changes.outside_changes import refuse_unlike_log
     from fieldmon.monitoring.changes.season_log import lines
+    from fieldmon.monitoring.estimates.verifying import changed_maps, check_against_log, is_short
     from fieldmon.plot.local_clock import local_clock
 
     kept = Season(season)
     typer.echo("\n".join(lines(kept.log(), local_clock(kept.plot.field))))
-    refuse_unlike_log(kept.check_against_log())
-    whole = mornings or kept.is_short
+    refuse_unlike_log(check_against_log(kept))
+    whole = mornings or is_short(kept)
     with counting("Mornings worked out again") as count:
-        said = kept.changed_maps(whole=whole, tell=count)
+        said = changed_maps(kept, whole=whole, tell=count)
     for sentence in said:
         typer.echo(f"doubtful: {sentence}", err=True)
     if not whole:

@@ -29,6 +29,7 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     """
     from fieldmon.compute.wording import counted, joined
     from fieldmon.monitoring import Season, copy_season
+    from fieldmon.monitoring.estimates.last_days import default_date
 
     if other.exists() and other.samefile(season):
         raise SettingError(f"{other} must be another copy of the season, but it is the same file.")
@@ -68,10 +69,12 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         )
     for sentence in done.overlaps:
         typer.echo(f"  codes: {sentence}")
-    typer.echo("\n".join(lines(kept, kept.status(kept.default_date()))))
+    typer.echo("\n".join(lines(kept, kept.status(default_date(kept)))))
 
 
 def _entered_early(season: Season) -> list[str]:
     """Return who was where before entry was allowed: one copy may know who, the other why."""
-    beware = season.cautions(season.last_date())
+    from fieldmon.monitoring.estimates.last_days import last_date
+
+    beware = season.cautions(last_date(season))
     return [one.sentence for one in beware if one.kind == "entered"]

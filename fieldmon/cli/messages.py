@@ -203,7 +203,9 @@ def tell_not_come(
 
 def tell_found_again(season: Season, on: date) -> None:
     """Print that plants were found again up to a day, though they are taken as treated."""
-    if (said := season.found_again(on)) is not None:
+    from fieldmon.monitoring.estimates.figures_of_day import found_again
+
+    if (said := found_again(season, on)) is not None:
         how = shlex.join(["fieldmon", "change", str(season.path), "--flag-only"])
         typer.echo(f"doubtful: {said.sentence(how)}", err=True)
 

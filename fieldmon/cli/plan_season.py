@@ -118,13 +118,14 @@ def _plan_alone(
 
 def _tell_route(season: Season, on: date, today: DayPlan) -> None:
     """Print what was done of a day, what its route will find, and whether codes share its rows."""
+    from fieldmon.monitoring.phones.scouts import codes_on
     from fieldmon.reports.words import DAY_OF_NOBODY
 
-    n = _done(season.worked(on))
+    n = _done(season.work(on).inspections)
     done = f"{n} done, " if n else ""
     infested = float(season.evening(on)[today.route.plant].sum())
     typer.echo(f"{on}: {done}{day_in_words(today.route, infested)}")
-    if [*season.codes_on(on).values()] not in ([], [None]):
+    if [*codes_on(season, on).values()] not in ([], [None]):
         typer.echo(f"seen: {DAY_OF_NOBODY}", err=True)
 
 
@@ -135,16 +136,19 @@ def _done(*each: Inspections) -> int:
 
 def _refuse_worked(season: Season, on: date, now: time, team: list[str]) -> None:
     """Refuse a time before somebody's last result: hours already worked are no hours left."""
+    from fieldmon.monitoring.inspecting.known_inspections import number_of
+
     for name in team or [""]:
-        worked = season.worked(on, name)
+        work = season.work(on, name)
+        worked = work.inspections
         second = worked.second
         if not len(second) or not isfinite(second[-1]):
             continue
-        if season.left_s(on, now, name) < season.left_s(on, None, name) + _MINUTE_S:
+        if work.left_s(now) < work.left_s() + _MINUTE_S:
             continue
         last = datetime.combine(on, time()) + timedelta(seconds=float(second[-1]))
         whose = f"{name}'s last result" if name else "the last result"
-        number = season.number_of(worked)
+        number = number_of(season, worked)
         file = shlex.quote(str(season.path))
         raise SettingError(
             f"--now must not be before what was found, but it is {now:%H:%M} and {whose} of {on} "
@@ -314,7 +318,8 @@ def _tell_routes(
 
     names = tuple(name for name, _ in named)
     # of who is not of the team any more, too
-    done = _done(season.worked(on, Besides(names)), *(season.worked(on, n) for n in names))
+    every: tuple[str | Besides, ...] = (Besides(names), *names)
+    done = _done(*(season.work(on, who).inspections for who in every))
     typer.echo(f"{on}{f': {done} done' if done else ''}")
     for name, today in named:
         if (notes := today.route.notes) is not None and notes.start is not None:

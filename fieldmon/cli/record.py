@@ -93,6 +93,7 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
     Example: fieldmon record season.gpkg route.csv --date 2026-04-06 --who Ann
     """
     from fieldmon.io.sandbox import process
+    from fieldmon.monitoring.estimates.last_days import last_date
 
     process.warm("fieldmon.io.sandbox.tasks")  # it loads while the season is read
     import numpy as np
@@ -111,9 +112,9 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
     saved = [(one.name, one.saved) for one in read if one.saved is not None]
     for name, one in saved:
         _take_saved(kept, name, one, flags.who)
-    on = kept.last_date() if saved else last
+    on = last_date(kept) if saved else last
     if on is not None:
-        with kept.one_moment():
+        with kept.store.one_moment():
             typer.echo("\n".join(lines(kept, kept.status(on))))
             tell_found_again(kept, on)
 
@@ -162,12 +163,14 @@ def _refuse_changed(season: Season, files: list[Path], read: list[BroughtFile]) 
 
 def _record(season: Season, read: list[BroughtFile], flags: RecordFlags) -> date | None:
     """Record what files say, all of it or nothing; return the last day of it."""
+    from fieldmon.monitoring.merging.other_seasons import is_copy
+
     if not read:
         return None
     # in a copy of this season, who is named corrected
     found = [
         one.findings
-        if one.copy and season.is_copy(one.copy)
+        if one.copy and is_copy(season, one.copy)
         else _of(flags.who, one.findings, one.name)
         for one in read
     ]

@@ -37,11 +37,11 @@ def opened(files: Iterable[Path]) -> list[Season]:
     where two seasons are of one plot.
     """
     from fieldmon.monitoring import Season
-    from fieldmon.monitoring.season.season_copies import of_one_plot
+    from fieldmon.monitoring.merging.other_seasons import is_copy, of_one_plot
 
     seasons = [Season(file) for file in files]
     for one, other in combinations(seasons, 2):
-        if one.is_copy(other.path):
+        if is_copy(one, other.path):
             raise SettingError(
                 f"Each season must be given once, but {one.path} and {other.path} are the same or "
                 f"copies of one: what both hold would stand there twice. {_instead(one, other)}"
@@ -53,7 +53,9 @@ def opened(files: Iterable[Path]) -> list[Season]:
 
 def _instead(one: Season, other: Season) -> str:
     """Return what to do with two copies of a season of which each is to count once."""
-    if one.is_of_another_pest(other.path):
+    from fieldmon.monitoring.merging.other_seasons import is_of_another_pest
+
+    if is_of_another_pest(one, other.path):
         return (
             "They look for different pests by now: leave one away, or undo in one of them what was "
             "recorded before it was copied."
@@ -67,12 +69,14 @@ def default_date(season: Season, told: date | None, flag: str = "--date") -> dat
 
     `flag` names the option that tells it. A later day that was recorded is doubted in any case.
     """
-    last, today = season.last_date(), day_on(season.plot.field, None)
-    if (recorded := season.recorded_ahead()) is not None:
+    from fieldmon.monitoring.estimates import last_days
+
+    last, today = last_days.last_date(season), day_on(season.plot.field, None)
+    if (recorded := last_days.recorded_ahead(season)) is not None:
         _tell_recorded_ahead(season, recorded)
     if told is not None:
         return told
-    meant, was = season.default_date(), "recorded" if last == recorded else "planned"
+    meant, was = last_days.default_date(season), "recorded" if last == recorded else "planned"
     if last <= max(today, season.settings.begins):
         return meant
     typer.echo(
@@ -86,7 +90,7 @@ def default_date(season: Season, told: date | None, flag: str = "--date") -> dat
 def _tell_recorded_ahead(season: Season, recorded: date) -> None:
     """Print that the last day recorded has not come, and how to mend one of its inspections."""
     field, what = season.plot.field, "the last day recorded"
-    if not (numbers := season.inspections_on(recorded)):
+    if not (numbers := [one.number for one in season.numbered(recorded)]):
         tell_not_come(recorded, field, what)
         return
     path, one = str(season.path), ["--inspection", str(numbers[0])]
@@ -160,6 +164,8 @@ def refuse_unrecorded(season: Season | None, files: Iterable[Path]) -> None:
 
     Without a season nothing is recorded.
     """
+    from fieldmon.monitoring.inspecting.known_inspections import count_never_recorded
+
     filled_in = [file for file in files if file.is_file() and _is_filled_in(file)]
     if season is None:
         if not filled_in:
@@ -172,7 +178,7 @@ def refuse_unrecorded(season: Season | None, files: Iterable[Path]) -> None:
         )
     for file in filled_in:
         said, left_out = _results_in(file, season)
-        if n := season.count_never_recorded(said):
+        if n := count_never_recorded(season, said):
             pasted = shlex.join([str(season.path), str(file)])
             results = "1 result" if n == 1 else f"{n} results"
             raise SettingError(

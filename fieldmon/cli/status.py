@@ -56,11 +56,13 @@ def status(
 
     kept = Season(season)
     tell_drafts(kept.drafts)
-    with kept.one_moment():
+    with kept.store.one_moment():
         _show(kept, kept.status(default_date(kept, day(on))), batches=batches, rows=rows)
 
 
 def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
+    from fieldmon.monitoring.estimates.verifying import is_short
+
     typer.echo("\n".join(lines(kept, now)))
     typer.echo(f"  forecast               {kept.forecast(now.on).sentence()}")
     if assumed := assumed_in_words(kept.plot.assumed):
@@ -72,7 +74,7 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
     if batches:
         _show_batches(kept)
     tell_found_again(kept, now.on)
-    whole = kept.is_short
+    whole = is_short(kept)
     for sentence in kept.verify(whole=whole):
         typer.echo(f"doubtful: {sentence}", err=True)
     if not whole:
@@ -85,7 +87,9 @@ def _show(kept: Season, now: Status, *, batches: bool, rows: bool) -> None:
 
 def _contradicting(season: Season, on: date) -> Iterator[str]:
     """Yield of which plants two people said otherwise on a day, line by line."""
-    said = season.contradiction_lines(on)
+    from fieldmon.monitoring.inspecting.contradictions import contradiction_lines
+
+    said = contradiction_lines(season.inspections.on(on), season.plot.grid)
     for line in said[:_CONTRADICTING]:
         yield f"  contradiction          {line}"
     if (more := len(said) - _CONTRADICTING) > 0:
@@ -134,12 +138,14 @@ def _other_days(said: BatchContents, recorded: date) -> str:
 
 def lines(season: Season, now: Status) -> Iterator[str]:
     """Yield where a season stands, line by line."""
+    from fieldmon.monitoring.estimates.what_was_told import earlier_season_note
+
     yield from _of_inspections(season, now)
     yield from _planned_only(season, now.on)
     yield from _of_infestation(now)
     yield from _of_learnt(season, now)
     yield from _told_otherwise(season, now.on)
-    if (taught := season.earlier_season_note()) is not None:
+    if (taught := earlier_season_note(season)) is not None:
         yield f"  an earlier season      {taught}"
     yield from _of_pest(season, now)
     yield _of_hot_spots(now)
@@ -279,8 +285,9 @@ def _told_otherwise(season: Season, until: date) -> Iterator[str]:
 def _planned_only(season: Season, until: date) -> Iterator[str]:
     """Yield which planned days nothing is recorded of."""
     from fieldmon.compute.wording import counted
+    from fieldmon.monitoring.days.kept_routes import planned_only
 
-    if missing := season.planned_only(until):
+    if missing := planned_only(season, until):
         some = ", ".join(map(str, missing[-_PLANNED_ONLY:]))
         n = len(missing) - _PLANNED_ONLY
         more = f"{counted(n, 'day')} and " if n > 0 else ""

@@ -187,7 +187,7 @@ def _say_what_follows(kept: Season, batch: int | None, *, learnt: bool) -> None:
         typer.echo(f"{harvest_unsaid(first[1])} {how_to_say_wait(kept.path, first[1])}")
     elif period.harvest_from is not None:
         typer.echo(f"Harvest there from {period.harvest_from} on.")
-    for caution in kept.cautions_because_of(one.batch, one.on):
+    for caution in kept.cautions(one.on, because_of=one.batch):
         typer.echo(f"warning: {caution.sentence}", err=True)
     if period.harvest_from is None:
         typer.echo(how_to_say_wait(kept.path, one), err=True)

@@ -45,23 +45,27 @@ def undo(
 
     Example: fieldmon undo season.gpkg
     """
+    from fieldmon.monitoring.changes.earlier_settings import before_change
+    from fieldmon.monitoring.season.undoing import undo_with_batches
+
     if sum(one is not None for one in (batch, inspection, redo)) + change > 1:
         raise SettingError("Give --batch, --inspection, --redo or --change, not two of them.")
     from fieldmon.monitoring import Season
 
     if change:
-        from fieldmon.monitoring.settings.settings_words import taken_back, telling_anew
+        from fieldmon.monitoring.estimates.told_anew import telling_anew
+        from fieldmon.monitoring.settings.settings_words import taken_back
 
         kept = Season(season)
         settings = kept.settings
-        with telling_anew(kept, settings, kept.before_change() or settings, typer.echo):
+        with telling_anew(kept, settings, before_change(kept) or settings, typer.echo):
             typer.echo(taken_back(settings, kept.undo_change(who)))
         return
     kept = Season(season)
     if redo is not None:
         typer.echo(kept.redo(redo, who))
         return
-    undone = kept.undo_with_batches(batch, inspection, who)
+    undone = undo_with_batches(kept, batch, inspection, who)
     typer.echo(undone.said)
     if undone.batch is None:
         typer.echo("This cannot be redone. If it was right, record it again.")

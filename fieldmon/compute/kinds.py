@@ -165,7 +165,7 @@ def checked(public: F) -> F:
     """Let a function refuse arguments that are not what it is annotated with; for decorators.
 
     Of a class: all its public methods. A day may be a text, ``"2026-11-18"``, a time, or numpy's;
-    a time of day may be a text, ``"07:00"``. What has the method `plot_time` turns a time of
+    a time of day may be a text, ``"07:00"``. What has the method `_plot_time` turns a time of
     another zone into its plot's.
 
     Examples
@@ -206,7 +206,7 @@ def _checked(function: Any) -> Any:  # noqa: ANN401 - any function, with its own
     def wrapper(*args: Any, **keywords: Any) -> Any:  # noqa: ANN401 - as above
         if days or times:
             asked = args[0] if args and not isinstance(args[0], type) else None
-            local = getattr(asked, "plot_time", None)
+            local = getattr(asked, "_plot_time", None)
 
             def read(name: str, given: Any) -> Any:  # noqa: ANN401 - as above
                 if name in days:

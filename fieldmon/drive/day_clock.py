@@ -74,9 +74,9 @@ def second_now(season: Season, on: date, who: str | Besides = "") -> tuple[float
     now_s = (now - datetime.combine(on, time())).total_seconds()
     if 0 <= now_s < DAY_S:
         begins = season.settings.begins
-        is_night = on > begins and now_s + DAY_S < season.until_s(night, who)
+        is_night = on > begins and now_s + DAY_S < season.work(night, who).until_s
         return now_s, f"the work of {night} is not over" if is_night else ""
-    if DAY_S <= now_s < season.until_s(on, who):
+    if DAY_S <= now_s < season.work(on, who).until_s:
         return now_s, ""
     return now_s, f"it is {now.date()} at the plot"
 

@@ -12,7 +12,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.days.day_ahead import DayAhead, through
 from fieldmon.monitoring.estimates.asked_day import AskedDay, PlantToInspect, plant_to_inspect
-from fieldmon.monitoring.phones.scouts import inside
+from fieldmon.monitoring.phones.scouts import codes_on, inside
 from fieldmon.monitoring.settings.shift_work import Besides
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
@@ -61,7 +61,7 @@ class SeasonDay(AskedDay):
         self, season: Season, on: date, source: str = "robot", wishes: Wishes | None = None,
         name: str = "",
     ) -> None:  # fmt: skip
-        codes = season.codes_on(on)
+        codes = codes_on(season, on)
         if name and person_key(name) in map(person_key, codes):
             raise SettingError(
                 f"A robot must be called otherwise than those with a code for {on}, but both are "
@@ -74,7 +74,7 @@ class SeasonDay(AskedDay):
         self._wishes = self._without(wishes)
         self._who = Besides(tuple(codes)) if codes else None
         #: the second of the day at which its work began, from which seconds count here
-        self.begun_s = season.begun_s(on, self._who or "")
+        self.begun_s = season.work(on, self._who or "").begun_s
         self._source = f"{source} {on}"
         #: plans that it went by, the one it began or went on with included
         self.replanned = 0
@@ -105,7 +105,7 @@ class SeasonDay(AskedDay):
 
     def begin_at(self, now_s: float) -> None:
         """Begin now, or go on, seconds since the day's midnight: results count from then."""
-        if not len(self._season.worked(self._on, self._who or "")):
+        if not len(self._season.work(self._on, self._who or "").inspections):
             self.begun_s = now_s
             return
         clock = grid_clock(self._season.plot.grid)
@@ -193,7 +193,7 @@ class SeasonDay(AskedDay):
         self._next = 0
         self._at = today.scene.at
         # a first result that came late or early shows that the day began otherwise
-        since_s = season.begun_s(on, who or "") - self.begun_s
+        since_s = season.work(on, who or "").begun_s - self.begun_s
         self._gone_s = since_s + today.scene.robot.day_s - today.scene.seconds_left
         self._since_s = self._gone_s
         self.replanned += 1
@@ -239,7 +239,7 @@ def left_of_plan(
     name = person_key(who) if isinstance(who, str) else ""
     if (kept := ahead.last.get(name)) is None:
         return None
-    done = season.worked(on, who)
+    done = season.work(on, who).inspections
     before = np.flatnonzero(done.plant == kept.at)
     since = done.result[before[-1] + 1 if len(before) else 0 :]
     plants = ahead.plants[name]

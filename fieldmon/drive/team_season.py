@@ -18,6 +18,7 @@ from fieldmon.drive.season_day import (
 )
 from fieldmon.errors import SettingError
 from fieldmon.monitoring.estimates.asked_day import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.monitoring.phones.scouts import codes_on
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.travel import GATE, travel_s
 
@@ -107,7 +108,7 @@ class TeamSeason:
 
     def _entering(self) -> AbstractContextManager[None]:
         """Let a team of robots enter where people may not be yet; nobody of it has a code."""
-        codes = any(self.settings.named(name) for name in self.season.codes_on(self.on))
+        codes = any(self.settings.named(name) for name in codes_on(self.season, self.on))
         is_people = codes or len(self.robots) < len(self.team)
         return nullcontext() if is_people else self.season.entering_treated()
 
@@ -140,7 +141,7 @@ class MemberDay(AskedDay):
         self._stands = _Stands(scene.at, member.robot.day_s - scene.seconds_left)
         super().__init__(self._stands.gone_s)
         #: the second of the day at which its work began, from which seconds count here
-        self.begun_s = team.season.begun_s(team.on, member.name)
+        self.begun_s = team.season.work(team.on, member.name).begun_s
 
     def now_s(self) -> tuple[float, str]:
         """Return what `second_now` does, of its robot."""
@@ -149,7 +150,7 @@ class MemberDay(AskedDay):
     def begin_at(self, now_s: float) -> None:
         """Begin now, or go on, seconds since the day's midnight: results count from then."""
         season, on = self._team.season, self._team.on
-        if not len(season.worked(on, self._member.name)):
+        if not len(season.work(on, self._member.name).inspections):
             self.begun_s = now_s
             return
         gone_s = grid_clock(season.plot.grid).seconds_between(on, self.begun_s, now_s)

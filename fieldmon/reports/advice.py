@@ -10,6 +10,7 @@ from fieldmon.compute.wording import chance_figure, estimate, figure, share_figu
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.records import PRESENT
 from fieldmon.io.spray_rate import litres_figure
+from fieldmon.monitoring.estimates.figures_of_day import found_again
 from fieldmon.monitoring.estimates.plant_states import shown_apart
 from fieldmon.plot.grid import plant_numbers, row_ends
 from fieldmon.reports import words
@@ -40,8 +41,8 @@ def advice_report(
 ) -> Report:
     """Return the report of what is advised after a day's work."""
     lead, *sentences = advice.sentences(units)
-    with season.one_moment():
-        again, plot = season.found_again(on), _map(season, on, advice, units)
+    with season.store.one_moment():
+        again, plot = found_again(season, on), _map(season, on, advice, units)
     blocks: list[Block] = [
         Paragraph(lead, lead=True),
         *map(Paragraph, sentences),
@@ -74,7 +75,7 @@ def _figures(advice: Advice, product: str, units: Units) -> KeyFigures:
 
 
 def _map(season: Season, on: date, advice: Advice, units: Units) -> list[Block]:
-    with season.one_moment():
+    with season.store.one_moment():
         day, evening = season.settings.day(on), season.evening(on)
         state, recorded = shown_apart(season.history, day)
     grid = season.plot.grid

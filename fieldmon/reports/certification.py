@@ -19,7 +19,10 @@ import numpy as np
 from fieldmon.compute.wording import KeptText, counted, figure, joined, worded
 from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.monitoring.season.season_copies import called_apart
+from fieldmon.monitoring.estimates.last_days import default_date
+from fieldmon.monitoring.estimates.verifying import check_against_log
+from fieldmon.monitoring.inspecting.known_inspections import corrected_by
+from fieldmon.monitoring.merging.other_seasons import called_apart
 from fieldmon.monitoring.treating.cautions import groups, label_of, waits
 from fieldmon.plot.named_rows import place_in_words
 from fieldmon.reports import words
@@ -70,13 +73,13 @@ class _PlotRecord:
 
     @classmethod
     def of(cls, season: Season, called: str, until: date | None, units: Units) -> _PlotRecord:
-        on = season.default_date() if until is None else until
+        on = default_date(season) if until is None else until
         done = tuple(one for one in season.treatments() if one.on <= on)
         # until when nobody may enter stands with each treatment: a record is read after it
         beware = tuple(one for one in season.cautions(on, units) if one.kind != "entry")
         told = season.effects(on, units)
         try:
-            log, wrong = season.log(), " ".join(season.check_against_log())
+            log, wrong = season.log(), " ".join(check_against_log(season))
         except FieldmonError as changed:
             log, wrong = (), str(changed)
         first = season.harvest_from(on)
@@ -84,7 +87,7 @@ class _PlotRecord:
         seen = season.inspections
         seen = seen.take(seen.date <= np.datetime64(on, "D")).inspected
         corrected: dict[str, set[str]] = {}
-        for (_, day, *_), who in season.corrected_by().items():
+        for (_, day, *_), who in corrected_by(season).items():
             corrected.setdefault(str(day), set()).add(who)
         when = on, units
         return cls(season, called, *when, done, unsaid, beware, told, log, wrong, seen, corrected)
@@ -146,7 +149,7 @@ def certification_report(
         )
     with ExitStack() as still:
         for season in seasons:
-            still.enter_context(season.one_moment())
+            still.enter_context(season.store.one_moment())
         called = called_apart(seasons)
         records = [
             _PlotRecord.of(season, name, until, units)

@@ -12,8 +12,10 @@ from fieldmon.compute.wording import chance_figure, estimate, figure, hours_figu
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
+from fieldmon.monitoring.changes.earlier_settings import settings_on
 from fieldmon.monitoring.days.day_ahead import WorkPart, plan_ahead
 from fieldmon.monitoring.estimates.plant_states import hot_spots_on, shown_apart
+from fieldmon.monitoring.inspecting.contradictions import contradiction_lines
 from fieldmon.monitoring.treating.cautions import label_of, waits
 from fieldmon.monitoring.treating.closures import closed_in_words
 from fieldmon.planning.members import person_key
@@ -146,12 +148,12 @@ class DayFacts:
 
         `today` as in `day_was_worked`.
         """
-        with season.one_moment():
+        with season.store.one_moment():
             first = "".join([one.name for one in season.planned_by(on).team][:1])
             plan = plan_ahead(season, on, WorkPart(name=first))
             route = plan.route
             worked = day_was_worked(season, on, route, today)
-            settings = season.settings_on(on) if worked else season.planned_by(on)
+            settings = settings_on(season, on) if worked else season.planned_by(on)
             day = settings.day(on)
             shown = worked_route(season, on) if worked else route
             begins = datetime.combine(on, settings.starts)
@@ -176,7 +178,9 @@ class DayFacts:
                     on, "".join(names[:1]), plan.scene.seconds_left
                 ),
                 skipped=() if worked else left_out_in_words(plan.scene, route),
-                recorded=recorded, otherwise=season.contradiction_lines(on, words.isolated),
+                recorded=recorded, otherwise=contradiction_lines(
+                    season.inspections.on(on), season.plot.grid, words.isolated
+                ),
             )  # fmt: skip
 
 

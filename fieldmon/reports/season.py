@@ -14,7 +14,11 @@ from fieldmon.compute.wording import chance_figure, counted, estimate, figure, j
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import DayFigures
+from fieldmon.monitoring.changes.earlier_settings import was_changed
+from fieldmon.monitoring.days.kept_routes import planned_only
 from fieldmon.monitoring.estimates.day_figures import flagged_said, found_pct
+from fieldmon.monitoring.estimates.figures_of_day import found_again
+from fieldmon.monitoring.estimates.last_days import last_date
 from fieldmon.monitoring.estimates.plant_states import finds_apart
 from fieldmon.plot.grid import plant_numbers, rows_listed
 from fieldmon.plot.local_clock import local_clock
@@ -104,7 +108,7 @@ class _Facts:
         worked = [one.on for one in self.days if one.inspected_today]
         recorded = season.inspections.date
         is_ahead = not len(recorded) or np.datetime64(self.on, "D") > recorded[-1]
-        if not season.was_changed:
+        if not was_changed(season):
             worked = []  # the same on all of them
         by = [(day, WorkSettings.of_season(season, day, worked=True)) for day in worked]
         if is_ahead or not by:
@@ -140,7 +144,7 @@ def _found_by(season: Season, days: tuple[DayFigures, ...]) -> NDArray[np.int64]
 
 def season_report(season: Season, on: date, units: Units) -> Report:
     """Return the report of a season up to a day; nothing is kept by it."""
-    with season.one_moment():
+    with season.store.one_moment():
         facts, begins = _Facts.of(season, on, units), season.settings.begins
         made = (_stands(facts), _went(facts), _hot_and_found(facts), _goes_by(facts))
         sheets = tuple(
@@ -172,7 +176,7 @@ def _stands(facts: _Facts) -> Iterator[Block]:
     assumed = assumed_sentence(facts.goes_by, facts.units)
     if assumed:
         yield Paragraph(assumed)
-    if (again := facts.season.found_again(facts.on)) is not None:
+    if (again := found_again(facts.season, facts.on)) is not None:
         yield Paragraph(again.sentence())
     beware = facts.season.cautions(facts.on, facts.units)
     if beware:
@@ -269,7 +273,7 @@ def _went(facts: _Facts) -> Iterator[Block]:
         days = counted(len(held), "day")
         said = worded(words.PLANNED_DONE, **held_in_words(held))
         yield Paragraph(joined(" ", (worded(words.PLANNED_DAYS, days=days), said)))
-    if missing := facts.season.planned_only(facts.on):
+    if missing := planned_only(facts.season, facts.on):
         listed = ", ".join(map(facts.units.day, missing))
         yield Paragraph(worded(words.PLANNED_UNRECORDED, days=listed))
     yield _days(facts)
@@ -357,7 +361,7 @@ def _changes(facts: _Facts) -> Iterator[str]:
 def _batches(facts: _Facts) -> Block:
     batches = facts.season.batches()
     contents = facts.season.contents([one.number for one in batches[:_BATCHES_NAMED]])
-    if facts.on < facts.season.last_date():
+    if facts.on < last_date(facts.season):
         # what is of later days only came later
         contents = facts.season.contents([one.number for one in batches])
         later = {number for number, of in contents.items() if of.first > str(facts.on)}

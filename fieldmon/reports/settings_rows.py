@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import Worded, chance_figure, figure, joined, worded
 from fieldmon.io.import_report import Severity
+from fieldmon.monitoring.changes.earlier_settings import settings_on
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.robot import Robot, scout
 from fieldmon.reports import words
@@ -79,7 +80,8 @@ class WorkSettings:
 
         Of a day that was `worked` it is what counted then. See also `with_learnt`.
         """
-        settings, grid = (season.settings_on if worked else season.planned_by)(on), season.plot.grid
+        settings = settings_on(season, on) if worked else season.planned_by(on)
+        grid = season.plot.grid
         guessed = (one for one in season.messages() if one.severity == Severity.GUESSED)
         return cls(
             settings.robot, settings.sampler, settings.prior,

@@ -20,6 +20,7 @@ from app.words import texts
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.days.day_ahead import WorkPart, planned_again, route_ahead
+from fieldmon.monitoring.estimates.what_was_told import detection_of
 from fieldmon.monitoring.phones import photos, scouts
 from fieldmon.monitoring.phones.findings import take
 from fieldmon.monitoring.phones.photos_asked import ask_photo, photos_asked
@@ -161,7 +162,7 @@ def test_what_a_phone_was_planned_to_find_holds_though_another_robot_is_set_mean
     phone.page.evaluate("dispatchEvent(new Event('online'))")
     phone.page.locator(SENT).wait_for(timeout=120_000)
     now = Season(season.path)
-    assert now.detection_of(BEGINS) == 0.5
+    assert detection_of(now, BEGINS) == 0.5
     assert now.history.detections.tolist() == [0.84, 0.84]
     assert [(one.who, one.n, one.own) for one in now.other_detections(BEGINS)] == [("Ann", 2, 0.5)]
 

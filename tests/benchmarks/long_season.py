@@ -33,6 +33,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.estimates.derived_layers import map_digest
+from fieldmon.monitoring.estimates.last_days import last_date
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.file.geopackage import insert
 from fieldmon.monitoring.inspecting import batches, inspection_table
@@ -144,7 +145,7 @@ class Prepared(NamedTuple):
 def commands(season: Path, work: Path) -> list[Prepared]:
     """Return every command that takes a season; `SEASON` stands for the copy."""
     known = Season(season)
-    last, numbered = known.last_date(), known.plant_numbers
+    last, numbered = last_date(known), known.plant_numbers
     two = known.plan(last, keep=False).route.plant[:2].tolist()
     rows = [
         f"{numbered.line[p]},{numbered.number[p]},{r}" for p, r in zip(two, (1, 0), strict=True)

@@ -9,6 +9,8 @@ from fieldmon.cli.status import lines
 from fieldmon.compute.wording import estimate
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates.figures_of_day import flagged, still_infested
+from fieldmon.monitoring.estimates.last_days import last_date
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from tests.cli.estate import ZIP
 from tests.monitoring.seasons import a_season
@@ -60,7 +62,7 @@ def test_finds_are_traced_or_not_as_is_chosen(run, season):
     kept = Season(season)
     assert not kept.settings.belief.traces
     assert kept.settings.belief.spread.rate_per_day == 0.03
-    said = "\n".join(lines(kept, kept.status(kept.last_date())))
+    said = "\n".join(lines(kept, kept.status(last_date(kept))))
     assert "to neighbours only" in said
     assert "detection" not in said
 
@@ -80,7 +82,7 @@ def test_a_change_says_that_days_with_results_go_on_as_before_and_how_they_do_no
 
 
 def test_a_change_that_reaches_into_the_past_says_what_it_makes_of_the_last_day(run, season):
-    on = Season(season).last_date() + timedelta(days=2)
+    on = last_date(Season(season)) + timedelta(days=2)
     Season(season).plan(on)
     before = Season(season).status(on).estimate
     out = run("change", season, "--spread", "0.1")[1]
@@ -139,13 +141,13 @@ def test_what_finds_become_is_told_of_all_that_are_infested_before_and_after(run
     kept = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(treated=False))
     on = kept.settings.begins
     kept.record(Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(on)), "x")
-    before = kept.still_infested(on)
+    before = still_infested(kept, on)
     assert before.low >= 20
-    assert kept.flagged(on) > 19
+    assert flagged(kept, on) > 19
     out = run("change", kept.path, "--treat-finds")[1]
-    after = kept.still_infested(on)
+    after = still_infested(kept, on)
     # of the rest the number may go either way, as who infested whom is drawn anew
-    assert kept.flagged(on) == 0
+    assert flagged(kept, on) == 0
     assert f"after {on} {estimate(after.expected)} ({after.low:,} to {after.high:,})" in out
     assert f"it was {estimate(before.expected)} ({before.low:,} to {before.high:,})." in out
 

@@ -9,6 +9,7 @@ import pytest
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Application, Season
+from fieldmon.monitoring.estimates.treatment_effect import learnt_efficacy
 from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 from tests.cli.estate import BEGINS
 
@@ -82,7 +83,7 @@ def test_a_treatment_is_taken_to_work_as_the_season_learnt(run, season):
         kept.record(Inspections.of(plants, np.full(60, FOUND), seen), "x")
     kept.treat(on + timedelta(days=1), 0.8, product="Soap")
     words = ["decide", season, "--threshold", "5%", "--date", on + timedelta(days=4)]
-    works = kept.learnt_efficacy(on + timedelta(days=4), "soap").efficacy
+    works = learnt_efficacy(kept.effects(on + timedelta(days=4)), "soap").efficacy
     assert works < 0.1
     learnt = f"As this season learnt of Soap: treating cleans {works:.0%}.".replace("%.", " %.")
     for more in ([], ["--product", "soap"]):
@@ -176,7 +177,7 @@ def test_what_the_label_says_of_a_product_is_told_before_it_is_sprayed(run, seas
     assert f"warning: {said} Its label allows 1." in err
     assert len(kept.treatments()) == 1
     done = kept.treat(tomorrow, 0.8, application=Application("borneo"), plants=zones)
-    told = [one.sentence for one in kept.cautions_because_of(done.batch, tomorrow)]
+    told = [one.sentence for one in kept.cautions(tomorrow, because_of=done.batch)]
     assert f"{said} Its label allows 1." in told
     assert "No label of Oil stands" in run(*words[:-1], "Oil", "--date", tomorrow)[2]
     assert "warning: " not in run(*words[:-2], "--date", tomorrow)[2]

@@ -5,8 +5,8 @@ import pytest
 from fieldmon.errors import FileProblem
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.changes import season_log
+from fieldmon.monitoring.estimates import verifying
 from fieldmon.monitoring.inspecting import batches
-from fieldmon.monitoring.season import season_file
 from tests.cli.estate import BEGINS
 from tests.monitoring.changes.test_season_log import by_hand
 
@@ -40,7 +40,7 @@ def test_entries_are_shown_before_any_morning_is_worked_out_again(run, season, m
     def fails(*_, **__):
         raise FileProblem("no morning was worked out")
 
-    monkeypatch.setattr(Season, "changed_maps", fails)
+    monkeypatch.setattr(verifying, "changed_maps", fails)
     code, out, err, _ = run("log", season)
     assert code == 2
     assert "1 entry, the chain holds" in out
@@ -56,7 +56,7 @@ def test_of_a_long_season_only_the_last_mornings_are_held_to_their_digests_and_t
     by_hand(season, "UPDATE days SET digest = 'other' WHERE day = 0")
     only_last = "the last mornings only; fieldmon log --mornings"
     _, _, short, _ = run(command, season)
-    monkeypatch.setattr(season_file, "SHORT", 0)
+    monkeypatch.setattr(verifying, "SHORT", 0)
     code, _, long, _ = run(command, season)
     assert code == 0
     _, _, asked, _ = run("log", season, "--mornings")

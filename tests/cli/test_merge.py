@@ -4,6 +4,7 @@ import shutil
 
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates.last_days import last_date
 from fieldmon.monitoring.phones import scouts
 from tests.cli.estate import BEGINS, ZIP, begin_next_year, filled_in
 from tests.monitoring.changes.test_outside_changes import outside
@@ -47,7 +48,7 @@ def test_treatments_and_codes_that_came_in_are_counted_and_hours_have_a_unit(run
     run("change", season, "--hours", "1.5")
     run("change", other, "--hours", "2")
     theirs = Season(other)
-    theirs.treat(theirs.last_date(), 0.5)
+    theirs.treat(last_date(theirs), 0.5)
     scouts.let_in(theirs, "Ann", (1, 2))
     code, out, err, _ = run("merge", season, other)
     assert code == 0, err

@@ -143,13 +143,16 @@ def test_a_season_begins_with_rasters_and_maps_its_days(run, tmp_path):
         assert f"Chance map written to {season}.tif" in out
     (_, plain_east), (_, east) = chances("plain.tif"), chances("season.tif")
     assert east > plain_east + 0.2
+    from fieldmon.infestation.tracing.traced_pairs import in_sight
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.estimates.figures_of_day import believed
 
     # as the season has them, also those that hide
     kept, tomorrow = Season("season.gpkg"), date(2026, 11, 19)
     run("plan", "season.gpkg", "--date", tomorrow, "--chance-map", "season.tif")
-    for which, same in ((kept.evening, True), (kept.morning_in_sight, False)):
-        write_chance_raster(kept.plot.grid, which(tomorrow), Path("own.tif"))
+    planned_by = in_sight(believed(kept, tomorrow).morning).chance
+    for chance, same in ((kept.evening(tomorrow), True), (planned_by, False)):
+        write_chance_raster(kept.plot.grid, chance, Path("own.tif"))
         with rasterio.open("season.tif") as season, rasterio.open("own.tif") as own:
             assert np.array_equal(season.read(1), own.read(1)) is same
     said = [remark.sentence for remark in Season("season.gpkg").messages()]

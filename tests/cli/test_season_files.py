@@ -10,6 +10,7 @@ import pytest
 from fieldmon.cli.season_files import opened
 from fieldmon.errors import SettingError
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.merging.other_seasons import is_copy
 from tests.cli.estate import BEGINS, MITES, ZIP, begin_next_year, filled_in, table
 from tests.cli.test_merge import worked
 from tests.cli.test_plan_all import SHAPES
@@ -51,8 +52,8 @@ def test_two_seasons_of_one_plot_begun_on_one_day_are_no_copies(run, season, tmp
     assert code == 0, err
     flies = tmp_path / "flies.gpkg"
     worked(run, flies, "a.csv", {0, 1}, "Ann")
-    assert not Season(season).is_copy(flies)
-    assert Season(season).is_copy(shutil.copy(season, tmp_path / "copy.gpkg"))
+    assert not is_copy(Season(season), flies)
+    assert is_copy(Season(season), shutil.copy(season, tmp_path / "copy.gpkg"))
     for words in (("share", "--all", "--date", BEGINS, "-o", "day"),
                   ("export", "-o", "all.csv", "--of", "inspections"),
                   ("report", "-o", "all.html", "--certification")):  # fmt: skip

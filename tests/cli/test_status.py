@@ -11,6 +11,7 @@ from fieldmon.cli.status import lines
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.infestation.plot_estimate import PlotEstimate
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates.last_days import default_date, last_date
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.local_clock import LocalClock, local_clock
@@ -22,7 +23,7 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
     code, out, err, _ = run("status", season, "--date", BEGINS)
     assert code == 0, err
     kept = Season(season)
-    now = kept.status(kept.last_date())
+    now = kept.status(last_date(kept))
     ahead = f"  forecast               {kept.forecast(now.on).sentence()}"
     assert out.splitlines() == [*lines(kept, now), ahead]
     assert "share found            not known: nothing was inspected yet" in out
@@ -38,7 +39,7 @@ def test_a_season_is_told_in_the_lines_of_its_status(run, season):
 
 def test_thousands_are_parted_in_every_number_of_a_status(season):
     kept = Season(season)
-    now = kept.status(kept.last_date())
+    now = kept.status(last_date(kept))
     many = {"plants": 12345, "inspected": 6543, "found": 2345, "finds": 3456}
     estimate = PlotEstimate(1207.6, 237, 3688, 0.0)
     said = "\n".join(lines(kept, replace(now, **many, infested=estimate)))
@@ -51,7 +52,7 @@ def test_thousands_are_parted_in_every_number_of_a_status(season):
 
 def test_no_share_is_said_to_be_nothing_or_all_that_is_not(season):
     kept = Season(season)
-    now = kept.status(kept.last_date())
+    now = kept.status(last_date(kept))
     few = replace(now, plants=12345, inspected=1, found=1)
     few = replace(few, estimate=replace(now.estimate, expected=900.0, low=0, high=2000))
     said = "\n".join(lines(kept, few))
@@ -159,7 +160,7 @@ def test_a_day_ahead_that_was_only_planned_is_not_to_be_undone(run, season):
 
 def test_records_of_before_are_said_with_their_days(tmp_path):
     kept = a_season(tmp_path / "s.gpkg")
-    *_, spots, records = lines(kept, kept.status(kept.last_date()))
+    *_, spots, records = lines(kept, kept.status(last_date(kept)))
     assert spots.startswith("  hot spots ")
     assert records.strip() == kept.records_known().sentence()
     assert " 3 records of 2026-03-30 to 2026-04-02, 1 of them without a date." in records
@@ -200,7 +201,7 @@ def test_a_season_all_of_which_lies_ahead_is_told_as_of_its_last_day(season, mon
     for before, meant in ((1, ahead), (-1, ahead - timedelta(days=1)), (-9, ahead)):
         today = kept.settings.begins - timedelta(days=before)
         monkeypatch.setattr(LocalClock, "today", lambda _, today=today: today)
-        assert kept.default_date() == meant
+        assert default_date(kept) == meant
 
 
 def test_plants_that_are_gone_by_a_note_of_before_are_said_to_count_so(tmp_path):

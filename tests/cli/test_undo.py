@@ -50,9 +50,9 @@ def test_a_correction_of_a_batch_that_was_undone_is_redone_after_that(run, seaso
     kept = Season(season)
     for k, plants in enumerate(([0, 1, 2], [3])):
         kept.record(Inspections.of(np.array(plants), np.zeros(len(plants), int), BEGINS), f"f{k}")
-    number = kept.inspections_of(1)[0].number
+    number = kept.numbered(plant=1)[0].number
     kept.correct_time(number, time(7), "Ann")
-    kept.correct_time(kept.inspections_of(3)[0].number, time(7), "Ann")
+    kept.correct_time(kept.numbered(plant=3)[0].number, time(7), "Ann")
     stays = " stays as it was corrected since."
     out = run("undo", season, "--batch", "1")[1]
     assert "Batch 1 was undone: 2 inspections from f0. 1 inspection" + stays in out
@@ -69,7 +69,7 @@ def test_a_correction_of_a_batch_that_was_undone_is_redone_after_that(run, seaso
     assert (code, "To let it" in err, "batch 1" in err) == (2, False, True)
     assert "Batch 1 counts again: 3 inspections." in run("undo", season, "--redo", "1")[1]
     assert run("undo", season, "--redo", "3")[0] == 0
-    assert kept.inspections_of(1)[0].second == 7 * 3600
+    assert kept.numbered(plant=1)[0].second == 7 * 3600
     # that one alone stands again: its batch counts but for it
     run("undo", season, "--batch", "1")
     assert "Batch 1 counts again: 2 inspections." in run("undo", season, "--redo", "1")[1]

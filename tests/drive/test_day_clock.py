@@ -82,7 +82,7 @@ def test_results_of_a_live_robot_have_the_time_at_which_they_come(plot, tmp_path
     assert "1.5 h are left" in said
     assert times(season) == first + [first[-1] + pause + timedelta(minutes=k) for k in (1, 2)]
     assert (again.goes_on, len(season.batches())) == (True, 1)
-    assert season.left_s(ON) == pytest.approx(again.left_s, abs=2)
+    assert season.work(ON).left_s() == pytest.approx(again.left_s, abs=2)
     now = times(season)[-1] + timedelta(minutes=3)
     assert season.plan(ON, now.time(), keep=False).route.notes.start == now
 
@@ -97,7 +97,7 @@ def test_what_is_driven_past_midnight_stays_in_its_shift(plot, tmp_path, live):
     assert [f"{one:%d %H:%M}" for one in times(season)] == [
         "07 00:31", "07 00:32", "07 01:31", "07 01:32"
     ]  # fmt: skip
-    assert len(season.worked(ON)) == 4
+    assert len(season.work(ON).inspections) == 4
     assert day.gone_s == pytest.approx(62 * 60, abs=60)
     # the next day's own work is not that of now
     nights = SeasonDay(season, ON + timedelta(days=1), "live")

@@ -21,6 +21,10 @@ from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.changes.earlier_settings import before_change, settings_on
+from fieldmon.monitoring.days.kept_routes import planned_only
+from fieldmon.monitoring.estimates.last_days import last_date
+from fieldmon.monitoring.estimates.verifying import check_against_log
 from fieldmon.plot.local_clock import local_clock
 
 FOLDER = Path(__file__).with_name("seasons_of_old")
@@ -59,7 +63,7 @@ def test_a_season_says_what_it_said(season, capsys):
     planned = "  planned, not recorded  2026-04-09", "  Record it; if nobody went, record one stop"
     for new, there in (
         (flagged, "flagged" in season.path.stem),
-        (planned, LAST in season.planned_only(LAST)),
+        (planned, LAST in planned_only(season, LAST)),
     ):
         since = [line for line in said if any(one in line for one in new)]
         assert len(since) == len(new) * there
@@ -141,7 +145,7 @@ def test_changes_of_then_are_taken_back_now(tmp_path):
     assert flagged.settings.starts.hour == 6
     assert flagged.undo_change().starts.hour == 7
     assert flagged.undo_change().starts.hour == 6
-    assert flagged.before_change() is None
+    assert before_change(flagged) is None
 
 
 def test_a_season_of_format_6_keeps_its_treatments_and_its_log_begins(tmp_path):
@@ -156,17 +160,17 @@ def test_a_season_of_format_6_keeps_its_treatments_and_its_log_begins(tmp_path):
     assert "the file was of format 6" in began.sentence()
     _only_the_map_differs(season, "2026-04-09")
     assert season.treat(soap.on, 0.8, soap.place.area, "soap").new == 0  # by the digest of then
-    (effect,) = season.effects(season.last_date())
+    (effect,) = season.effects(last_date(season))
     assert (effect.before.found, effect.after.found) == (2, 0)
     assert season.undo() != ""
-    assert season.check_against_log() == ()
+    assert check_against_log(season) == ()
 
 
 def test_a_season_of_format_8_keeps_its_treatment_and_can_say_more_of_the_next(tmp_path):
     """Made before active ingredient and weather were asked for: its log still holds."""
     season = Season(shutil.copy(FOLDER / "of_format_8.gpkg", tmp_path))
     assert (tmp_path / "of_format_8.gpkg.format-8").is_file()
-    assert season.check_against_log() == ()
+    assert check_against_log(season) == ()
     (one,) = season.treatments()
     assert one.application.authorised_by == "Ben"
     assert (one.application.active_ingredient, one.application.weather) == ("", "")
@@ -174,7 +178,7 @@ def test_a_season_of_format_8_keeps_its_treatment_and_can_say_more_of_the_next(t
     more = replace(one.application, active_ingredient="fenpyroximate", weather="dry, 2 m/s")
     assert season.treat(LAST, 0.8, one.place.area, application=more).new == 1
     assert season.treatments()[-1].application == more
-    assert season.check_against_log() == ()
+    assert check_against_log(season) == ()
     _only_the_map_differs(season, "2026-04-07")
 
 
@@ -225,7 +229,7 @@ def test_in_a_season_of_format_13_what_was_taken_back_is_a_change_that_can_be_ta
     """Made before a taking back was noted: harvest said, then 4 hours said and taken back."""
     season = Season(shutil.copy(FOLDER / "of_format_13.gpkg", tmp_path))
     assert (tmp_path / "of_format_13.gpkg.format-13").is_file()
-    assert season.check_against_log() == ()
+    assert check_against_log(season) == ()
     seen = season.settings
     assert (seen.robot.hours, seen.harvest) == (1.5, date(2026, 5, 6))
     season.change(replace(seen, robot=seen.robot.with_hours(3.0)), seen)
@@ -234,8 +238,8 @@ def test_in_a_season_of_format_13_what_was_taken_back_is_a_change_that_can_be_ta
     assert (again.robot.hours, again.harvest) == (4.0, seen.harvest)
     assert season.undo_change() == seen
     assert season.undo_change().harvest is None
-    assert season.before_change() is None
-    assert season.check_against_log() == ()
+    assert before_change(season) is None
+    assert check_against_log(season) == ()
 
 
 def test_a_season_of_format_14_shows_what_both_noted_of_one_find(tmp_path):
@@ -263,9 +267,9 @@ def _only_the_map_differs(season, day):
 
 def test_a_change_of_today_alters_no_day_from_before_the_log(season):
     days = [*dict.fromkeys(season.history.inspections.date.tolist())]
-    before, seen = [season.settings_on(day).robot for day in days], season.settings
+    before, seen = [settings_on(season, day).robot for day in days], season.settings
     season.change(replace(seen, robot=seen.robot.with_hours(9.0)), seen)
-    assert [season.settings_on(day).robot for day in days] == before
+    assert [settings_on(season, day).robot for day in days] == before
     assert all(robot.hours < 9.0 for robot in before)
     changed = season.log()[-1]
     assert (changed.kind, changed.what["names"]) == ("changed", "robot")

@@ -6,6 +6,7 @@ import pytest
 
 from fieldmon.compute.units import Units
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates.last_days import last_date
 from fieldmon.reports.day import DayFacts, day_report
 from fieldmon.reports.season import season_report
 from tests.monitoring.seasons import BEGINS, Insects, a_season
@@ -27,7 +28,7 @@ def worked(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def last(worked):
-    return worked.last_date()
+    return last_date(worked)
 
 
 @pytest.fixture(scope="session")

@@ -15,6 +15,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Application, Season
+from fieldmon.monitoring.days.advised import advise
 from fieldmon.reports import words
 from fieldmon.reports.certification import certification_report, times_said
 from fieldmon.reports.content import Listing, Table
@@ -38,7 +39,7 @@ def season(tmp_path_factory):
     made = a_season(tmp_path_factory.mktemp("certified") / "season.gpkg")
     made.record(some_results(made, n=12, found=[2, 3]), "monday.csv", "Ann")
     made.keep_labels([ProductLabel("Acarol", max_dose=Dose(0.5, "l/ha"), waiting_days=7)])
-    made.advise(BEGINS, "Treat: 6 % of the plants are believed infested.", "Ben")
+    advise(made, BEGINS, "Treat: 6 % of the plants are believed infested.", "Ben")
     for day in range(5):
         said = FULL if not day else replace(FULL, product="Oil", dose=None)
         made.treat(BEGINS + timedelta(day), 0.8, application=said)
@@ -163,10 +164,10 @@ def test_a_record_is_of_a_season_or_more():
 
 def test_what_was_advised_stands_with_the_first_treatment_after_it_and_with_no_later_one(tmp_path):
     season = a_season(tmp_path / "season.gpkg")
-    season.advise(BEGINS, "Treat the zones.")
+    advise(season, BEGINS, "Treat the zones.")
     season.treat(BEGINS, 0.5, product="Acarol", application=FULL)
     season.treat(BEGINS + timedelta(3), 0.5, product="Soap")
-    season.advise(BEGINS + timedelta(3), "Treat the rest.")
+    advise(season, BEGINS + timedelta(3), "Treat the rest.")
     season.treat(BEGINS + timedelta(4), 0.5, product="Oil")
     report = certification_report([season], Units())
     said = [texts_of.get("Advised") for texts_of in cards(report)]
@@ -211,7 +212,7 @@ def test_what_was_advised_and_the_pest_s_name_are_in_the_record_s_language(tmp_p
     season = a_season(tmp_path / "season.gpkg")
     season.change(replace(season.settings, pest=shipped_pest("spider-mite")), season.settings)
     advice = season.advice(BEGINS)
-    season.advise(BEGINS, advice.in_short())
+    advise(season, BEGINS, advice.in_short())
     season.treat(BEGINS, 0.8, application=FULL)
     language, units = spoken("es", "")
     record = " ".join(certification_report([season], units).said_in(language).words())

@@ -15,6 +15,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import Application, Season
+from fieldmon.monitoring.estimates.figures_of_day import progress, still_infested
 from fieldmon.monitoring.estimates.plant_states import finds_apart
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.grid import plant_numbers
@@ -160,7 +161,7 @@ def test_up_to_an_earlier_day_nothing_later_is_counted(worked):
     report = season_report(worked, until, Units())
     assert table(report, "Day by day").rows[0][0] == str(until)
     shown = {each.label: each.value for each in one(report, KeyFigures).figures}
-    assert shown["Plants found"] == f"{worked.progress(until).found}"
+    assert shown["Plants found"] == f"{progress(worked, until).found}"
     assert one(report, Listing, "Treatments").sentences == ("No treatment was noted.",)
     said = worked.contents([batch.number for batch in worked.batches()]).values()
     earlier = sum(of.first <= str(until) for of in said)
@@ -191,7 +192,7 @@ def test_flagged_plants_are_said_beside_those_still_infested(tmp_path):
     looked = Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(BEGINS))
     season.record(looked, "finds")
     lead = on_sheet(season_report(season, BEGINS, Units()), 0, Paragraph)[0].text
-    still = season.still_infested(BEGINS)
+    still = still_infested(season, BEGINS)
     assert lead.startswith(f"About {estimate(still.expected)} plants are still infested")
     assert "are not found yet, and 20 were found and only flagged." in lead
     assert still.expected == pytest.approx(season.forecast(BEGINS).expected[0])

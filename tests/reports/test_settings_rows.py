@@ -11,6 +11,7 @@ from fieldmon.infestation.insects.pest_in_weather import PestInWeather
 from fieldmon.infestation.insects.spread import Spread
 from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.io.readers.pest_file import shipped_pest
+from fieldmon.monitoring.estimates.last_days import last_date
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.pests.pest import Pest
 from fieldmon.pests.weather import DAY_S, weather_of
@@ -94,7 +95,7 @@ def test_without_a_season_nothing_is_said_of_nights():
 
 
 def test_a_season_s_own_are_taken(worked):
-    made = WorkSettings.of_season(worked, worked.last_date())
+    made = WorkSettings.of_season(worked, last_date(worked))
     assert made.assumed == worked.assumed()
     assert made.chosen == worked.plot.chosen
     assert made.robot == worked.settings.robot

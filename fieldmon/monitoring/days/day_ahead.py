@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.io.writers.day_file import RouteNotes
+from fieldmon.monitoring.changes import logged_days
 from fieldmon.monitoring.days import kept_routes
 from fieldmon.monitoring.phones.photos_asked import photos_asked_in
 from fieldmon.monitoring.phones.scouts import inside, scouts_in
-from fieldmon.monitoring.settings.shift_work import BEGINS_OTHERWISE_S
+from fieldmon.monitoring.settings.shift_work import BEGINS_OTHERWISE_S, Crew
 from fieldmon.monitoring.treating.closures import closed_plants
 from fieldmon.planning.members import person_key
 from fieldmon.planning.plan import DayPlan
@@ -68,7 +69,7 @@ class WorkHours(NamedTuple):
     Parameters
     ----------
     begins_s
-        The second of the day at which work began, or will, see `Season.begun_s`.
+        The second of the day at which work began, or will, see `Season.work`.
     run
         Whether they run by the clock now: it is today, and it is known when work began.
     left_s
@@ -108,10 +109,11 @@ class DayAhead:
     @classmethod
     def of(cls, season: Season, on: date) -> DayAhead:
         """Return it of the day `on`."""
-        with season.reading() as (db, settings):
-            last = kept_routes.kept_last(db, settings.day(on))
-            plants = {who: kept_routes.plants(db, kept) for who, kept in last.items()}
-            people, asked = scouts_in(db), photos_asked_in(db)
+        with season.reading() as now:
+            settings = now.settings
+            last = kept_routes.kept_last(now.db, settings.day(on))
+            plants = {who: kept_routes.plants(now.db, kept) for who, kept in last.items()}
+            people, asked = scouts_in(now.db), photos_asked_in(now.db)
         return cls(season.plant_numbers, settings, people, last, plants, asked)
 
     def kept(self, who: str = "") -> Plants:
@@ -280,22 +282,25 @@ def _given_last(season: Season, on: date, ahead: DayAhead, wishes: Wishes) -> Da
 
     None holds that leads to plants that are closed by now, or not where it is wished.
     """
-    if not kept_routes.is_last(ahead.last) or not season.holds_still(on, ahead.last[""].digest):
+    if not kept_routes.is_last(ahead.last):
         return None
+    with season.store.reading() as db:
+        if not logged_days.holds_still(db, on, ahead.last[""].digest):
+            return None
     with season.entering_treated():
         scene = season.scene(on)
     plants = ahead.kept()
     left = plants[scene.are_open(plants)]
-    closed = closed_plants(season.closed_to_kept(on), len(scene.chance))
+    closed = closed_plants(kept_routes.closed_to_kept(season, on), len(scene.chance))
     done = season.history.on(ahead.settings.day(on)).plant
     if not np.isin(wishes.wanted, np.append(plants, done)).all():
         return None
     if not len(left) or closed[left].any() or np.isin(wishes.unwanted, left).any():
         return None
     begins = ahead.last[""].begins
-    if len(season.worked(on)):  # a second more or less is no stop less
+    if len(season.work(on).inspections):  # a second more or less is no stop less
         given = _fitting(scene, left, scene.seconds_left + 1.0)
-        begins = kept_routes.begins(season.planned_by(on), given, season.begun_s(on))
+        begins = kept_routes.begins(season.planned_by(on), given, season.work(on).begun_s)
     else:
         given = through(scene, left)
     notes = RouteNotes(season.plot.field.name, ahead.settings.sampler, begins)
@@ -316,7 +321,7 @@ def route_ahead(season: Season, on: date, part: WorkPart = WHOLE) -> Route:
         return plan_ahead(season, on, part, wishes=Wishes(ahead.wanted(part)), keep=True).route
     with season.entering_treated():
         scene = season.scene(on, who=ahead.works_as(part))
-    to_kept = season.closed_to_kept(on, part.name, ahead.kept_as(part))
+    to_kept = kept_routes.closed_to_kept(season, on, part.name, ahead.kept_as(part))
     closed = closed_plants(to_kept, len(scene.chance))
     kept = ahead.route(part)
     kept = kept[scene.are_open(kept)]
@@ -353,7 +358,7 @@ def planned_again(
             for one in {*crew} - {*said}
         }
         named = (ahead.kept_as(part),) if len(crew) == 1 else None
-        days = season.plan_crew(on, crew, told, wishes=wishes, kept_as=named)
+        days = season.plan_each(on, wishes=wishes, crew=Crew(crew, told, named))
         return days[crew.index(me)].route
     who, hours = None if member is None else member.name, work_hours(season, on, part)
     left_s = hours.left_s if seconds_left is None else min(seconds_left, hours.left_s)
@@ -365,10 +370,10 @@ def planned_again(
 def work_hours(season: Season, on: date, part: WorkPart = WHOLE) -> WorkHours:
     """Return somebody's hours on a day; those of who works alone are everybody's."""
     who = DayAhead.of(season, on).works_as(part)
-    second, now = season.worked(on, who).second, local_clock(season.plot.field).now()
+    work, now = season.work(on, who), local_clock(season.plot.field).now()
+    second = work.inspections.second
     run = now.date() == on and len(second) > 0 and bool(np.isfinite(second[0]))
-    left_s = season.left_s(on, now.time() if run else None, who)
-    return WorkHours(season.begun_s(on, who), run, left_s)
+    return WorkHours(work.begun_s, run, work.left_s(now.time() if run else None))
 
 
 def _time(season: Season, on: date, seconds_left: float, member: TeamMember | None) -> time:
@@ -376,7 +381,7 @@ def _time(season: Season, on: date, seconds_left: float, member: TeamMember | No
     robot, who = (season.settings.robot, "") if member is None else (member.robot, member.name)
     left_s = min(max(seconds_left, 0.0), robot.day_s)
     clock = grid_clock(season.plot.grid)
-    now_s = clock.second_after(on, season.begun_s(on, who), robot.day_s - left_s)
+    now_s = clock.second_after(on, season.work(on, who).begun_s, robot.day_s - left_s)
     return (datetime.combine(on, MIDNIGHT) + timedelta(seconds=round(now_s))).time()
 
 

@@ -70,7 +70,7 @@ class EstatePlot:
             return ()
         midnight = datetime.combine(self.on, time())
         begins_s, ends_s = ((one - midnight).total_seconds() for one in (begins, ends))
-        return self.season.closed_between(self.on, begins_s, ends_s)
+        return self.season.closed(self.on, between=(begins_s, ends_s))
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +144,7 @@ def _was_seen(season: Season, on: date) -> bool:
         return True
     settings = season.planned_by(on)
     hours_s = sum(one.day_s for one in _robots(settings))
-    left_s = sum(season.left_s(on, who=who) for who in _names(settings))
+    left_s = sum(season.work(on, who).left_s() for who in _names(settings))
     return hours_s - left_s >= hours_s * _SEEN
 
 

@@ -10,18 +10,23 @@ import numpy as np
 from shapely import LineString
 
 from fieldmon.compute.digest import digest
+from fieldmon.monitoring.changes import logged_days
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.file.geopackage import beside_plot, blob, insert, point_blobs, touch
 from fieldmon.planning.members import person_key
-from fieldmon.plot.local_clock import grid_clock
+from fieldmon.plot.local_clock import grid_clock, local_clock
 from fieldmon.plot.travel import GATE
 
 if TYPE_CHECKING:
     import sqlite3
+    from datetime import date
 
     from numpy.typing import NDArray
 
+    from fieldmon.monitoring.season.open_season import OpenSeason
+    from fieldmon.monitoring.season.season_days import SeasonDays
     from fieldmon.monitoring.settings.settings import MonitoringSettings
+    from fieldmon.monitoring.treating.closures import Closure
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantNumbers
@@ -247,3 +252,44 @@ def _digest(today: DayPlan) -> str:
     plant, arrive_s = today.route.plant, np.round(today.route.arrive_s, 3)
     stands = today.scene.at, round(today.scene.seconds_left, 3)
     return digest(plant.astype("<i4"), arrive_s.astype("<f8"), stands, length=24, end=b"")
+
+
+def planned_only(season: OpenSeason, until: date) -> tuple[date, ...]:
+    """Return the planned days `until` a date of which nothing is recorded, in order.
+
+    Each is over on the plot, and was planned to be worked, see `logged_days.to_be_worked`.
+    That a plant could not be inspected is a record, too.
+    """
+    clock = local_clock(season.plot.field)
+    last = min(until, clock.today() - timedelta(days=1))
+    with season.reading() as now:  # both of one moment
+        contents, planned = now.contents, days(now.db)
+        missing = planned[~np.isin(planned, contents.history.days)]
+        dates = [contents.settings.date(day) for day in missing.tolist()]
+        over = [day for day in dates if day <= last]
+        return logged_days.to_be_worked(now.db, over, clock) if over else ()
+
+
+def closed_to_kept(
+    season: SeasonDays, on: date, who: str = "", kept_as: str | None = None
+) -> tuple[Closure, ...]:
+    """Return what is closed to the route kept of a day: by its own begin, if that is later.
+
+    Once something of their day is recorded, it is by the clock. `on` as in `Season.plan`;
+    `kept_as`: by which name the route of `who` is kept; None: their own.
+    """
+    with season.reading(), season.store.one_moment():
+        work = season.work(on, who)
+        own = str(work.shifts.who or "") if kept_as is None else kept_as
+        with season.store.reading() as db:
+            kept = kept_last(db, work.day).get(person_key(own))
+        now = local_clock(season.plot.field).now()
+        begins = None if kept is None else kept.begins
+        if len(work.inspections):  # whoever is out goes on now
+            begins = now if now.date() == on else None
+        if begins is None:
+            return season.closed(on, who)
+        begins_s = (begins - datetime.combine(on, time())).total_seconds()
+        late_s = grid_clock(season.plot.grid).seconds_between(on, work.begun_s, begins_s)
+        day_s = work.shifts.shift.robot.day_s
+        return season.closed(on, who, min(max(day_s - late_s, 0.0), day_s))

@@ -87,7 +87,7 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
     """
     ahead, done = DayAhead.of(season, on), season.history.inspections.on(on)
     holding = {person_key(one.name) for one in ahead.scouts}
-    is_earlier, day = season.is_earlier(on), ahead.settings.day(on)
+    is_earlier, day = season.work(on).is_earlier, ahead.settings.day(on)
     with season.store.reading() as db:
         if is_earlier:  # as its plan is counted, see `Season.planned_and_done`
             then = scouts_on(db, local_clock(season.plot.field), on)

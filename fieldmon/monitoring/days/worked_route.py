@@ -9,9 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.tracing.traced_pairs import in_sight
 from fieldmon.io.writers.day_file import RouteNotes
+from fieldmon.monitoring.changes.earlier_settings import settings_on
+from fieldmon.monitoring.estimates.figures_of_day import believed
+from fieldmon.monitoring.estimates.last_days import default_date
 from fieldmon.monitoring.settings.settings import seconds
-from fieldmon.monitoring.settings.shift_work import Shift, made_by
+from fieldmon.monitoring.settings.shift_work import Shift, aisles_from, made_by
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import Workday
 from fieldmon.plot.travel import GATE, driven_s
@@ -33,7 +37,7 @@ def day_was_worked(season: Season, on: date, ahead: Route, today: date | None = 
     A day planned ahead ends none. `today` by the calendar; None: somebody may still go on with a
     day that has passed.
     """
-    passed = on < season.default_date() or (today is not None and on < today)
+    passed = on < default_date(season) or (today is not None and on < today)
     return (not len(ahead) or passed) and bool(len(season.history.on(season.settings.day(on))))
 
 
@@ -41,25 +45,26 @@ def worked_route(season: Season, on: date, who: str | None = None) -> Route:
     """Return the way from plant to plant as a day was worked, at the times noted.
 
     By the settings of then: who worked, and from when, unless the first time noted shows that work
-    began earlier or later, see `Season.begun_s`; its notes say when it began.
+    began earlier or later, see `Season.work`; its notes say when it began.
     Where a time is missing, all are those that driving and inspecting cost. Chances are those by
     which the day's first route is planned. Empty if nothing was recorded. Of a team it is the way
     of the one named; None: that of all results in turn.
     """
-    settings, aisles = season.settings_on(on), season.plot.aisles
+    settings, aisles = settings_on(season, on), season.plot.aisles
     robot, starts_s = settings.robot, seconds(settings.starts)
     # a team that was changed since has others
     if who is not None and (member := settings.named(who)) is not None:
-        robot, aisles = member.robot, season.aisles_from(member.gate)
+        robot, aisles = member.robot, aisles_from(season.plot, member.gate)
         starts_s += member.starts_s
     history, day = season.history, settings.day(on)
+    morning = believed(season, on).morning
     done = _in_order(made_by(history.on(day), who))
     begun_s = history.work(Shift(aisles, robot, starts_s), who).begun_s(day)
     # after midnight the work of the day before may go on
     begun_s = float(np.fmin(begun_s, done.second.min(initial=np.inf)))
     scene = Scene(
-        aisles=aisles, robot=robot, chance=season.morning_in_sight(on),
-        infested=season.morning(on), seconds_left=robot.day_s,
+        aisles=aisles, robot=robot, chance=in_sight(morning).chance.copy(),
+        infested=morning.chance.copy(), seconds_left=robot.day_s,
         last_inspected=np.full(len(aisles.grid), NEVER, np.int32),
     )  # fmt: skip
     n, drive_s = len(done), _drive_s(scene, done.plant)

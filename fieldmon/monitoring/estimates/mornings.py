@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import sqlite3
+import threading
 import zipfile
 import zlib
 from dataclasses import dataclass, field, replace
@@ -76,19 +77,25 @@ class Mornings:
     kept: dict[int, _KeptMorning] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self._lock = threading.RLock()
         self.known[0] = self.history.first_morning
 
     def of(self, day: int) -> Belief:
-        """Return what is believed on the morning of a day."""
-        last = self.last_until(day)
-        morning = self.known[last]
-        for number in range(last, day):
-            morning = self.history.night_after(morning, number)
-            self._know(number + 1, morning)
-        return morning
+        """Return what is believed on the morning of a day; others wait, or would do it, too."""
+        with self._lock:
+            last = self.last_until(day)
+            morning = self.known[last]
+            for number in range(last, day):
+                morning = self.history.night_after(morning, number)
+                self._know(number + 1, morning)
+            return morning
 
     def last_until(self, day: int) -> int:
         """Return the last day up to a day whose morning need not be worked out."""
+        with self._lock:
+            return self._last_until(day)
+
+    def _last_until(self, day: int) -> int:
         last = max(known for known in self.known if known <= day)
         for number in sorted((n for n in self.kept if last < n <= day), reverse=True):
             morning = self._unpacked(number, self.kept.pop(number))
@@ -99,8 +106,10 @@ class Mornings:
 
     def after_change(self, history: History, since: int) -> Mornings:
         """Return them for a history that is another since a day."""
-        known = {day: morning for day, morning in self.known.items() if day <= since}
-        return Mornings(history, known, {d: kept for d, kept in self.kept.items() if d <= since})
+        with self._lock:
+            known = {day: morning for day, morning in self.known.items() if day <= since}
+            kept = {day: morning for day, morning in self.kept.items() if day <= since}
+        return Mornings(history, known, kept)
 
     def _unpacked(self, day: int, kept: _KeptMorning) -> Belief | None:
         """Return a morning that the file keeps; None: it is not that of what happened."""

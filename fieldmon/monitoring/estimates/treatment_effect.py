@@ -21,7 +21,7 @@ from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.pests.weather import DAY_S
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -162,11 +162,15 @@ def effects(
     )
 
 
-def learnt_efficacy(found: Iterable[TreatmentEffect], product: str) -> TreatmentEffect | None:
-    """Return the last effect of a product that any plant tells of; None: there is none."""
-    name = plain_name(product)
+def learnt_efficacy(found: Sequence[TreatmentEffect], product: str = "") -> TreatmentEffect | None:
+    """Return the last effect of a product that any plant tells of; None: there is none.
+
+    No product named: the last one that is named and of which any tells.
+    """
+    told = [one.product for one in found if one.cured_of and one.product]
+    name = plain_name(product or "".join(told[-1:]))
     known = [one for one in found if one.cured_of and plain_name(one.product) == name]
-    return known[-1] if product and known else None
+    return known[-1] if name and known else None
 
 
 def _effect(

@@ -16,6 +16,7 @@ from fieldmon.io.writers.csv import safe_cell
 from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring.inspecting import inspection_lots
 from fieldmon.monitoring.inspecting.inspection_table import time_text
+from fieldmon.monitoring.inspecting.known_inspections import corrected_by
 from fieldmon.monitoring.treating.cautions import groups, label_of, waits
 from fieldmon.plot.named_rows import place_in_words
 
@@ -77,7 +78,7 @@ def _by_column(lines: Iterable[dict[str, object]]) -> Table:
 
 
 def _treatments(season: SeasonTreatments) -> Iterator[dict[str, object]]:
-    with season.one_moment():
+    with season.store.one_moment():
         labels, treatments = season.labels(), season.treatments()
     for one in treatments:
         said, label = one.application, label_of(one, labels)
@@ -117,8 +118,8 @@ def _treatments(season: SeasonTreatments) -> Iterator[dict[str, object]]:
 
 def inspections_table(season: SeasonInspections) -> Table:
     """Return a line for each inspection that counts: recorded again, they change nothing."""
-    with season.one_moment():
-        done, corrected = season.history.inspections, season.corrected_by()
+    with season.store.one_moment():
+        done, corrected = season.history.inspections, corrected_by(season)
         with season.store.reading() as db:
             marks = inspection_lots.digests(db)
     numbered, plot, grid = season.plant_numbers, season.plot.field.name, season.plot.grid

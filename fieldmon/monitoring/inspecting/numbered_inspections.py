@@ -23,6 +23,8 @@ class NumberedInspection(NamedTuple):
         When it was made: the day, and seconds since its midnight; NaN: no time is known.
     result, who
         What it found, and who inspected.
+    plant
+        Number of the plant in the grid.
     """
 
     number: int
@@ -30,26 +32,27 @@ class NumberedInspection(NamedTuple):
     second: float
     result: int
     who: str
+    plant: int
 
 
-def of_day(db: sqlite3.Connection, on: date) -> tuple[int, ...]:
-    """Return the numbers of the inspections of a day that count, in order."""
+def numbered_inspections(
+    db: sqlite3.Connection, on: date | None = None, plant: int | None = None
+) -> tuple[NumberedInspection, ...]:
+    """Return the inspections of a day, a plant, or both that count; None: all.
+
+    Those of a plant are in their order, and those without a time last; others in that of numbers.
+    """
+    asked = {"date": on and str(on), "plant": plant}
+    told = {name: value for name, value in asked.items() if value is not None}
     wanted = (
-        "SELECT fid FROM inspections WHERE date = ? AND undone = 0 AND digest IS NOT NULL "
-        "ORDER BY fid"
-    )
-    return tuple(fid for (fid,) in db.execute(wanted, (str(on),)))
-
-
-def of_plant(db: sqlite3.Connection, plant: int) -> tuple[NumberedInspection, ...]:
-    """Return the inspections of a plant that count, in their order; those without a time last."""
-    wanted = (
-        "SELECT fid, date, time, result, who FROM inspections WHERE plant = ? AND undone = 0 "
-        "AND digest IS NOT NULL ORDER BY date, time IS NULL, time, fid"
+        "SELECT fid, date, time, result, who, plant FROM inspections WHERE undone = 0 "  # noqa: S608 - ours
+        f"AND digest IS NOT NULL {''.join(f'AND {name} = ? ' for name in told)}"
+        f"ORDER BY {'fid' if plant is None else 'date, time IS NULL, time, fid'}"
     )
     return tuple(
         NumberedInspection(
-            fid, date.fromisoformat(str(day)[:10]), second_of(at), RESULT_CODES[result], who or ""
+            fid, date.fromisoformat(str(day)[:10]), second_of(at), RESULT_CODES[result], who or "",
+            of,
         )
-        for fid, day, at, result, who in db.execute(wanted, (plant,))
-    )
+        for fid, day, at, result, who, of in db.execute(wanted, (*told.values(),))
+    )  # fmt: skip

@@ -43,7 +43,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fieldmon.io.readers.phone_file import PhoneFile
-    from fieldmon.monitoring.season.season_file import Season, SeasonChange
+    from fieldmon.monitoring.estimates.season_contents import SeasonChange
+    from fieldmon.monitoring.season.season_file import Season
 
 SOURCE = "phone"
 #: what one person may tell in a day: ten times what anybody can inspect
@@ -76,7 +77,7 @@ def take(
     """Keep what was told, each finding once; what is returned is on the disk.
 
     Where a finding does not fit the season (no such plant, a day before its first), it is kept and
-    does not count. The same plant told by two people is kept twice: see `Season.contradicting`.
+    does not count. The same plant told by two people is kept twice: see `contradicting`.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ from fieldmon.monitoring.file.geopackage import insert, touch
 from fieldmon.monitoring.phones.people import written_in
 from fieldmon.monitoring.settings.settings_log import settings_of
 from fieldmon.planning.members import person_key
-from fieldmon.plot.local_clock import utc_text
+from fieldmon.plot.local_clock import local_clock, utc_text
 
 if TYPE_CHECKING:
     import sqlite3
@@ -205,6 +205,13 @@ def scouts_in(db: sqlite3.Connection) -> tuple[Scout, ...]:
     """
     rows = db.execute(f"SELECT {_COLUMNS} FROM scouts WHERE ended IS NULL ORDER BY made, fid")  # noqa: S608 - ours
     return _last(map(_scout, rows))
+
+
+def codes_on(season: OpenSeason, on: date) -> dict[str, tuple[int, int] | None]:
+    """Return who has a code for work on the day `on` now, by name, and of which rows."""
+    with season.store.reading() as db:
+        known = scouts_on(db, local_clock(season.plot.field), on, is_over=False)
+    return {one.name: one.rows for one in known}
 
 
 def scouts_on(

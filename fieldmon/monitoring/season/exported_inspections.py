@@ -26,7 +26,7 @@ from fieldmon.monitoring.changes.transactions import copy_season
 from fieldmon.monitoring.file.connections import connect
 from fieldmon.monitoring.file.rows_that_count import COUNTS
 from fieldmon.monitoring.inspecting import inspection_table, repeated_recordings
-from fieldmon.monitoring.season.season_copies import own_names
+from fieldmon.monitoring.merging.other_seasons import own_names
 
 if TYPE_CHECKING:
     import sqlite3

@@ -15,9 +15,15 @@ from fieldmon.monitoring.changes.transactions import MAGIC, copy_season, is_seas
 from fieldmon.monitoring.file.connections import connect
 from fieldmon.monitoring.inspecting import repeated_recordings
 from fieldmon.monitoring.inspecting.batches import Recorded
+from fieldmon.monitoring.merging.other_seasons import (
+    corrections_in,
+    is_copy,
+    own_names,
+    refuse_another_pest,
+    treatments_alone_in,
+)
 from fieldmon.monitoring.phones import findings
 from fieldmon.monitoring.season.exported_inspections import edits_in, own_rows, read_exported
-from fieldmon.monitoring.season.season_copies import own_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -117,8 +123,8 @@ def read_brought(
         return BroughtFile(name, Inspections.none(), saved.messages, saved=saved.value)
     copy = season_copied(source, folder)
     if copy is not None:
-        season.refuse_another_pest(copy)
-    corrected = [] if copy is None else [one.row for one in season.corrections_in(copy)]
+        refuse_another_pest(season, copy)
+    corrected = [] if copy is None else [one.row for one in corrections_in(season, copy)]
     treated = [] if copy is None else _about_treatments(season, copy)
     if copy is not None:
         (folder / "new").mkdir()
@@ -174,7 +180,7 @@ def _dated_on_plot(
 
 def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:
     """Return a doubt about treatments of another season: it is asked for its findings alone."""
-    alone = season.treatments_alone_in(copy)
+    alone = treatments_alone_in(season, copy)
     if not alone:
         return []
     named = [
@@ -185,7 +191,7 @@ def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:
         )
         for product, day in alone
     ]
-    if season.is_copy(copy):
+    if is_copy(season, copy):
         said = worded(
             "{n} {n:treatment|treatments} of that copy {n:is|are} not taken ({some}), nor "
             "{n:its|their} waiting periods. Take all that it holds with: fieldmon merge",

@@ -100,7 +100,7 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
                 insert(new, schema.DAYS, [first])
     why = ""
     try:
-        Season(to).work_on()
+        Season(to).rebuild(whole=False)
     except FieldmonError as problem:
         why = str(problem)
     return Salvaged(rows, tuple(lost), not why, why)

@@ -9,7 +9,6 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.monitoring.changes import copy_corrections, corrections, outside_changes, season_log
 from fieldmon.monitoring.changes.transactions import Store
-from fieldmon.monitoring.inspecting import batches
 from fieldmon.monitoring.phones.people import written_in
 from fieldmon.monitoring.season.season_copies import SeasonCopies
 from fieldmon.monitoring.settings.settings import seconds
@@ -113,16 +112,6 @@ class SeasonCorrections(SeasonCopies):
             self._corrected(db, said, who, here=True)
         return said[0]
 
-    def corrections_in(self, copy: Path) -> tuple[outside_changes.OutsideChange, ...]:
-        """Return what another program changed of inspections in a copy of this season.
-
-        A file that is no copy of it has none.
-        """
-        if not self.is_copy(copy):
-            return ()
-        with Store(copy).reading() as theirs:
-            return copy_corrections.waiting(theirs)
-
     def take_corrections(self, copy: Path, name: str, who: str, *, confirmed: bool = False) -> int:
         """Take what was corrected or deleted in a `copy` of this season; return how many were new.
 
@@ -186,8 +175,3 @@ class SeasonCorrections(SeasonCopies):
             what = {"rows": len(taken), "said": taken, **({"here": True} if here else {})}
             season_log.append(db, "corrected", who, states=season_log.states(db), **what)
             self._refresh(db)
-
-    def corrected_by(self) -> dict[tuple[object, ...], str]:
-        """Return who corrected inspections that count, by plant, day (ISO), result and count."""
-        with self.store.reading() as db:
-            return batches.corrected_by(db)

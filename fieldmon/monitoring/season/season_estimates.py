@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,16 +16,15 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.earlier_season import EarlierSeason
 from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.infestation.prior.prior_settings import PriorSettings
-from fieldmon.infestation.tracing.traced_pairs import TracedPairs, in_sight
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.monitoring.advice.advice import advice
 from fieldmon.monitoring.advice.left_plot import FewInspected, InspectAgain, NotReached
 from fieldmon.monitoring.estimates import day_figures
-from fieldmon.monitoring.estimates.day_figures import DayFigures, Progress
-from fieldmon.monitoring.estimates.found_again import found_again
-from fieldmon.monitoring.estimates.mornings import rules
+from fieldmon.monitoring.estimates.last_days import default_date
+from fieldmon.monitoring.estimates.season_contents import MorningAsked
 from fieldmon.monitoring.estimates.status import Status
-from fieldmon.monitoring.estimates.told_detection import other_detections, read_now, told_at_first
-from fieldmon.monitoring.season.open_season import OpenSeason
+from fieldmon.monitoring.estimates.told_detection import other_detections
+from fieldmon.monitoring.season.season_days import SeasonDays
 from fieldmon.monitoring.settings.advice_settings import AdviceSettings
 from fieldmon.pests.development import development
 
@@ -36,43 +35,27 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.compute.day_arguments import Day
-    from fieldmon.compute.wording import Worded
     from fieldmon.decisions.map_verdict import MapVerdict
-    from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.learnt import Learnt
     from fieldmon.infestation.level_range import LevelRange
-    from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.advice.advice import Advice
-    from fieldmon.monitoring.estimates.found_again import FoundAgain
+    from fieldmon.monitoring.estimates.day_figures import DayFigures
+    from fieldmon.monitoring.estimates.season_contents import SeasonContents
     from fieldmon.monitoring.estimates.told_detection import ToldOtherwise
-    from fieldmon.monitoring.season.open_season import SeasonContents
     from fieldmon.pests.development import Development
 
     Floats = NDArray[np.float64]
 
 
-class _MorningAsked(NamedTuple):
-    """What the file says now; what is believed on the morning of a day; the day's number."""
-
-    contents: SeasonContents
-    morning: Belief
-    day: int
-
-
 @checked
-class SeasonEstimates(OpenSeason):
+class SeasonEstimates(SeasonDays):
     """What follows on each day from all that was recorded before."""
 
     def morning(self, on: Day) -> Floats:
         """Return the chance map ``(n,)`` of the morning of `on`; it is yours to change."""
         with self._asked(on) as (_, morning, _):
             return morning.chance.copy()
-
-    def morning_in_sight(self, on: Day) -> Floats:
-        """Return the chances ``(n,)`` by which `on` is planned: of what inspections can see."""
-        with self._asked(on) as (_, morning, _):
-            return in_sight(morning).chance.copy()
 
     def evening(self, on: Day) -> Floats:
         """Return the chance map ``(n,)`` of `on`, after what was recorded of it so far.
@@ -158,7 +141,7 @@ class SeasonEstimates(OpenSeason):
         if treated or (done.result == FOUND).any():
             return None
         background = contents.settings.prior.background_chance
-        told = records or self.risk is not None or history.belief.earlier is not None
+        told = records or self._risk is not None or history.belief.earlier is not None
         assumed = not told and background == PriorSettings().background_chance
         plants = len(np.unique(history.inspected(day))), len(history.grid)
         detects = history.mean_detection(day)
@@ -184,34 +167,6 @@ class SeasonEstimates(OpenSeason):
             history = contents.history
         return history.forecast(morning, day)  # others may plan meanwhile
 
-    def still_infested(self, on: Day) -> PlotEstimate:
-        """Return how many plants are still infested after a day: not found yet, and flagged.
-
-        Parameters
-        ----------
-        on
-            The day.
-        """
-        if self._now().settings.belief.treated:
-            return self.day_figures(on).estimate  # it stands in the file
-        with self._asked(on) as (contents, morning, day):
-            return contents.history.infested(morning, day)
-
-    def flagged(self, on: Day) -> float:
-        """Return how many of the plants found up to `on` are only flagged and still infested."""
-        if self._now().settings.belief.treated:
-            return 0.0  # no morning is needed for it
-        with self._asked(on) as (contents, morning, day):
-            return contents.history.flagged(morning, day)
-
-    def found_again(self, on: Day) -> FoundAgain | None:
-        """Return how many plants that are taken as treated were found again up to `on`.
-
-        None: none, or no more than may be chance.
-        """
-        now = self._now()
-        return found_again(now.history, now.settings.day(on))
-
     def learnt(self, on: Day, detection: float | None = None) -> tuple[Learnt, ...]:
         """Return what the inspections up to the evening of `on` tell of the insects.
 
@@ -232,37 +187,12 @@ class SeasonEstimates(OpenSeason):
             done = now.history.until(now.settings.day(on))
             return other_detections(db, done, now.settings.begins)
 
-    def detection_of(self, on: Day, who: str = "") -> float:
-        """Return what inspections of `who` on `on` find, where nothing else is said with them.
-
-        That is by the day's last plan, or else by what counts when it is recorded first.
-
-        Parameters
-        ----------
-        on
-            The day.
-        who
-            Who inspected; empty: whoever is in no team.
-        """
-        with self.store.reading() as db:
-            return read_now(db, on, who)
-
-    def earlier_season_note(self) -> Worded | None:
-        """Return what of an earlier season counts in this one; None: it began without one."""
-        now = self._now()
-        belief, settings = now.settings.belief, now.settings
-        if belief.earlier is None or not belief.traces:
-            return None
-        with self.store.reading() as db:
-            told = told_at_first(db)
-        return belief.earlier.sentence(belief.believed(self.plot.grid, settings.pest, told))
-
     def as_earlier(self) -> EarlierSeason:
         """Return what the season learnt until its last day, or today, as a next one may begin so.
 
         Raise `SettingError` if it learnt nothing: nothing was inspected, or finds are not traced.
         """
-        on = self.default_date()
+        on = default_date(self)
         with self._asked(on) as (contents, morning, day):
             evening = contents.history.evening(morning, day)
         inspected = (contents.history.inspections.result != SKIPPED).any()
@@ -282,38 +212,18 @@ class SeasonEstimates(OpenSeason):
         believed = settings.belief.believed(plot.grid, settings.pest, told)
         return EarlierSeason.of(evening, believed, plot.field.name, on)
 
-    def progress(self, on: Day) -> Progress:
-        """Return how far the inspections are after the work of `on`; nothing is estimated."""
-        now = self._now()
-        return Progress.of(now.history, now.settings.day(on))
-
-    def day_figures(self, on: Day) -> DayFigures:
-        """Return the day `on` in figures: those kept with it, or worked out in seconds.
-
-        What another version of fieldmon kept is worked out anew.
-        """
-        day = self.settings.day(on)
-        with self.store.reading() as db:
-            days = day_figures.kept(db) if day_figures.holds(db, rules(), day) else ()
-        for kept in days:
-            if kept.on == on:
-                return kept
-        with self._asked(on) as (contents, morning, day):
-            estimate = contents.history.estimate(morning, day)
-        return DayFigures.of(on, Progress.of(contents.history, day), estimate)
-
     def days(self) -> tuple[DayFigures, ...]:
         """Return the figures of the days on which anything was planned or recorded, in order."""
         with self.store.reading() as db:
             return day_figures.kept(db)
 
     @contextmanager
-    def _asked(self, on: date) -> Iterator[_MorningAsked]:
+    def _asked(self, on: date) -> Iterator[MorningAsked]:
         """Give what a question about a day is answered from; others wait, or would do it again."""
         with self._lock:
             contents = self._now()
             day = contents.settings.day(on)
-            yield _MorningAsked(contents, contents.morning(day), day)
+            yield MorningAsked(contents, contents.morning(day), day)
 
 
 def _development(now: SeasonContents, on: date) -> Development | None:

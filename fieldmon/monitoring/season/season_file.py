@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,18 +15,15 @@ from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.prior.prior import prior_chance
 from fieldmon.infestation.records import Records
 from fieldmon.io.readers.nearby import warn_of_left_out
-from fieldmon.monitoring.changes import outside_changes, season_log
+from fieldmon.monitoring.changes import season_log
+from fieldmon.monitoring.changes.file_revision import FileRevision
 from fieldmon.monitoring.changes.transactions import Store, set_meta
 from fieldmon.monitoring.estimates import derived_layers, first_morning
 from fieldmon.monitoring.estimates.mornings import Mornings
+from fieldmon.monitoring.estimates.season_contents import SeasonContents, nothing_yet
+from fieldmon.monitoring.estimates.verifying import changed_maps, check_against_log
 from fieldmon.monitoring.file import qgis_project, tables
 from fieldmon.monitoring.phones.people import written_in
-from fieldmon.monitoring.season.open_season import (
-    FileRevision,
-    SeasonContents,
-    newest_day,
-    nothing_yet,
-)
 from fieldmon.monitoring.season.season_frames import SeasonFrames
 from fieldmon.monitoring.season.season_plans import SeasonPlans
 from fieldmon.monitoring.settings import settings_log, settings_words
@@ -35,7 +31,6 @@ from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.monitoring.settings.settings import (
     MonitoringSettings,
     as_json,
-    from_json,
     settings_from,
 )
 from fieldmon.monitoring.settings.settings_log import settings_of
@@ -46,39 +41,16 @@ from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Iterable
     from datetime import date
 
     from numpy.typing import NDArray
 
-    from fieldmon.compute.day_arguments import Day
     from fieldmon.monitoring.file.tables import KeptMessage
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
 
     Floats = NDArray[np.float64]
-
-#: plants times days of which all mornings are worked out again within some two seconds
-SHORT = 2_000_000
-
-
-class SeasonChange:
-    """One change of a season within its transaction.
-
-    Parameters
-    ----------
-    db
-        The file, for this transaction alone.
-    """
-
-    def __init__(self, db: sqlite3.Connection) -> None:
-        self.db = db
-        #: the first day that is another now; None: none is
-        self.since: int | None = None
-
-    def reaches(self, day: int) -> None:
-        """Say that a day is not what it was."""
-        self.since = day if self.since is None else min(self.since, day)
 
 
 @checked
@@ -241,12 +213,6 @@ class Season(SeasonPlans, SeasonFrames):
             self._log_change(db, before, who)
             self._refresh(db)
 
-    def before_change(self) -> MonitoringSettings | None:
-        """Return what counted before the last change of settings; None: nothing was changed."""
-        with self.store.reading() as db:
-            parts = settings_log.before_now(db)
-        return None if parts is None else from_json(parts)
-
     def undo_change(self, who: str = "") -> MonitoringSettings:
         """Take the last change of settings back; return what counts again. `who` is for the log.
 
@@ -274,46 +240,6 @@ class Season(SeasonPlans, SeasonFrames):
             **({"back": True} if back else {}),
         )  # fmt: skip
 
-    @contextmanager
-    def changing(self) -> Iterator[SeasonChange]:
-        """Give the file for one change: all is kept with what follows from it, or nothing."""
-        with self._lock, self.store.writing() as db:
-            change = SeasonChange(db)
-            yield change
-            if change.since is not None:
-                self._refresh(db, change.since)
-
-    def advise(self, on: Day, said: str, who: str = "") -> None:
-        """Write into the log what was advised for a day, unless that was written last of it.
-
-        Parameters
-        ----------
-        on
-            The day.
-        said
-            The advice, in a sentence or more.
-        who
-            Who was advised, or advises.
-        """
-        with self._lock, self.store.reading() as db:
-            if _advised(db, on)[-1:] == [said]:
-                return
-        with self._lock, self.store.writing() as db:
-            if _advised(db, on)[-1:] != [said]:  # nor has anybody else written it meanwhile
-                season_log.append(db, "advised", written_in(db, who), date=str(on), said=said)
-
-    def check_against_log(self) -> tuple[str, ...]:
-        """Return a sentence for each thing that the file says otherwise than its log."""
-        with self.store.reading() as db:
-            return outside_changes.not_as_logged(db)
-
-    @property
-    def is_short(self) -> bool:
-        """Whether all its mornings can be worked out again whenever its state is asked for."""
-        with self.store.reading() as db:
-            days = newest_day(db) + 1
-        return len(self.plot.grid) * days <= SHORT
-
     def verify(self, *, whole: bool = True) -> tuple[str, ...]:
         """Hold the file to its digests; return a sentence for each thing that differs.
 
@@ -324,39 +250,17 @@ class Season(SeasonPlans, SeasonFrames):
         """
         doubt = () if self.store.doubt is None else (self.store.doubt,)
         doubt = (*doubt, *self.settings.unlike_its_pest())
-        held = self.check_against_log() if whole else ()
-        return (*doubt, *held, *self.changed_maps(whole=whole))
+        held = check_against_log(self) if whole else ()
+        return (*doubt, *held, *changed_maps(self, whole=whole))
 
-    def changed_maps(
-        self, *, whole: bool = True, tell: Callable[[int, int], object] | None = None
-    ) -> tuple[str, ...]:
-        """Return a sentence for each day whose chance map is not the one that was used then.
+    def rebuild(self, *, whole: bool = True) -> None:
+        """Write the layers that follow from the causes anew.
 
-        `whole` as in `verify`; `tell` hears how many days are done, and of how many.
+        If `whole`, from the first day on; else from the last morning that still follows from all
+        before it.
         """
-        with self._lock:
-            with self.store.reading() as db:  # both at one moment: others may write between
-                contents = self._read(db)
-                kept = db.execute("SELECT day, date, digest FROM days ORDER BY day").fetchall()
-            since = 0 if whole else contents.mornings.last_until(kept[-1][0])
-            days = [row for row in kept if row[0] >= since]
-            said = []
-            for done, (day, on, then) in enumerate(days, 1):
-                if derived_layers.map_digest(contents.morning(day).chance) != then:
-                    said.append(_otherwise(on))
-                if tell is not None:
-                    tell(done, len(days))
-            return tuple(said)
-
-    def work_on(self) -> None:
-        """Write the layers anew from the last morning on that still follows from all before it."""
         with self._lock, self.store.writing() as db:
-            self._refresh(db)
-
-    def rebuild(self) -> None:
-        """Write all layers that follow from the causes anew."""
-        with self._lock, self.store.writing() as db:
-            self._refresh(db, 0)
+            self._refresh(db, 0 if whole else None)
 
 
 def _chosen_for(
@@ -415,17 +319,3 @@ def _refuse_other_days(db: sqlite3.Connection, begins: date, instead: date) -> N
                 instead=instead,
             )
         )
-
-
-def _otherwise(on: str) -> str:
-    return worded(
-        "The chance map of {on} comes out differently from the one used then: it was "
-        "made by another version of fieldmon, or the file was changed by other hands.",
-        on=on,
-    )
-
-
-def _advised(db: sqlite3.Connection, on: date) -> list[str]:
-    """Return what was advised for a day, in order."""
-    advised = (one.what for one in season_log.entries(db) if one.kind == "advised")
-    return [str(one["said"]) for one in advised if one["date"] == str(on)]

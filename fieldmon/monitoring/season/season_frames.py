@@ -9,6 +9,7 @@ import numpy as np
 
 from fieldmon.compute.kinds import checked
 from fieldmon.monitoring.estimates.day_figures import DayFigures
+from fieldmon.monitoring.estimates.last_days import default_date
 from fieldmon.monitoring.inspecting.certifier_tables import inspections_table, treatments_table
 from fieldmon.monitoring.season.season_estimates import SeasonEstimates
 from fieldmon.monitoring.season.season_inspections import SeasonInspections
@@ -76,7 +77,7 @@ class SeasonFrames(SeasonInspections, SeasonTreatments, SeasonEstimates):
             return _inspections(self)
         if of == "treatments":
             return _treatments(self)
-        return _plants(self, self.default_date() if on is None else on)
+        return _plants(self, default_date(self) if on is None else on)
 
     def to_pandas(self) -> DataFrame:
         """Return a line for each day on which anything was planned or recorded.
@@ -100,7 +101,7 @@ def _inspections(season: SeasonInspections) -> GeoDataFrame:
     """Return a point for each inspection that counts, at its plant."""
     import pandas as pd  # noqa: PLC0415 - loaded when it is asked for
 
-    with season.one_moment():
+    with season.store.one_moment():
         done, table = season.inspections, inspections_table(season)
     frame = plant_frame(season.plot.grid, done.plant, season.plot.field.boundary)
     columns = {name: pd.Series(column) for name, column in table.items() if name not in _OF_PLANT}
@@ -116,7 +117,7 @@ def _treatments(season: SeasonTreatments) -> GeoDataFrame:
     import geopandas  # noqa: PLC0415 - as above
     import pandas as pd  # noqa: PLC0415
 
-    with season.one_moment():
+    with season.store.one_moment():
         areas, table = [one.place.area for one in season.treatments()], treatments_table(season)
     frame = geopandas.GeoDataFrame(table, geometry=areas, crs=_DEGREES)
     for day in {"date", "harvest_from", "entry_from"}.intersection(table):
@@ -126,7 +127,7 @@ def _treatments(season: SeasonTreatments) -> GeoDataFrame:
 
 def _plants(season: SeasonEstimates, on: date) -> GeoDataFrame:
     """Return a point for each plant, with its chance on the morning and the evening of a day."""
-    with season.one_moment():
+    with season.store.one_moment():
         chances = {"morning": season.morning(on), "evening": season.evening(on)}
     frame = plant_frame(season.plot.grid, boundary=season.plot.field.boundary)
     for name, chance in chances.items():

@@ -10,44 +10,40 @@ import numpy as np
 
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
-from fieldmon.errors import FileProblem, ObservationError, SettingError
+from fieldmon.errors import FileProblem, ObservationError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring.changes import corrections, outside_changes, season_log
 from fieldmon.monitoring.estimates.told_detection import said_now
-from fieldmon.monitoring.file import phone_tables, tables
+from fieldmon.monitoring.file import tables
 from fieldmon.monitoring.inspecting import (
     batches,
     drafts,
     inspection_lots,
     inspection_table,
-    numbered_inspections,
     repeated_recordings,
-    undone_batches,
 )
 from fieldmon.monitoring.inspecting.batches import Recorded
 from fieldmon.monitoring.inspecting.contradictions import (
-    Contradictions,
-    contradicting,
-    contradiction_lines,
     contradictions,
-    known_before,
     said_before,
 )
-from fieldmon.monitoring.inspecting.undone_batches import Undone
-from fieldmon.monitoring.phones.people import as_written, names_written, written_in
+from fieldmon.monitoring.inspecting.numbered_inspections import (
+    NumberedInspection,
+    numbered_inspections,
+)
+from fieldmon.monitoring.phones.people import as_written, names_written
 from fieldmon.monitoring.season.season_corrections import SeasonCorrections
+from fieldmon.monitoring.season.undoing import redo_batch, undo_with_batches
 from fieldmon.monitoring.settings.settings_log import settings_of
 from fieldmon.monitoring.treating import treatments
-from fieldmon.pests.weather import DAY_S
 from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from fieldmon.compute.day_arguments import Day
-    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.file.tables import KeptMessage
     from fieldmon.monitoring.inspecting.batches import Batch, BatchContents
     from fieldmon.monitoring.settings.settings import MonitoringSettings
@@ -56,33 +52,6 @@ if TYPE_CHECKING:
 @checked
 class SeasonInspections(SeasonCorrections):
     """The inspections of a season, whoever brings them; each batch can be undone."""
-
-    def contradictions(self, inspections: Inspections) -> Contradictions:
-        """Return which `inspections` say otherwise than what is recorded of their plant and day."""
-        return contradictions(inspections, self.history.inspections)
-
-    def count_new(self, inspections: Inspections) -> int:
-        """Return how many `inspections` say more than what is recorded."""
-        return int(np.count_nonzero(~known_before(inspections, self.history.inspections)))
-
-    def count_never_recorded(self, inspections: Inspections) -> int:
-        """Return how many `inspections` are of a plant, day and result that were never recorded.
-
-        What was recorded and taken back since was recorded.
-        """
-        with self.store.reading() as db:
-            known = inspection_table.ever_recorded(db)
-        dates = inspections.date.astype(str).tolist()
-        told = zip(inspections.plant.tolist(), dates, inspections.result.tolist(), strict=True)
-        return sum(one not in known for one in told)
-
-    def contradicting(self, on: Day) -> Inspections:
-        """Return a day's inspections of plants that were both clean and found on it."""
-        return contradicting(self.history.inspections.on(on))
-
-    def contradiction_lines(self, on: Day, named: Callable[[str], str] = str) -> tuple[Worded, ...]:
-        """Return a line for each such plant `on` a day: who says what; `named` writes a name."""
-        return contradiction_lines(self.history.inspections.on(on), self.plot.grid, named)
 
     def record(
         self,
@@ -304,47 +273,7 @@ class SeasonInspections(SeasonCorrections):
         SettingError
             If there is nothing to take back, or both are given.
         """
-        return self.undo_with_batches(batch, inspection, who).said
-
-    def undo_with_batches(
-        self, batch: int | None = None, inspection: int | None = None, who: str = ""
-    ) -> Undone:
-        """Do what `undo` does; return also which batches `redo` then lets count again.
-
-        Parameters
-        ----------
-        batch, inspection, who
-            As `undo` has them.
-
-        Raises
-        ------
-        SettingError
-            As `undo` has it.
-        """
-        if batch is not None and inspection is not None:
-            raise SettingError(
-                worded(
-                    "A batch or one inspection must be taken back, but both are given: batch "
-                    "{batch} and inspection {inspection}. Give one of them.",
-                    batch=batch,
-                    inspection=inspection,
-                )
-            )
-        signs = self.plot.grid.line_signs
-        with self._lock, self.store.writing() as db:
-            if inspection is None:
-                number, before = undone_batches.to_undo(db, batch)
-                changed, said = undone_batches.undo(db, number, signs)
-                what = {"batch": number, **({"but": before} if before else {})}
-            else:
-                changed, said = undone_batches.undo_one(db, inspection, signs)
-                what = {}
-            self._note_undone(db, who, changed, said, **what)
-            again = undone_batches.to_redo(db, changed)
-            if again is None:
-                return Undone(said, None)
-            but = season_log.left_out_of(db, again)
-            return Undone(said, again, undone_batches.to_redo_first(db, again, but))
+        return undo_with_batches(self, batch, inspection, who).said
 
     def redo(self, batch: int, who: str = "") -> str:
         """Let a `batch` that was undone count again; `who` does so, for the log.
@@ -368,54 +297,34 @@ class SeasonInspections(SeasonCorrections):
         SettingError
             If the batch was not undone, or what it corrected is not as it was before.
         """
-        with self._lock, self.store.writing() as db:
-            but = season_log.left_out_of(db, batch)
-            changed, said = undone_batches.redo(db, batch, but, self.plot.grid.line_signs)
-            told = phone_tables.undo_as_told(db)
-            changed |= {number for number, _ in told}
-            for one in changed:
-                batches.close_if_empty(db, one)
-            if all(one.undone for one in batches.all_of(db) if one.number == batch):
-                raise SettingError(
-                    worded(
-                        "Batch {batch} must have something that can count again, but all of it was "
-                        "taken back on the phone. Record it anew.",
-                        batch=batch,
-                    )
-                )
-            self._note_undone(db, who, changed, said, batch=batch)
-        return said
+        return redo_batch(self, batch, who)
 
-    def _note_undone(
-        self, db: sqlite3.Connection, who: str, changed: set[int], said: str,
-        **what: object,
-    ) -> None:  # fmt: skip
-        states = season_log.states(db, changed)
-        season_log.append(db, "undone", written_in(db, who), states=states, said=said, **what)
-        self._refresh(db, min(batches.first_day(db, one) for one in changed))
+    def numbered(
+        self, on: Day | None = None, plant: int | None = None
+    ) -> tuple[NumberedInspection, ...]:
+        """Return the inspections that count with their numbers, by which `undo` knows them.
 
-    def inspections_of(self, plant: int) -> tuple[numbered_inspections.NumberedInspection, ...]:
-        """Return the inspections of a plant that count, in their order, with their numbers."""
+        So does `correct_time`.
+
+        Parameters
+        ----------
+        on
+            Their day; None: all days.
+        plant
+            Their plant, by its number in the grid; None: all plants, in the order of the numbers.
+
+        Raises
+        ------
+        ObservationError
+            If there is no such plant.
+        """
+        last = len(self.plot.grid) - 1
+        if plant is not None and not 0 <= plant <= last:
+            raise ObservationError(
+                worded("A plant must be 0 to {last}, but it is {plant}.", last=last, plant=plant)
+            )
         with self.store.reading() as db:
-            return numbered_inspections.of_plant(db, plant)
-
-    def inspections_on(self, on: Day) -> tuple[int, ...]:
-        """Return the numbers (fid) of the inspections `on` a day that count, in order."""
-        with self.store.reading() as db:
-            return numbered_inspections.of_day(db, on)
-
-    def number_of(self, inspections: Inspections) -> int:
-        """Return the number (fid) in the file of the last of some inspections with times."""
-        last = inspections.take(slice(len(inspections) - 1, len(inspections)))
-        at = inspection_table.time_text(float(last.second[0]) % DAY_S)
-        said = int(last.plant[0]), str(last.date[0]), at
-        with self.store.reading() as db:
-            (number,) = db.execute(
-                "SELECT fid FROM inspections WHERE plant = ? AND date >= ? AND undone = 0 "
-                "ORDER BY time = ? DESC, date, fid DESC",
-                said,
-            ).fetchone()
-        return int(number)
+            return numbered_inspections(db, on, plant)
 
     def take_drafts(self) -> tuple[str, ...]:
         """Let inspections count that another program added to the file itself.

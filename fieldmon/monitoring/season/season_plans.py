@@ -12,12 +12,14 @@ import numpy as np
 from fieldmon.compute.kinds import checked
 from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring.changes import logged_days, season_log
+from fieldmon.monitoring.changes import season_log
+from fieldmon.monitoring.changes.file_revision import FileRevision
 from fieldmon.monitoring.days import kept_routes
 from fieldmon.monitoring.estimates.day_figures import PlannedAndDone
 from fieldmon.monitoring.estimates.mornings import is_behind
+from fieldmon.monitoring.estimates.season_contents import newest_day
 from fieldmon.monitoring.phones import scouts
-from fieldmon.monitoring.season.open_season import FileRevision, OpenSeason, newest_day
+from fieldmon.monitoring.season.season_days import SeasonDays
 from fieldmon.monitoring.settings.settings import seconds
 from fieldmon.monitoring.settings.shift_work import Besides
 from fieldmon.planning.members import person_key
@@ -25,27 +27,32 @@ from fieldmon.planning.plan import DayPlan, plan_in
 from fieldmon.planning.route import route_of
 from fieldmon.planning.team_day import team_day
 from fieldmon.planning.team_worker import Posted
-from fieldmon.plot.local_clock import grid_clock, local_clock
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Sequence
     from datetime import date
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
     from fieldmon.compute.day_arguments import Day, TimeOfDay
     from fieldmon.monitoring.days.kept_routes import KeptPlans, KeptRoute
-    from fieldmon.monitoring.season.open_season import SeasonContents
+    from fieldmon.monitoring.estimates.season_contents import SeasonContents
     from fieldmon.monitoring.settings.settings import MonitoringSettings
-    from fieldmon.monitoring.treating.closures import Closure
+    from fieldmon.monitoring.settings.shift_work import Crew
     from fieldmon.planning.wishes import Wishes
     from fieldmon.samplers.base import Scene
 
 
 @checked
-class SeasonPlans(OpenSeason):
+class SeasonPlans(SeasonDays):
     """The days of a season as they are planned, and the routes that are kept of them."""
+
+    def __init__(self, path: str | Path) -> None:
+        super().__init__(path)
+        self._unused_then: dict[int, set[str]] = {}
 
     def plan(
         self, on: Day, now: TimeOfDay | None = None, *, keep: bool = True,
@@ -80,7 +87,7 @@ class SeasonPlans(OpenSeason):
 
     def plan_each(
         self, on: Day, now: TimeOfDay | None = None, *, keep: bool = True,
-        wishes: Wishes | None = None,
+        wishes: Wishes | None = None, crew: Crew | None = None,
     ) -> tuple[DayPlan, ...]:  # fmt: skip
         """Plan what is left of a day for each of the team, or for the one who works.
 
@@ -91,14 +98,20 @@ class SeasonPlans(OpenSeason):
         ----------
         on, now, keep, wishes
             As `plan` takes them.
+        crew
+            Scouts who are no team's, and share the same plants, instead of the team. Each has the
+            season's robot and goes on from where they stand, in aisles of their own.
 
         Returns
         -------
         tuple of DayPlan
-            In the order of the team.
+            In the order of the team, or of the crew.
         """
         with self._lock:
             contents = self._now()
+            if crew is not None:
+                days = self._crew_days(contents, on, (now, wishes), crew)
+                return self._given(contents, on, days, crew.names, crew.kept_as, keep=keep)
             settings = self._planned_by(contents, on)
             scenes = [self._scene(contents, on, now, who) for who in _names(settings)]
             if settings.team:
@@ -111,47 +124,27 @@ class SeasonPlans(OpenSeason):
                 days = (plan_in(scenes[0], settings.decides(), wishes),)
             return self._given(contents, on, days, _names(settings), keep=keep)
 
-    def plan_crew(
-        self, on: Day, crew: tuple[str, ...], left_s: dict[str, float] | None = None, *,
-        wishes: Wishes | None = None, kept_as: tuple[str, ...] | None = None,
+    def _crew_days(
+        self, contents: SeasonContents, on: date, asked: tuple[time | None, Wishes | None],
+        crew: Crew,
     ) -> tuple[DayPlan, ...]:  # fmt: skip
-        """Plan what is left of a day for scouts who are no team's, and share the same plants.
-
-        Each has the season's robot and goes on from where they stand, in aisles of their own.
-
-        Parameters
-        ----------
-        on
-            The day.
-        crew
-            Their names.
-        left_s
-            The seconds left of their hours, of those who said so themselves.
-        wishes
-            What people want of the day besides.
-        kept_as
-            The names by which their routes are kept; None: their own.
-        """
-        with self._lock:
-            contents = self._now()
-            settings, told_s = self._planned_by(contents, on), left_s or {}
-            scenes = [self._scene_of_all(contents, on, None, who) for who in crew]
-            scenes = [
-                replace(scene, seconds_left=min(told_s.get(who, scene.seconds_left),
-                                                scene.robot.day_s))
-                for scene, who in zip(scenes, crew, strict=True)
-            ]  # fmt: skip
-            scenes = [
-                self._open_to(scene, contents, on, who)
-                for scene, who in zip(scenes, crew, strict=True)
-            ]
-            days: tuple[DayPlan, ...]
-            if len(crew) == 1:
-                days = (plan_in(scenes[0], settings.decides(), wishes),)
-            else:  # all go on now
-                posts = tuple((scene, 0.0) for scene in scenes)
-                days = self._team_days(settings, crew, posts, wishes)
-            return self._given(contents, on, days, crew, kept_as)
+        """Return the days of scouts who are no team's, by the time and the wishes asked for."""
+        now, wishes = asked
+        settings, told_s = self._planned_by(contents, on), crew.left_s or {}
+        scenes = [self._scene_of_all(contents, on, now, who) for who in crew.names]
+        scenes = [
+            replace(scene, seconds_left=min(told_s.get(who, scene.seconds_left),
+                                            scene.robot.day_s))
+            for scene, who in zip(scenes, crew.names, strict=True)
+        ]  # fmt: skip
+        scenes = [
+            self._open_to(scene, contents, on, who)
+            for scene, who in zip(scenes, crew.names, strict=True)
+        ]
+        if len(crew.names) == 1:
+            return (plan_in(scenes[0], settings.decides(), wishes),)
+        posts = tuple((scene, 0.0) for scene in scenes)  # all go on now
+        return self._team_days(settings, crew.names, posts, wishes)
 
     def _given(
         self, contents: SeasonContents, on: date, days: tuple[DayPlan, ...],
@@ -186,62 +179,6 @@ class SeasonPlans(OpenSeason):
             return kept_routes.plants(
                 db, last.get(person_key(who if named is None else named.name))
             )
-
-    def holds_still(self, on: Day, plan: str) -> bool:
-        """Return whether nothing was found or changed since a `plan` of the day `on` was kept.
-
-        It is named by its digest.
-        """
-        with self.store.reading() as db:
-            return logged_days.holds_still(db, on, plan)
-
-    def closed_to_kept(
-        self, on: Day, who: str = "", kept_as: str | None = None
-    ) -> tuple[Closure, ...]:
-        """Return what is `closed` to the route kept of a day: by its own begin, if that is later.
-
-        Once something of their day is recorded, it is by the clock. `on` as in `plan`;
-        `kept_as`: by which name the route of `who` is kept; None: their own.
-        """
-        with self._lock, self.store.reading() as db:  # all of one moment
-            contents = self._read(db)
-            settings = self._planned_by(contents, on, db)
-            shift, name = self._shift(settings, who)
-            own = str(name or "") if kept_as is None else kept_as
-            kept = kept_routes.kept_last(db, settings.day(on)).get(person_key(own))
-            begun = len(self._worked(contents, on, who))
-            now = local_clock(self.plot.field).now()
-            begins = None if kept is None else kept.begins
-            if begun:  # whoever is out goes on now
-                begins = now if now.date() == on else None
-            if begins is None:
-                return self._closed(contents, on, who, None)
-            begins_s = (begins - datetime.combine(on, time())).total_seconds()
-            begun_s = self._begun_s(contents, on, who)
-            late_s = grid_clock(self.plot.grid).seconds_between(on, begun_s, begins_s)
-            day_s = shift.robot.day_s
-            return self._closed(contents, on, who, min(max(day_s - late_s, 0.0), day_s))
-
-    def planned_only(self, until: Day) -> tuple[date, ...]:
-        """Return the planned days `until` a date of which nothing is recorded, in order.
-
-        Each is over on the plot, and was planned to be worked, see `logged_days.to_be_worked`.
-        That a plant could not be inspected is a record, too.
-        """
-        clock = local_clock(self.plot.field)
-        last = min(until, clock.today() - timedelta(days=1))
-        with self._lock, self.store.reading() as db:  # both of one moment
-            contents = self._read(db)
-            planned = kept_routes.days(db)
-            missing = planned[~np.isin(planned, contents.history.days)]
-            dates = [contents.settings.date(day) for day in missing.tolist()]
-            over = [day for day in dates if day <= last]
-            return logged_days.to_be_worked(db, over, clock) if over else ()
-
-    def codes_on(self, on: Day) -> dict[str, tuple[int, int] | None]:
-        """Return who has a code for work on the day `on` now, by name, and of which rows."""
-        with self.store.reading() as db:
-            return self._codes(db, on, is_over=False)
 
     def _codes(
         self, db: sqlite3.Connection, on: date, *, is_over: bool

@@ -14,6 +14,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.changes import outside_changes, season_log
 from fieldmon.monitoring.estimates import treatment_effect
+from fieldmon.monitoring.estimates.last_days import last_date
 from fieldmon.monitoring.file import label_table
 from fieldmon.monitoring.inspecting import batches
 from fieldmon.monitoring.inspecting.batches import Recorded
@@ -156,7 +157,8 @@ class SeasonTreatments(OpenSeason):
 
     def _efficacy(self, product: str) -> float:
         """Return how well a product works, as the season learnt it."""
-        known = self.learnt_efficacy(self.last_date(), product) if product else None
+        told = self.effects(last_date(self)) if product else ()
+        known = treatment_effect.learnt_efficacy(told, product) if product else None
         if known is None:
             raise SettingError(
                 worded(
@@ -167,22 +169,6 @@ class SeasonTreatments(OpenSeason):
                 )
             )
         return known.efficacy
-
-    def learnt_efficacy(self, on: Day, product: str = "") -> TreatmentEffect | None:
-        """Return what inspections up to the evening of `on` tell of how well a product works.
-
-        None: they tell of none.
-
-        Parameters
-        ----------
-        on
-            The day.
-        product
-            Its trade name; empty: the last one of which they tell.
-        """
-        found = self.effects(on)
-        told = [one.product for one in found if one.cured_of and one.product]
-        return treatment_effect.learnt_efficacy(found, product or "".join(told[-1:]))
 
     def treatments(self) -> tuple[KeptTreatment, ...]:
         """Return the treatments that count, in the order in which they ended."""
@@ -240,7 +226,9 @@ class SeasonTreatments(OpenSeason):
         with self.store.reading() as db:
             return label_table.read(db)
 
-    def cautions(self, on: Day, units: Units | None = None) -> tuple[Caution, ...]:
+    def cautions(
+        self, on: Day, units: Units | None = None, *, because_of: int | None = None
+    ) -> tuple[Caution, ...]:
         """Return what to beware of on a day: harvest, entry, resistance, what labels allow.
 
         And who was where before entry was allowed.
@@ -251,34 +239,26 @@ class SeasonTreatments(OpenSeason):
             The day.
         units
             In which sentences speak; None: metres, hectares and dates as 2026-11-16.
+        because_of
+            Only because of this batch of a treatment, later uses among it; None: of all.
         """
         done, rules, seen = self._held_to(units)
-        early = early_entries(done, rules, seen, self.plot.grid, on)
-        return cautions.by_urgency(
-            (*cautions.cautions(by_vine(done, self.plot.grid), rules, on), *early)
-        )
-
-    def cautions_because_of(
-        self, batch: int, on: Day, units: Units | None = None
-    ) -> tuple[Caution, ...]:
-        """Return what to beware of on a day because of a treatment's batch, later uses among it.
-
-        Sentences speak in `units`; None: the usual ones.
-        """
-        done, rules, seen = self._held_to(units)
-        own = [one for one in done if one.batch == batch and one.on <= on]
-        early = early_entries(own, rules, seen, self.plot.grid, self.last_date())
-        return cautions.by_urgency(
-            (*cautions.because_of(by_vine(done, self.plot.grid), batch, rules, on), *early)
-        )
+        every, own = by_vine(done, self.plot.grid), done
+        if because_of is None:
+            until, found = on, cautions.cautions(every, rules, on)
+        else:
+            own = tuple(one for one in done if one.batch == because_of and one.on <= on)
+            until, found = last_date(self), cautions.because_of(every, because_of, rules, on)
+        early = early_entries(own, rules, seen, self.plot.grid, until)
+        return cautions.by_urgency((*found, *early))
 
     def cautions_if_treated(
         self, on: Day, product: str, plants: NDArray[np.bool_], units: Units | None = None
     ) -> tuple[Caution, ...]:
         """Return what a treatment of plants ``(n,)`` with a product on a day would bring.
 
-        As `cautions_because_of` says it once it is done: nothing is kept. Empty where there is no
-        product, or no plant.
+        As `cautions` says it `because_of` that once it is done: nothing is kept. Empty where there
+        is no product, or no plant.
 
         Parameters
         ----------

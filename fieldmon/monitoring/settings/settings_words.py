@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import chance_figure, estimate, joined, worded, written
+from fieldmon.compute.wording import chance_figure, joined, worded, written
 from fieldmon.monitoring.settings.settings import as_json, from_json
 from fieldmon.monitoring.settings.settings_log import each_difference, plain_path
 from fieldmon.planning.members import Teamwork
 from fieldmon.plot.robot import KM_H, Robot, scout
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from datetime import date
+    from collections.abc import Iterator
 
     from fieldmon.compute.wording import Worded
-    from fieldmon.monitoring.season.season_estimates import SeasonEstimates
     from fieldmon.monitoring.settings.settings import MonitoringSettings
     from fieldmon.monitoring.settings.settings_log import Parts
     from fieldmon.planning.members import TeamMember
@@ -61,8 +58,6 @@ _SAID_BY = {
 # it comes and goes with a team
 _WITH_TEAM = "team teamwork"
 _TEAMWORK = ("shared out", "contact", "least gain", "passing")
-# parts of the settings that are believed of the whole season
-_OF_ALL_DAYS = ("prior", "beliefs", "pest", "weather")
 
 
 def taken_back(change: MonitoringSettings, again: MonitoringSettings) -> str:
@@ -143,39 +138,6 @@ def _parts_of(*both: MonitoringSettings) -> tuple[dict[str, str], ...]:
     if len({id(one.weather) for one in both}) == 1:  # a year of hours takes time to write
         both = tuple(replace(one, weather=None) for one in both)
     return tuple(as_json(one) for one in both)
-
-
-@contextmanager
-def telling_anew(
-    season: SeasonEstimates, before: MonitoringSettings, after: MonitoringSettings,
-    tell: Callable[[str], object],
-) -> Iterator[None]:  # fmt: skip
-    """Tell what a change makes of the last day, where it makes of days past something else."""
-    was, now = as_json(before), as_json(after)
-    if all(was.get(name) == now.get(name) for name in _OF_ALL_DAYS):
-        yield
-        return
-    on = season.default_date()
-    told = _still_there(season, on)
-    yield
-    if (still := _still_there(season, on)) != told:
-        said = worded(
-            "Days past are worked out anew, too: after {on} {still} plants are expected to be "
-            "still infested; before this change it was {told}.",
-            on=on,
-            still=still,
-            told=told,
-        )
-        tell(said)
-
-
-def _still_there(season: SeasonEstimates, on: date) -> str:
-    # with those found and only flagged: else a change of them would seem to find or lose plants
-    left = season.still_infested(on)
-    return worded(
-        "{expected} ({low:,} to {high:,})",
-        expected=estimate(left.expected), low=left.low, high=left.high,
-    )  # fmt: skip
 
 
 def _in_words(settings: MonitoringSettings) -> dict[str, str]:

@@ -9,11 +9,14 @@ from dataclasses import dataclass, replace
 from datetime import timedelta
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from fieldmon.compute.kinds import checked
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.infestation.inspections import SKIPPED
+from fieldmon.monitoring.settings.settings import seconds
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
 from fieldmon.plot.travel import driven_s, robot_clock
@@ -24,8 +27,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.compute.day_arguments import TimeOfDay
     from fieldmon.infestation.inspections import Inspections
+    from fieldmon.monitoring.settings.settings import MonitoringSettings
     from fieldmon.plot.local_clock import LocalClock
+    from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.plot.travel import Aisles
 
@@ -33,6 +39,8 @@ if TYPE_CHECKING:
 BEGINS_OTHERWISE_S = 300.0
 # who begins no sooner than this before a day's start works on that day
 _BEGINS_EARLY_S = 3600.0
+# of each plot the ways from other gates: to find them takes long
+_FROM_GATES: WeakKeyDictionary[Plot, dict[tuple[float, float], Aisles]] = WeakKeyDictionary()
 
 
 class Besides(NamedTuple):
@@ -45,6 +53,24 @@ class Besides(NamedTuple):
     """
 
     others: tuple[str, ...]
+
+
+class Crew(NamedTuple):
+    """Scouts who are no team's, and share the same plants on a day.
+
+    Parameters
+    ----------
+    names
+        Their names.
+    left_s
+        The seconds left of their hours, of those who said so themselves.
+    kept_as
+        The names by which their routes are kept; None: their own.
+    """
+
+    names: tuple[str, ...]
+    left_s: dict[str, float] | None = None
+    kept_as: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,6 +233,89 @@ class ShiftWork:
         last = work[earlier].max(initial=-1)
         plants: NDArray[np.int32] = self.inspections.plant[earlier & (work == last)]
         return plants
+
+
+@checked
+@dataclass(frozen=True, eq=False)
+class DayWork:
+    """Somebody's work of one day, as far as it was recorded; see `Season.work`.
+
+    Work that goes past midnight is that of the day on which it began.
+
+    Parameters
+    ----------
+    shifts
+        Their work of all days.
+    day
+        Number of the day, from 0.
+    is_earlier
+        Whether the day goes by what counted then, see `Season.planned_by`.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> season = fm.Season.create("of_work.gpkg", plot, begins="2026-11-18")
+    >>> work = season.work("2026-11-18")
+    >>> work.begun_s / 3600, work.left_s() / 3600, len(work.inspections)
+    (6.0, 12.0, 0)
+    """
+
+    shifts: ShiftWork
+    day: int
+    is_earlier: bool
+
+    @property
+    def begun_s(self) -> float:
+        """Return the second of the day at which it began, or will.
+
+        That is as the settings say, unless the first inspection was made minutes before or after.
+        """
+        return self.shifts.begun_s(self.day)
+
+    @property
+    def until_s(self) -> float:
+        """Return until which second of the day results are of this work.
+
+        Past midnight it is 86 400 and more.
+        """
+        return self.shifts.until_s(self.day)
+
+    @property
+    def inspections(self) -> Inspections:
+        """Return what was inspected in it.
+
+        Also past midnight, where inspections are dated the next day: seconds go on from 86 400.
+        """
+        return self.shifts.own(self.day)
+
+    def left_s(self, now: TimeOfDay | None = None) -> float:
+        """Return the seconds left of the hours at a local time; None: after the last inspection."""
+        gone_s = self.shifts.gone_s(self.day, None if now is None else seconds(now))
+        return max(0.0, self.shifts.shift.robot.day_s - gone_s)
+
+
+def shift_of(
+    plot: Plot, settings: MonitoringSettings, who: str | Besides
+) -> tuple[Shift, str | Besides | None]:
+    """Return how somebody works, and whose inspections are theirs; None: everybody's."""
+    starts_s, streams = seconds(settings.starts), RandomStreams(settings.seed)
+    member = settings.at_work(who) if isinstance(who, str) else None
+    if member is None:
+        return Shift(plot.aisles, settings.robot, starts_s, streams), who or None
+    aisles, starts_s = aisles_from(plot, member.gate), starts_s + member.starts_s
+    return Shift(aisles, member.robot, starts_s, streams), member.name
+
+
+def aisles_from(plot: Plot, gate: tuple[float, float] | None) -> Aisles:
+    """Return the ways on a plot with another gate; None: its own."""
+    if gate is None:
+        return plot.aisles
+    known = _FROM_GATES.setdefault(plot, {})
+    gate = (gate[0], gate[1])  # a list is none that can be remembered
+    if gate not in known:
+        known[gate] = plot.with_gate(gate).aisles
+    return known[gate]
 
 
 def made_by(inspections: Inspections, who: str | Besides | None) -> Inspections:

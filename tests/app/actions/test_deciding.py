@@ -13,6 +13,7 @@ from fieldmon.decisions.thresholds import published
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.io.writers.treatment_map import MAP_FORMATS
+from fieldmon.monitoring.estimates.last_days import default_date
 from tests.app.chosen import a_plot, chosen
 from tests.app.driving import boxed, go, press, texts_of
 
@@ -82,13 +83,13 @@ def test_zones_noted_as_treated_are_those_on_the_page_whatever_another_session_f
     season_app, season
 ):
     go(season_app, "decide")
-    seen = season().advice(season().default_date()).sprayed
+    seen = season().advice(default_date(season())).sprayed
     assert 0 < seen.sum() < seen.size
     caption = next(one.value for one in season_app.caption if one.value.startswith("Noted are"))
     assert f"{seen.sum():,} plants" in caption
     far = np.flatnonzero(~seen)[[0, 40, 80]]
     season().record(Inspections.of(far, np.full(3, FOUND), np.datetime64("2026-11-16")))
-    assert (season().advice(season().default_date()).sprayed != seen).any()
+    assert (season().advice(default_date(season())).sprayed != seen).any()
     boxed(season_app.number_input, "efficacy").set_value(80)
     press(season_app, texts.TREAT_BUTTON)
     (one,) = season().treatments()

@@ -9,6 +9,7 @@ from app.words import texts
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.io.writers.treatment_map import treatment_map_bytes
+from fieldmon.monitoring.estimates.last_days import default_date
 from tests.app.chosen import in_season
 from tests.app.driving import boxed, go, press, texts_of
 
@@ -134,9 +135,9 @@ def test_a_treatment_of_what_is_selected_on_the_map_is_of_those_plants(season_ap
 
 @pytest.mark.parametrize("page", ["record", "decide"])
 def test_a_treatment_of_a_file_is_of_its_area_whatever_the_zones_are_now(season_app, season, page):
-    advice = season().advice(season().default_date())
+    advice = season().advice(default_date(season()))
     data = treatment_map_bytes(advice.treatment_map(season().plot.field), "zones.geojson")
-    season().record(Inspections.of([0], [FOUND], np.datetime64(season().default_date())))
+    season().record(Inspections.of([0], [FOUND], np.datetime64(default_date(season()))))
     go(season_app, page)
     boxed(season_app.file_uploader, "treat file").upload("zones.geojson", data, "text/plain")
     if page == "record":

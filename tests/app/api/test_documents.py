@@ -312,7 +312,7 @@ def test_the_hours_of_today_run_by_the_clock_from_when_work_began(served, scout,
     first = loaded_after(0.5)
     assert (first["live"], first["begun"], first["seconds_left"]) == (True, False, 3600 * hours)
     plants = np.array(first["route"]["plants"][:1], np.int32)
-    second = np.array([season.begun_s(on) + 120])
+    second = np.array([season.work(on).begun_s + 120])
     season.record(Inspections.of(plants, np.zeros(1, np.int8), on, second=second), "f", "Ann")
     late = loaded_after(hours - 0.3)
     assert (late["begun"], late["seconds_left"]) == (True, pytest.approx(0.3 * 3600))

@@ -11,6 +11,7 @@ from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates import figures_of_day
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.monitoring.treating.applications import Application
 from tests.app.chosen import in_season
@@ -91,7 +92,7 @@ def test_finds_that_are_found_again_are_said_with_where_the_setting_is(
     cautions.show_today(today, today.plan())
     assert [words for _, words in shown if words == said] == [said]
     # worked out once for all clicks
-    monkeypatch.setattr(Season, "found_again", None)
+    monkeypatch.setattr(figures_of_day, "found_again", None)
     cautions.show(today)
 
 

@@ -13,6 +13,7 @@ from app.state import chosen_day
 from app.state.chosen_day import DayRoute
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring.estimates.figures_of_day import day_figures, still_infested
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.grid import plant_numbers
 from tests.app.chosen import a_plot, chosen, in_season, records_at
@@ -113,7 +114,7 @@ def test_stops_of_a_day_that_was_worked_say_what_was_found_there(worked):
 def test_what_changed_is_the_difference_of_two_days(worked):
     title, told = day.changes(on(worked, 1))
     said = "\n".join(told)
-    before, now = (worked.day_figures(BEGINS + timedelta(days=n)) for n in (0, 1))
+    before, now = (day_figures(worked, BEGINS + timedelta(days=n)) for n in (0, 1))
     assert title == "Since the last visit, Mon 6 Apr"
     assert f"{before.found_today} found on 40 plants inspected on Mon 6 Apr." in said
     assert f"still infested: {now.expected:.0f}; on the evening of Mon 6 Apr: " in said
@@ -123,7 +124,7 @@ def test_what_changed_is_the_difference_of_two_days(worked):
 
 
 def test_what_changed_is_told_since_the_last_visit_whenever_that_was(worked):
-    visited, now = (worked.day_figures(BEGINS + timedelta(days=n)) for n in (1, 9))
+    visited, now = (day_figures(worked, BEGINS + timedelta(days=n)) for n in (1, 9))
     title, said = day.changes(on(worked, 9))
     assert title == "Since the last visit, Tue 7 Apr"
     assert f"{visited.found_today} found on 40 plants inspected on Tue 7 Apr." in said
@@ -163,7 +164,7 @@ def test_plants_only_flagged_are_said_beside_those_not_found(tmp_path):
     looked = Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(BEGINS))
     season.record(looked, "finds")
     said = "\n".join(day.changes(on(season, 1))[1])
-    still, before = (season.still_infested(BEGINS + timedelta(days=k)).expected for k in (1, 0))
+    still, before = (still_infested(season, BEGINS + timedelta(days=k)).expected for k in (1, 0))
     assert before > 20
     assert f"still infested: {still:.0f}; on the evening of Mon 6 Apr: {before:.0f}." in said
     assert "are not found yet, and 20 were found and only flagged." in said

@@ -8,6 +8,7 @@ import pytest
 from app.show.day import reasons
 from app.state import chosen_day
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates.figures_of_day import day_figures
 from tests.app.chosen import DAY, a_plot, chosen, in_season, records_at
 from tests.app.driving import map_of
 from tests.monitoring.seasons import BEGINS, Insects, a_season
@@ -64,7 +65,7 @@ def test_what_is_known_is_what_the_season_says(worked):
         assert (inspected == 1).sum() == status.found
         assert state.tolist() == np.maximum(inspected, worked.history.recorded).tolist()
         assert chosen_day.progress(choices).found_today == status.found_today
-        assert chosen_day.figures(choices, choices.day) == worked.day_figures(choices.on)
+        assert chosen_day.figures(choices, choices.day) == day_figures(worked, choices.on)
         assert len(chosen_day.found(choices)) == status.found_today
         undated = 60
         aged = np.delete(chosen_day.ages(choices) >= 0, undated)

@@ -12,6 +12,7 @@ from app.state.estate import PlotState
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.records import Records
 from fieldmon.monitoring import MonitoringSettings, Season
+from fieldmon.monitoring.estimates.figures_of_day import day_figures, flagged
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.plot.local_clock import local_clock
 from tests.app.chosen import a_plot
@@ -60,9 +61,9 @@ def test_plants_that_were_only_flagged_are_infested_too(tmp_path, monkeypatch):
     kept = Season.create(tmp_path / "s.gpkg", here, Records.none(), settings)
     kept.record(Inspections.of(np.arange(20), np.ones(20, int), np.datetime64(today)))
     (left,), _ = estate.plots()
-    not_found = kept.day_figures(today).expected
-    assert left.expected == pytest.approx(not_found + kept.flagged(today))
-    assert kept.flagged(today) > 10
+    not_found = day_figures(kept, today).expected
+    assert left.expected == pytest.approx(not_found + flagged(kept, today))
+    assert flagged(kept, today) > 10
 
 
 def test_a_season_that_cannot_be_opened_is_said_and_hides_no_other(season_app):

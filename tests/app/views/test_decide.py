@@ -9,6 +9,7 @@ from app.state import deciding
 from app.words import texts
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.monitoring.estimates.treatment_effect import learnt_efficacy
 from tests.app.driving import go, map_of, metric, opened, texts_of
 
 
@@ -81,7 +82,7 @@ def test_how_well_treating_works_is_as_learnt_until_somebody_says(
         of.record(Inspections.of(plants, np.full(60, result), np.datetime64(day)), day)
         if day == "2026-11-16":
             of.treat(np.datetime64(day).item(), 0.6, product="soap")
-    told = of.learnt_efficacy(np.datetime64("2026-11-17").item())
+    told = learnt_efficacy(of.effects(np.datetime64("2026-11-17").item()))
     assert told.efficacy < 0.1
     app = opened("Gate 2026", day="2026-11-17")
     go(app, "decide")

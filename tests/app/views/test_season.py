@@ -6,7 +6,7 @@ import numpy as np
 
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
-from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates import figures_of_day
 from tests.app.driving import begun, boxed, go, metric, texts_of
 
 
@@ -41,7 +41,7 @@ def test_the_season_says_why_days_sum_to_more_than_the_plants_found(season_app, 
 
 
 def test_the_season_says_how_many_plants_are_only_flagged(season_app, monkeypatch):
-    monkeypatch.setattr(Season, "flagged", lambda *_: 20.0)
+    monkeypatch.setattr(figures_of_day, "flagged", lambda *_: 20.0)
     go(season_app, "season")
     assert not season_app.exception
     assert "are not found yet, and 20 were found and only flagged." in texts_of(season_app)

@@ -11,6 +11,7 @@ from fieldmon.cli.status import _contradicting
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.inspecting.contradictions import contradicting, contradictions
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 DAY = np.datetime64(BEGINS)
@@ -28,7 +29,7 @@ def test_the_log_names_each_correction_and_of_two_faces_which(tmp_path, face):
     season.record(said(plants, np.zeros(7, np.int8)), "day")
     now = said(plants, np.ones(7, np.int8))
     named = f", face {face}" if face else ""
-    (first, *_) = season.contradictions(now).sentences(grid)
+    (first, *_) = contradictions(now, season.inspections).sentences(grid)
     assert first.startswith(f"Row 1, plant 1{named} on {BEGINS}: recorded as clean")
     season.record_instead(now)
     logged = season.log()[-1].sentence()
@@ -64,7 +65,7 @@ def test_one_stop_of_a_batch_is_corrected_and_the_others_stay(season: Season):
     }  # fmt: skip
     corrected = held.take(held.plant == 4)
     assert (corrected.count.tolist(), corrected.second.tolist()) == ([7.0], [200.0])
-    assert not len(season.contradicting(BEGINS))
+    assert not len(contradicting(season.inspections.on(BEGINS)))
     assert season.verify() == ()
     correction = next(one for one in season.batches() if one.kind == "corrections")
     assert (correction.source, correction.rows) == ("me", 1)

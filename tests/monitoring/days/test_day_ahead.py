@@ -273,7 +273,7 @@ def robot(k):
 def test_who_begins_in_the_evening_has_the_whole_day_for_the_phone_and_for_the_season(tmp_path):
     fresh = a_season(tmp_path / "fresh.gpkg")
     day_s, plants = fresh.settings.robot.day_s, fresh.plan(BEGINS).route.plant
-    assert fresh.begun_s(BEGINS) == 6 * 3600.0
+    assert fresh.work(BEGINS).begun_s == 6 * 3600.0
     told(fresh, "Ann", plants[:3], 20.5 * 3600.0)
     left_s = work_hours(fresh, BEGINS, WorkPart(name="Ann")).left_s
     assert day_s - 300.0 < left_s < day_s
@@ -289,4 +289,4 @@ def test_a_route_by_the_clock_runs_from_the_start_that_the_settings_say(tmp_path
     fresh = a_season(tmp_path / "fresh.gpkg")
     route = fresh.plan(BEGINS).route
     told(fresh, "", route.plant[:1], 6 * 3600.0 + route.leave_s[0] + 200.0)
-    assert fresh.begun_s(BEGINS) == 6 * 3600.0
+    assert fresh.work(BEGINS).begun_s == 6 * 3600.0

@@ -158,7 +158,7 @@ def test_finds_that_came_in_after_a_route_was_given_out_are_counted_but_ones_own
     keys = {name: scouts.let_in(fresh, name) for name in ("Ann", "Ben")}
     take(fresh, keys["Ann"], [a_finding(2, FOUND, on=BEGINS)], utc_now())
     route_ahead(fresh, on(1), WorkPart(None, "Ann"))
-    monkeypatch.setattr(fresh, "is_earlier", lambda _day: False)
+    monkeypatch.setattr(fresh, "_is_earlier", lambda *_: False)
 
     def newer():
         return [one.newer for one in scouts_out(fresh, on(1))]

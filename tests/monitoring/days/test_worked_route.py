@@ -8,8 +8,7 @@ import pytest
 
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
-from fieldmon.monitoring.days import worked_route
-from fieldmon.monitoring.days.worked_route import day_was_worked
+from fieldmon.monitoring.days.worked_route import day_was_worked, worked_route
 from fieldmon.monitoring.settings.settings import seconds
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot
@@ -68,7 +67,7 @@ def test_of_a_team_each_ones_clock_begins_when_it_starts(tmp_path):
 
 def test_who_began_before_the_seasons_hour_has_all_its_times(tmp_path):
     season, route = worked(tmp_path, [16_200.0, 16_800.0, 17_400.0])
-    begun_s = season.begun_s(BEGINS)
+    begun_s = season.work(BEGINS).begun_s
     assert begun_s < 16_200.0 < seconds(season.settings.starts)
     assert route.leave_s == pytest.approx(np.array([16_200.0, 16_800.0, 17_400.0]) - begun_s)
     midnight = datetime.combine(BEGINS, time())

@@ -8,6 +8,7 @@ import pytest
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.estimates.day_figures import DayFigures, Progress, flagged_said
+from fieldmon.monitoring.estimates.figures_of_day import day_figures, progress
 from tests.monitoring.seasons import BEGINS, Insects, a_plot, a_season
 
 
@@ -32,7 +33,7 @@ def test_the_days_kept_are_those_on_which_something_happened(worked):
 @pytest.mark.parametrize("day", range(7))
 def test_a_day_in_figures_is_what_its_status_says_kept_or_worked_out(worked, day):
     on = BEGINS + timedelta(days=day)
-    now, figures = worked.status(on), worked.day_figures(on)
+    now, figures = worked.status(on), day_figures(worked, on)
     estimate = now.estimate
     assert figures == DayFigures(
         on, now.inspected_today, now.found_today, pytest.approx(estimate.expected, rel=1e-12),
@@ -45,13 +46,13 @@ def test_kept_figures_are_those_worked_out_anew_by_another_program(worked):
     for kept in worked.days():
         day = again.settings.day(kept.on)
         assert Progress.of(again.history, day).inspected_today == kept.inspected_today
-        assert again.day_figures(kept.on) == kept
+        assert day_figures(again, kept.on) == kept
 
 
 def test_progress_counts_every_plant_once_and_finds_for_good(worked):
     for day in range(6):
         so_far, on_day = worked.history.until(day), worked.history.on(day)
-        now = worked.progress(BEGINS + timedelta(days=day))
+        now = progress(worked, BEGINS + timedelta(days=day))
         assert now.inspected == len(set(so_far.plant.tolist()))
         assert now.found == len(set(so_far.plant[so_far.result == 1].tolist()))
         assert now.inspected_today == len(on_day)
@@ -60,11 +61,11 @@ def test_progress_counts_every_plant_once_and_finds_for_good(worked):
 
 def test_days_since_a_row_was_inspected_are_counted_from_its_latest_plant(worked):
     done, row = worked.history.inspections, worked.plot.grid.row
-    since = worked.progress(BEGINS + timedelta(days=6)).days_since
+    since = progress(worked, BEGINS + timedelta(days=6)).days_since
     for r, days in enumerate(since.tolist()):
         own = worked.history.days[row[done.plant] == r]
         assert (6 - own.max() == days) if own.size else np.isnan(days)
-    assert np.isnan(worked.progress(BEGINS).days_since).any()
+    assert np.isnan(progress(worked, BEGINS).days_since).any()
 
 
 def test_the_revision_changes_with_what_is_recorded_and_with_nothing_else(tmp_path):

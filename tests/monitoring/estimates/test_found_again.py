@@ -7,6 +7,7 @@ import pytest
 
 from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
+from fieldmon.monitoring.estimates import figures_of_day
 from fieldmon.monitoring.estimates.found_again import FoundAgain, found_again
 from fieldmon.monitoring.estimates.history import History
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
@@ -82,10 +83,10 @@ def test_a_season_tells_it_by_its_pest_and_its_advice_names_what_it_assumes(tmp_
     season = a_season(tmp_path / "s.gpkg", pest=shipped_pest("spider-mite"))
     for day in (0, 1):
         season.record(seen(day, 20), f"day {day}")
-    assert season.found_again(on(0)) is None
-    assert season.found_again(on(1)) == FoundAgain(20, 20)
+    assert figures_of_day.found_again(season, on(0)) is None
+    assert figures_of_day.found_again(season, on(1)) == FoundAgain(20, 20)
     assert "Assumed: finds are treated at once, " in season.advice(on(1)).assumed()
     flagged = replace(season.settings, belief=replace(season.settings.belief, treated=False))
     season.change(flagged, season.settings)
-    assert season.found_again(on(1)) is None
+    assert figures_of_day.found_again(season, on(1)) is None
     assert "finds are treated" not in season.advice(on(1)).assumed()

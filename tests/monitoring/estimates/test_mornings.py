@@ -4,9 +4,11 @@ import io
 import shutil
 import sqlite3
 import zlib
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import replace
 from datetime import timedelta
+from threading import Barrier
 
 import numpy as np
 import pytest
@@ -17,7 +19,8 @@ from fieldmon.infestation.inspections import Inspections
 from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.estimates import day_figures
+from fieldmon.monitoring.estimates import day_figures, figures_of_day
+from fieldmon.monitoring.estimates.history import History
 from fieldmon.monitoring.estimates.mornings import Mornings, _arrays_in, _causes, _packed, _unpacked
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.monitoring.treating.treatment import Treatment
@@ -99,8 +102,6 @@ def test_mornings_from_the_file_are_those_from_the_first_to_the_last_bit(path, f
 
 def test_a_command_begins_at_the_morning_that_the_file_keeps(path, monkeypatch):
     nights = []
-    from fieldmon.monitoring.estimates.history import History
-
     slept = History.night_after
     monkeypatch.setattr(
         History, "night_after", lambda self, m, day: nights.append(day) or slept(self, m, day)
@@ -320,9 +321,9 @@ def test_figures_that_another_version_kept_are_worked_out_anew(path, monkeypatch
     on = BEGINS + timedelta(days=LAST - days_before)
     true = Season(path).status(on).estimate
     change(path, "UPDATE days SET low = 0, expected_left = 1")
-    assert Season(path).day_figures(on).expected == 1.0
+    assert figures_of_day.day_figures(Season(path), on).expected == 1.0
     monkeypatch.setattr(season_estimates, "rules", lambda: "of another version")
-    now = Season(path).day_figures(on)
+    now = figures_of_day.day_figures(Season(path), on)
     assert (now.expected, now.low, now.high) == (true.expected, true.low, true.high)
 
 
@@ -368,3 +369,23 @@ def test_an_estimate_that_the_file_keeps_tells_of_plants_found_and_left(tmp_path
     said, again = (one.status(on).estimate for one in (season, Season(season.path)))
     assert said.found > 0
     assert again == said
+
+
+def test_who_asks_while_a_morning_is_worked_out_waits_for_it(season, monkeypatch):
+    with season.reading() as now:
+        contents = now.contents
+    nights, night, both = [], History.night_after, Barrier(2)
+
+    def counted(*given):
+        nights.append(given[-1])
+        return night(*given)
+
+    def asked(day):
+        both.wait()
+        return contents.morning(day)
+
+    monkeypatch.setattr(History, "night_after", counted)
+    with ThreadPoolExecutor(2) as windows:
+        one, other = windows.map(asked, (4, 4))
+    assert one is other
+    assert nights == [0, 1, 2, 3]

@@ -11,6 +11,8 @@ from fieldmon.infestation.inspections import SKIPPED, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.monitoring.estimates.told_detection import ToldDetection
+from fieldmon.monitoring.estimates.verifying import check_against_log
+from fieldmon.monitoring.estimates.what_was_told import detection_of, earlier_season_note
 from fieldmon.monitoring.settings.settings import as_json
 from fieldmon.planning.members import TeamMember
 from fieldmon.plot.robot import Robot, scout
@@ -199,7 +201,7 @@ def test_the_log_says_what_was_said_where_the_season_would_read_it_otherwise(sea
     assert said == ["", "told to find 30 % of what is there", "told to find 84 % of what is there"]
     with season.store.writing() as db:
         db.execute("UPDATE inspections SET detects = 0.4 WHERE detects = 0.3")
-    assert any("batch 2" in one for one in season.check_against_log())
+    assert any("batch 2" in one for one in check_against_log(season))
 
 
 @pytest.mark.parametrize("detects", [0.0, -0.1, 1.01, np.inf])
@@ -237,8 +239,8 @@ def test_whoever_asks_is_told_by_what_a_day_will_be_read(season):
     change(season, team=TEAM)
     season.plan_each(BEGINS)
     change(season, team=(), robot=LOOKS_LESS)
-    assert [season.detection_of(BEGINS, who) for who in ("ben", "Ann", "Zoë")] == [0.3, 0.9, SHARP]
-    assert season.detection_of(on(1), "ben") == DULL
+    assert [detection_of(season, BEGINS, who) for who in ("ben", "Ann", "Zoë")] == [0.3, 0.9, SHARP]
+    assert detection_of(season, on(1), "ben") == DULL
 
 
 def test_a_pest_that_is_named_later_was_looked_for_from_the_first_day_on(season):
@@ -294,10 +296,10 @@ def test_what_is_learnt_of_an_earlier_season_is_of_the_detection_at_first(season
     earlier = replace(season.as_earlier(), until=on(-1))
     belief = replace(season.settings.belief, earlier=earlier)
     second = a_season(tmp_path / "second.gpkg", belief=belief)
-    before, said = second.learnt(BEGINS), second.earlier_season_note()
+    before, said = second.learnt(BEGINS), earlier_season_note(second)
     change(second, robot=Robot(hours=1.5, detection=0.4))
     second.record(seen(0))
     change(second, robot=ROBOT)
-    assert second.earlier_season_note() == said
+    assert earlier_season_note(second) == said
     assert second.history.first_morning.counts.found.any()
     assert second.learnt(BEGINS)[0].value < before[0].value

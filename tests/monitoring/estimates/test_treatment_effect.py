@@ -235,7 +235,7 @@ def test_only_the_last_effect_of_a_product_that_a_plant_tells_of_is_learnt():
     assert [one.cured_of for one in told] == [2, 1, 1, 0]
     assert learnt_efficacy(told, "SOAP") is told[1]
     assert learnt_efficacy(told, "oil") is told[2]
-    assert learnt_efficacy(told, "") is None
+    assert learnt_efficacy(told) is told[2]  # the last that is named
     assert learnt_efficacy(effect(past, [treated(3, product="")]), "") is None
 
 

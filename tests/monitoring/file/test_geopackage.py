@@ -20,6 +20,7 @@ from shapely import LineString, MultiPolygon, Point, box
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.days.advised import advise
 from fieldmon.monitoring.file import geopackage
 from fieldmon.monitoring.file.geopackage import (
     GeoPackageTable,
@@ -172,7 +173,7 @@ WORK = {
     "settings": lambda season: season.change(
         replace(season.settings, sampler="naive"), season.settings
     ),
-    "advise": lambda season: season.advise(BEGINS, "Inspect more."),
+    "advise": lambda season: advise(season, BEGINS, "Inspect more."),
     "let in": lambda season: scouts.let_in(season, "Ann"),
     "take a key back": _take_back_key,
     "tell": _look,

@@ -7,6 +7,7 @@ import pytest
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates.verifying import check_against_log
 from tests.monitoring.seasons import BEGINS
 
 
@@ -36,7 +37,7 @@ def test_undoing_ones_file_leaves_what_the_other_recorded_too(merged, who, left)
     assert said.endswith("1 of the same results counts still: another recording holds it, too.")
     assert merged.history.on(1).plant.tolist() == left
     assert merged.verify() == ()
-    assert merged.check_against_log() == ()
+    assert check_against_log(merged) == ()
     other = {"Ann": "Ben", "Ben": "Ann"}[who]
     assert "still" not in merged.undo(number(merged, other))
     assert merged.history.on(1).plant.tolist() == []

@@ -9,6 +9,8 @@ import pytest
 from fieldmon.infestation.inspections import FOUND, SKIPPED
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.changes import outside_changes
+from fieldmon.monitoring.estimates.last_days import recorded_ahead
+from fieldmon.monitoring.estimates.verifying import check_against_log
 from fieldmon.monitoring.inspecting.drafts import SOURCE
 from tests.monitoring.changes.test_outside_changes import outside
 from tests.monitoring.seasons import BEGINS, state
@@ -44,7 +46,7 @@ def test_a_finding_saved_into_the_season_counts_at_its_next_opening(path):
     last = season.batches()[0]
     assert (last.source, last.rows, last.kind) == (SOURCE, 1, "findings")
     assert season.log()[-1].kind == "seen"
-    assert season.check_against_log() == ()
+    assert check_against_log(season) == ()
     assert state(path) == 13  # the draft's own row, not another one beside it
     with season.store.reading() as db:
         assert outside_changes.waiting(db) == ()
@@ -116,7 +118,7 @@ def test_where_no_other_day_has_come_a_draft_of_a_day_to_come_counts(path, monke
     add(path, date="2026-11-06")
     season = Season(path)
     assert season.drafts == ()
-    assert season.recorded_ahead() == date(2026, 11, 6)
+    assert recorded_ahead(season) == date(2026, 11, 6)
 
 
 def test_what_contradicts_the_season_is_said_and_does_not_count(path):

@@ -10,7 +10,9 @@ import pytest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates.verifying import check_against_log
 from fieldmon.monitoring.inspecting import batches, undone_batches
+from fieldmon.monitoring.season.undoing import undo_with_batches
 from fieldmon.plot.grid import plant_numbers
 from tests.monitoring.inspecting.test_batches import recorded
 from tests.monitoring.seasons import BEGINS, a_plot_with_named_rows, a_season
@@ -148,13 +150,13 @@ def test_corrections_that_were_undone_count_again_as_they_did(season, correct):
     correct(season)
     batch, after = season.batches()[0].number, all_of(season)
     for _ in range(2):
-        done = season.undo_with_batches()
+        done = undo_with_batches(season)
         assert done.batch == batch
         assert all_of(season) != after
         assert f"Batch {batch} counts again: " in season.redo(batch)
         assert all_of(season) == after
         assert Season(season.path).verify() == ()
-        assert season.check_against_log() == ()
+        assert check_against_log(season) == ()
 
 
 def test_a_correction_that_was_corrected_itself_counts_again_below_that(season):

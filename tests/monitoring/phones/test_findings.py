@@ -14,6 +14,7 @@ from fieldmon.errors import AccessError, LimitError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED
 from fieldmon.io.readers.phone_file import PhoneFile, SavedRecord, fields_of
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.inspecting.contradictions import contradicting
 from fieldmon.monitoring.phones import findings, photos, scouts
 from fieldmon.monitoring.phones.findings import (
     of_others,
@@ -116,7 +117,7 @@ def test_two_people_at_one_plant_are_both_kept_and_the_contradiction_shown(seaso
     take(season, key, [a_finding(20, FOUND), a_finding(21)], NOW)
     take(season, other, [a_finding(20, CLEAN), a_finding(21)], NOW)
     assert len(told(season)[1]) == 4
-    against = season.contradicting(BEGINS)
+    against = contradicting(season.inspections.on(BEGINS))
     assert against.plant.tolist() == [20, 20]
     assert sorted(zip(against.who, against.result.tolist(), strict=True)) == [
         ("Ann", 1),

@@ -7,6 +7,7 @@ import pytest
 
 from fieldmon.errors import AccessError
 from fieldmon.monitoring import Application, Season
+from fieldmon.monitoring.days.advised import advise
 from fieldmon.monitoring.phones import scouts
 from tests.monitoring.seasons import BEGINS, three_results
 
@@ -30,7 +31,7 @@ def test_a_person_is_written_as_at_first_whoever_types_it(path):
     season.undo(who="ben")
     season.change(replace(season.settings, sampler="naive"), season.settings, "aNN")
     season.undo_change("ben ")
-    season.advise(BEGINS, "wait", "BEN")
+    advise(season, BEGINS, "wait", "BEN")
     otherwise = replace(three_results(), result=np.array([0, 1, 1], np.int8), who=theirs)
     season.record_instead(otherwise, "h", "ANN")
     assert {*season.history.inspections.who.tolist()[-3:]} <= {"Ann", "Ben"}

@@ -13,6 +13,7 @@ from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.estimates.history import History
+from fieldmon.monitoring.estimates.verifying import check_against_log
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.season import salvage as saving
 from fieldmon.monitoring.season.salvage import salvage
@@ -236,7 +237,7 @@ def test_a_log_with_a_hole_is_begun_anew_and_says_why(path, tmp_path):
     rescued = Season(tmp_path / "rescued.gpkg")
     first = rescued.log()[0]
     assert "could not be saved whole" in first.sentence()
-    assert rescued.check_against_log() == ()
+    assert check_against_log(rescued) == ()
 
 
 def test_a_file_of_an_earlier_version_is_salvaged_with_the_columns_that_it_has(tmp_path):

@@ -6,15 +6,11 @@ from datetime import timedelta
 
 import numpy as np
 import pytest
-from shapely import MultiPolygon, box
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.season.season_copies import of_one_plot
-from fieldmon.plot.field import Field
-from fieldmon.plot.plot import Plot
 from tests.monitoring.merging.copies import SPRAYED, result
-from tests.monitoring.seasons import BEGINS, a_season, state
+from tests.monitoring.seasons import BEGINS, state
 
 
 def test_what_is_new_and_what_was_taken_back_are_counted_apart(path, other):
@@ -114,15 +110,3 @@ def test_a_spraying_that_both_recorded_is_named_where_each_undid_another_recordi
     assert one.merge(another).contradictions == ()
     another.merge(one)
     assert (len(one.treatments()), len(another.treatments())) == (1, 1)
-
-
-def test_seasons_on_the_same_ground_are_of_one_plot_however_rows_are_laid(path, tmp_path):
-    def beside(name, degrees, **laid):
-        outline = MultiPolygon([box(35.15 + degrees, 30.36, 35.1508 + degrees, 30.3607)])
-        return a_season(tmp_path / f"{name}.gpkg", Plot.of(Field(name, outline, **laid)))
-
-    first, turned = Season(path), beside("turned", 0.0003, row_bearing_deg=30.0)
-    wider, next_door = beside("wider", -0.0003, row_spacing_m=6.0), beside("next", 0.0009)
-    (said,) = of_one_plot([turned, next_door, wider, first])  # wider and turned meet in the first
-    assert said.startswith("turned, wider and season are 3 seasons of one plot: each counts.")
-    assert of_one_plot([turned, wider]) == of_one_plot([first, next_door]) == ()

@@ -9,6 +9,8 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates.figures_of_day import flagged
+from fieldmon.monitoring.estimates.what_was_told import earlier_season_note
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.pests.weather import weather_of
 from fieldmon.planning.skips import left_out_in_words
@@ -146,7 +148,7 @@ def test_finds_that_are_only_flagged_stay_infested(tmp_path):
     status = season.status(BEGINS)
     assert status.found == 1
     assert status.estimate.expected < season.evening(BEGINS).sum() - 0.9  # found is not out there
-    assert status.flagged == season.flagged(BEGINS) > 0.99
+    assert status.flagged == flagged(season, BEGINS) > 0.99
     now = season.forecast(BEGINS).expected[0]
     assert status.estimate.expected + status.flagged == pytest.approx(now)
 
@@ -200,8 +202,8 @@ def test_a_season_begins_with_what_an_earlier_one_learnt_and_keeps_it(tmp_path, 
     season = a_season(tmp_path / "s.gpkg", belief=BeliefSettings(earlier=earlier))
     again = Season(season.path)
     assert again.settings.belief.earlier == earlier
-    assert again.earlier_season_note() == earlier.sentence(earlier.believed)
-    assert alone.earlier_season_note() is None
+    assert earlier_season_note(again) == earlier.sentence(earlier.believed)
+    assert earlier_season_note(alone) is None
     assert np.array_equal(season.morning(BEGINS), alone.morning(BEGINS))  # the same plants
     told, other = ({each.name: each.value for each in one.learnt(BEGINS)} for one in (again, alone))
     assert told["jumps beyond neighbours"] != other["jumps beyond neighbours"]
@@ -223,7 +225,6 @@ def test_a_season_in_which_nothing_was_inspected_or_traced_teaches_nothing(tmp_p
     "given",
     [
         lambda season: season.morning(BEGINS),
-        lambda season: season.morning_in_sight(BEGINS),
         lambda season: season.evening(BEGINS),
         lambda season: season.scene(BEGINS).chance,
         lambda season: season.scene(BEGINS).pair_chance,

@@ -12,7 +12,11 @@ from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.records import Records
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
+from fieldmon.monitoring.changes.earlier_settings import before_change
 from fieldmon.monitoring.changes.transactions import Store
+from fieldmon.monitoring.estimates.figures_of_day import progress
+from fieldmon.monitoring.estimates.last_days import last_date
+from fieldmon.monitoring.estimates.verifying import changed_maps
 from fieldmon.monitoring.settings import settings_log
 from fieldmon.pests.pest import Pest
 from fieldmon.planning.members import TeamMember
@@ -112,7 +116,7 @@ def test_settings_can_be_changed_and_the_old_ones_stay_in_the_file(season):
 
 def test_changes_are_taken_back_one_after_the_other_and_nothing_is_deleted(season):
     begun = season.settings
-    assert season.before_change() is None
+    assert before_change(season) is None
     with pytest.raises(SettingError, match="there is none"):
         season.undo_change()
     first = replace(begun, robot=begun.robot.with_hours(2.0))
@@ -122,7 +126,7 @@ def test_changes_are_taken_back_one_after_the_other_and_nothing_is_deleted(seaso
     planned = season.plan(tomorrow, keep=False).route.plant.tolist()
     season.change(first, begun)
     season.change(second, first)
-    assert season.before_change() == first
+    assert before_change(season) == first
     assert season.undo_change() == first
     assert Season(season.path).settings == first
     assert season.undo_change() == begun
@@ -131,7 +135,7 @@ def test_changes_are_taken_back_one_after_the_other_and_nothing_is_deleted(seaso
         season.undo_change()
     season.change(second, begun)
     season.change(begun, second)  # back by hand: a change, too
-    assert season.before_change() == second
+    assert before_change(season) == second
     with season.store.reading() as db:
         assert db.execute("SELECT count(*) FROM settings WHERE name = 'robot'").fetchone() == (7,)
 
@@ -147,7 +151,7 @@ def test_a_map_made_otherwise_is_noticed(season):
 def test_who_holds_mornings_to_their_digests_says_how_many_are_done(path):
     season, told = Season(path), []
     season.plan(BEGINS + timedelta(days=2))
-    season.changed_maps(tell=lambda *done: told.append(done))
+    changed_maps(season, tell=lambda *done: told.append(done))
     with season.store.reading() as db:
         (n,) = db.execute("SELECT count(*) FROM days").fetchone()
     assert told == [(day, n) for day in range(1, n + 1)]
@@ -160,15 +164,15 @@ def test_who_holds_mornings_to_their_digests_says_how_many_are_done(path):
         lambda season, on: season.advice(on),
         lambda season, _: season.assumed(),
         lambda season, on: season.cautions(on),
-        lambda season, on: season.contradicting(on),
+        lambda season, on: season.numbered(on),
         lambda season, on: season.effects(on),
         lambda season, on: season.forecast(on),
         lambda season, on: season.harvest_from(on),
         lambda season, on: season.kept_route(on),
-        lambda season, _: season.last_date(),
+        lambda season, _: last_date(season),
         lambda season, on: season.learnt(on),
-        lambda season, _: season.changed_maps(),
-        lambda season, on: season.progress(on),
+        lambda season, _: changed_maps(season),
+        progress,
         lambda season, on: season.scene(on),
         lambda season, on: season.status(on),
         lambda season, on: season.verdict(on, 0.1),
@@ -278,46 +282,6 @@ def test_settings_are_changed_by_settings_or_a_sentence(season):
     for settings, seen in ((None, season.settings), (season.settings, {"hours": 4})):
         with pytest.raises(SettingError, match="must be MonitoringSettings"):
             season.change(settings, seen)
-
-
-def test_a_day_worked_before_a_change_keeps_who_worked_when_and_who_chose(season):
-    first = season.settings
-    season.plan(BEGINS)
-    season.record(some_results(season))
-    later = first.robot.with_hours(6.0)
-    season.change(
-        replace(first, robot=later, starts=time(9), sampler="naive", harvest=BEGINS), first
-    )
-    then = season.settings_on(BEGINS)
-    assert then == replace(first, harvest=BEGINS)  # what is not of the work is of now
-    tomorrow = BEGINS + timedelta(days=1)
-    assert season.settings_on(tomorrow) == season.settings  # neither planned nor recorded
-    season.plan(BEGINS)  # once more, of a day that is past
-    season.record(some_results(season, n=2))
-    assert season.settings_on(BEGINS).robot == first.robot
-
-
-@pytest.mark.parametrize("planned", [True, False])
-def test_a_day_worked_in_one_copy_was_not_worked_by_what_another_chose(season, tmp_path, planned):
-    first = season.settings
-    season.store.back_up(tmp_path / "copy.gpkg")
-    other = Season(tmp_path / "copy.gpkg")
-    other.change(replace(first, robot=first.robot.with_hours(4.0)), first)
-    if planned:
-        season.plan(BEGINS)
-    season.record(some_results(season))
-    for one, copy in ((season, other), (other, season)):
-        one.merge(copy)
-        assert one.settings.robot.hours == 4.0
-        assert one.settings_on(BEGINS).robot == first.robot
-
-
-def test_a_day_recorded_without_a_plan_was_worked_by_what_counted_at_first(season):
-    first = season.settings
-    season.record(some_results(season, n=2))
-    season.change(replace(first, starts=time(9)), first)
-    season.record(some_results(season, n=4))
-    assert season.settings_on(BEGINS).starts == first.starts
 
 
 def test_a_season_of_the_library_takes_what_its_pest_says(tmp_path):

@@ -10,8 +10,11 @@ import shapely
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.infestation.tracing.traced_pairs import in_sight
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Application
+from fieldmon.monitoring.estimates.figures_of_day import believed
+from fieldmon.monitoring.estimates.last_days import default_date
 from fieldmon.monitoring.inspecting.certifier_tables import (
     csv_bytes,
     inspections_table,
@@ -68,7 +71,7 @@ def test_every_plant_has_its_chance_on_the_morning_and_in_the_evening(season):
     np.testing.assert_array_equal(frame.morning, season.morning(BEGINS))
     np.testing.assert_array_equal(frame.evening, season.evening(BEGINS))
     meant = season.to_geopandas("plants")
-    np.testing.assert_array_equal(meant.evening, season.evening(season.default_date()))
+    np.testing.assert_array_equal(meant.evening, season.evening(default_date(season)))
 
 
 def test_days_are_those_of_which_there_are_figures(season):
@@ -104,5 +107,5 @@ def test_a_days_chances_are_of_what_can_be_seen_and_a_seasons_of_all(tmp_path):
     on = BEGINS + timedelta(3)
     of_day = made.plan(on).plants.chance
     of_all = made.to_geopandas("plants", on).morning
-    assert of_day.tolist() == made.morning_in_sight(on).tolist()
+    assert of_day.tolist() == in_sight(believed(made, on).morning).chance.tolist()
     assert of_day.sum() < of_all.sum()

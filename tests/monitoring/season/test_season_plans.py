@@ -9,8 +9,9 @@ import pytest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, SKIPPED, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.changes.earlier_settings import settings_on
 from fieldmon.monitoring.days.day_ahead import WorkPart, route_ahead
-from fieldmon.monitoring.days.kept_routes import kept_last
+from fieldmon.monitoring.days.kept_routes import kept_last, planned_only
 from fieldmon.monitoring.phones import scouts
 from fieldmon.monitoring.settings.settings import MonitoringSettings
 from fieldmon.monitoring.settings.shift_work import Besides
@@ -97,27 +98,11 @@ def test_each_night_of_a_season_has_its_own_begin_and_all_its_hours(tmp_path, re
             begins, ends = night_of(season, day, who)
             assert begins == datetime.combine(on(day), starts) + timedelta(seconds=after_s)
             assert ends.date() == on(day + 1)
-            done = season.worked(on(day), who).plant
+            done = season.work(on(day), who).inspections.plant
             assert done.tolist() == season.kept_route(on(day), who).tolist()
             assert season.scene(on(day), who=who).seconds_left < 300.0
         held = season.planned_and_done(on(day))
         assert (held.left, held.added) == (0, 0)
-
-
-def test_a_night_that_runs_over_takes_nothing_from_the_next(tmp_path):
-    robot, starts = replace(ROBOT, hours=8.0), time(20)
-    season = a_season(tmp_path / "over.gpkg", robot=robot, starts=starts)
-    told = [(0, "21:00"), (1, "00:30"), (1, "03:50"), (1, "05:10"), (1, "12:30")]
-    day, clocks = zip(*told, strict=True)
-    second = [3600.0 * int(one[:2]) + 60.0 * int(one[3:]) for one in clocks]
-    noted = Inspections.of(
-        np.arange(len(told)), np.full(len(told), CLEAN),
-        np.array([on(one) for one in day], "datetime64[D]"), second=np.array(second),
-    )  # fmt: skip
-    season.record(noted, "night")
-    assert season.scene(on(1)).seconds_left == robot.day_s
-    assert season.worked(on(0)).plant.tolist() == [0, 1, 2, 3, 4]
-    assert season.plan(on(1)).route.notes.start.time() == starts
 
 
 def test_the_time_now_may_be_past_midnight_where_the_work_is(season):
@@ -227,11 +212,11 @@ def test_a_day_that_is_planned_again_keeps_the_team_it_was_worked_with(season, m
     for _ in range(2):
         again = season.plan_each(on(0))
         assert [one.route.notes.who for one in again] == [*names]
-        assert season.settings_on(on(0)).team == team
+        assert settings_on(season, on(0)).team == team
         assert season.plan(on(0), who="mia").route.notes.who == "Mia"
     assert np.isin(again[1].route.plant, days[1].route.plant).any()
     assert season.kept_route(on(0), "mia").tolist() == again[1].route.plant.tolist()
-    with season.reading() as (db, _):
+    with season.store.reading() as db:
         assert {*kept_last(db, 0)} == {*map(person_key, names)}
     assert season.planned_by(on(1)).team == later
 
@@ -273,12 +258,12 @@ def test_planned_days_that_are_over_and_of_which_nothing_is_recorded_are_told(se
     all_on(monkeypatch, 7)
     season.record(some_results(season, n=1, day=2))
     closed = Inspections.of(np.array([3]), np.array([SKIPPED], np.int8), np.datetime64(on(3)))
-    assert season.planned_only(on(6)) == (on(0), on(3), on(6))
+    assert planned_only(season, on(6)) == (on(0), on(3), on(6))
     season.record(closed)
-    assert season.planned_only(on(6)) == (on(0), on(6))
-    assert season.planned_only(on(5)) == (on(0),)
+    assert planned_only(season, on(6)) == (on(0), on(6))
+    assert planned_only(season, on(5)) == (on(0),)
     all_on(monkeypatch, 6)
-    assert season.planned_only(on(6)) == (on(0),), "the last one is not over"
+    assert planned_only(season, on(6)) == (on(0),), "the last one is not over"
 
 
 def test_a_day_planned_to_look_ahead_or_afterwards_is_none_that_lacks_its_records(
@@ -292,12 +277,12 @@ def test_a_day_planned_to_look_ahead_or_afterwards_is_none_that_lacks_its_record
     season.plan(on(1))
     season.plan(on(6))
     all_on(monkeypatch, 5)
-    assert season.planned_only(on(6)) == (), "not what was planned before the finds of day 2"
+    assert planned_only(season, on(6)) == (), "not what was planned before the finds of day 2"
     all_on(monkeypatch, 7)
-    assert season.planned_only(on(6)) == (on(6),), "nothing was recorded since"
+    assert planned_only(season, on(6)) == (on(6),), "nothing was recorded since"
     with season.changing() as change:
         change.db.execute("DELETE FROM log")
-    assert season.planned_only(on(6)) == (on(1), on(3), on(4), on(6)), "an old file had no log"
+    assert planned_only(season, on(6)) == (on(1), on(3), on(4), on(6)), "an old file had no log"
 
 
 @pytest.mark.parametrize(("name", "off_s"), [("", 4200.0), ("", -3600.0), ("Ann", 4200.0)])

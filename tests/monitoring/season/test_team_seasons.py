@@ -12,6 +12,7 @@ import pytest
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.estimates.last_days import last_date
 from fieldmon.monitoring.settings.settings import as_json, from_json
 from fieldmon.planning.meetings import meetings
 from fieldmon.planning.members import TeamMember, Teamwork, team_of
@@ -208,6 +209,6 @@ def test_a_team_that_was_killed_at_work_goes_on_from_a_whole_file(season):
     process.join()
     n = state(season.path)
     assert n >= 3
-    on = Season(season.path).last_date() + timedelta(days=1)
+    on = last_date(Season(season.path)) + timedelta(days=1)
     one, other = (Season(season.path).plan_each(on, keep=False) for _ in range(2))
     assert [d.route.plant.tolist() for d in one] == [d.route.plant.tolist() for d in other]

@@ -11,6 +11,7 @@ from fieldmon.compute.units import Units
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.days.day_ahead import WorkPart, planned_again, route_ahead
+from fieldmon.monitoring.days.kept_routes import closed_to_kept
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.monitoring.treating.applications import Application
 from fieldmon.monitoring.treating.closures import (
@@ -168,7 +169,7 @@ def test_a_plan_kept_from_a_later_time_on_is_held_to_its_own_begin(season, part,
     assert not plants[route_ahead(season, ON, part).plant].any()
     it_is(monkeypatch, season, time(7, 10))  # who is out goes on now
     assert season.closed(ON)
-    assert season.closed_to_kept(ON) == ()
+    assert closed_to_kept(season, ON) == ()
 
 
 def test_east_and_west_are_closed_each_until_their_time():

@@ -92,6 +92,6 @@ def test_a_season_says_so_whichever_was_recorded_first(season, first):
         f"Ana was at 3 plants in row 1 on {on(1)} at 06:00, where Acarol was applied on {on(0)}: "
         f"entry was allowed from 19:30 on {on(1)}."
     )
-    (own,) = (one for one in season.cautions_because_of(told.batch, on(0)) if one.kind == "entered")
+    (own,) = (one for one in season.cautions(on(0), because_of=told.batch) if one.kind == "entered")
     assert own == told
     assert [one.kind for one in season.cautions(on(9))] == ["entered", "harvest"]

@@ -9,6 +9,7 @@ import numpy as np
 
 from fieldmon.compute.arguments import must_be_known, shown
 from fieldmon.compute.array_arguments import entries_of, must_share_index, texts_of
+from fieldmon.compute.arrays import as_kept
 from fieldmon.compute.day_arguments import days_of, seconds_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted
@@ -33,11 +34,11 @@ _GIVEN = {column.name: column.given for column in COLUMNS}
 
 
 def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to its kind here
-    """Return a column as it is kept, a view: the caller's own array stays as it is."""
+    """Return a column as it is kept: no array that its caller may change later."""
     (letters, words), texts = _GIVEN[name], _TYPES[name] is object
     # of columns that were held to their kind before, as mostly, there is nothing to find out
     if type(given) is np.ndarray and given.ndim == 1 and given.dtype == _TYPES[name] and not texts:
-        return given.view()
+        return as_kept(given)
     try:
         held: Any = days_of(given) if name == "date" else given
         # other programs may have put bytes into a season's file: they stay as they are
@@ -52,7 +53,7 @@ def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to it
         if values.size and values.dtype.kind not in letters:
             raise _wrong(name, given)
         with np.errstate(invalid="ignore"):
-            column: NDArray[Any] = values.astype(_TYPES[name], copy=False).view()
+            column: NDArray[Any] = as_kept(values.astype(_TYPES[name], copy=False))
     except (ValueError, TypeError, OverflowError) as error:
         raise _wrong(name, given) from error
     if words.startswith("whole") and not np.array_equal(column, values):
@@ -121,7 +122,6 @@ class Inspections:
                     f"All columns of the inspections must have {k} entries, "
                     f"but {name} has {len(column)}."
                 )
-            column.setflags(write=False)
             object.__setattr__(self, name, column)
         unknown = np.flatnonzero((self.result < CLEAN) | (self.result > SKIPPED))
         if unknown.size:

@@ -10,6 +10,7 @@ import numpy as np
 
 from fieldmon.compute.arguments import must_be, must_be_known, shown
 from fieldmon.compute.array_arguments import array_of, entries_of, must_share_index, texts_of
+from fieldmon.compute.arrays import as_kept
 from fieldmon.compute.day_arguments import days_of
 from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.units import Units
@@ -90,13 +91,13 @@ class Records:
         must_hold_kinds(self, "The records'")
         lonlat_of("Positions of records", self.lonlat, _READ, nowhere=True)
         m = len(self.lonlat)
-        for name, values in vars(self).items():
+        for name, values in [*vars(self).items()]:
             if len(values) != m:
                 raise ObservationError(
                     f"All columns of the records must have {m} entries, "
                     f"but {name} has {len(values)}."
                 )
-            values.setflags(write=False)
+            object.__setattr__(self, name, as_kept(values))
 
     def __repr__(self) -> str:
         return f"<Records: {counted(len(self), 'record')}>"
@@ -209,7 +210,7 @@ class Records:
         Raise `SettingError` if `which` is neither.
         """
         picked = entries_of("Records", which, len(self))
-        return Records(**{name: values[picked].copy() for name, values in vars(self).items()})
+        return Records(**{name: values[picked] for name, values in vars(self).items()})
 
     @classmethod
     def none(cls) -> Records:

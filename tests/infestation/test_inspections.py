@@ -156,7 +156,7 @@ def test_nobody_can_change_them_and_the_callers_arrays_stay_his_own():
 
 
 def test_a_callers_buffers_that_are_filled_anew_change_no_inspections():
-    """A loop over days with arrays of the very types kept changed what was said of the days before."""
+    """A loop over days, with arrays of the very types kept, changed what the days before said."""
     columns = vars(week())
     given = {name: column.copy() for name, column in columns.items()}
     shared = {name: column.view() for name, column in given.items()}

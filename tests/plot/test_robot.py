@@ -73,6 +73,14 @@ def test_viewpoints_must_rise(steps):
         Viewpoints(steps)
 
 
+def test_steps_given_as_a_list_are_not_changed_later_and_have_a_hash_as_all_settings():
+    steps = [(10.0, 0.4), (20.0, 0.7)]
+    seen_by = Viewpoints(steps)
+    steps[1] = (20.0, 3.0)
+    assert seen_by == Viewpoints(((10.0, 0.4), (20.0, 0.7)))
+    assert len({Robot(viewpoints=seen_by), Robot(viewpoints=seen_by)}) == 1
+
+
 def test_no_chance_is_above_one():
     with pytest.raises(SettingError, match=r"in 0\.\.1"):
         Viewpoints(longer=1.2)

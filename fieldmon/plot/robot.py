@@ -161,7 +161,8 @@ class Robot:
 
     The defaults are the thesis's robot (2.5 km/h, 40 s a plant, 12 h a day), but for its row
     changes, turns and stops: those are what simulated drives took, and the thesis's are
-    ``with_times("thesis")``. A scout on foot is a robot with other numbers, see :func:`scout`.
+    ``with_times("thesis")``. A scout on foot is a robot that walks, with other numbers, see
+    :func:`scout`.
 
     Parameters
     ----------
@@ -193,6 +194,9 @@ class Robot:
         without room for its arcs and shunts are not driven, and a row change is charged what they
         take on the plot, unless its seconds are said; see `Aisles.worked_by`. None: it turns on
         the spot. Needs a width.
+    on_foot
+        Whether it is a person who walks, whatever the numbers: nobody is sent where people may not
+        be yet, as after spraying, and `fieldmon drive` drives no person.
 
     Raises
     ------
@@ -225,6 +229,7 @@ class Robot:
     width_m: float | None = None
     length_m: float | None = None
     turning_radius_m: float | None = None
+    on_foot: bool = False
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "The robot's")
@@ -268,8 +273,8 @@ class Robot:
         return next((name for name, times in ROBOT_TIMES.items() if times == own), None)
 
     @property
-    def on_foot(self) -> bool:
-        """Return whether it is charged what a scout on foot is, see :func:`scout`."""
+    def on_foot_by_times(self) -> bool:
+        """Return whether it is charged what a scout usually is: one walked where nobody said."""
         return (self.row_change_s, self.turn_180_s, self.stop_s) == SCOUT_TIMES
 
     def with_times(self, name: str) -> Robot:
@@ -325,7 +330,7 @@ def scout(**fields: Any) -> Robot:  # noqa: ANN401 - of `Robot`
     Returns
     -------
     Robot
-        With the numbers of a scout.
+        With the numbers of a scout; it is `on_foot`.
 
     Raises
     ------
@@ -338,8 +343,11 @@ def scout(**fields: Any) -> Robot:  # noqa: ANN401 - of `Robot`
     >>> ann = fm.scout(hours=2)
     >>> ann.day_s, ann.visit_s, ann.detects
     (7200.0, 35.0, 0.69)
+    >>> fm.scout(stop_s=8).on_foot
+    True
     """
-    return replace(Robot(4.0 / 3.6, *SCOUT_TIMES, look_s=30.0, hours=4.0), **fields)
+    walks = Robot(4.0 / 3.6, *SCOUT_TIMES, look_s=30.0, hours=4.0, on_foot=True)
+    return replace(walks, **fields)
 
 
 def rover(**fields: Any) -> Robot:  # noqa: ANN401 - as above

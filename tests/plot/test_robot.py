@@ -40,9 +40,10 @@ def test_a_scout_is_a_robot_with_other_numbers():
         scout(hours=25)
 
 
-def test_a_scout_is_known_by_its_times_whatever_the_hours_and_is_charged_no_robot_s():
-    assert replace(scout().with_hours(7), look_s=50.0).on_foot
+def test_a_scout_walks_whatever_the_numbers_and_is_charged_no_robot_s():
+    assert replace(scout(stop_s=8, turn_180_s=0).with_hours(7), look_s=50.0).on_foot
     assert not Robot().on_foot
+    assert not Robot(row_change_s=3, turn_180_s=2, stop_s=5).on_foot
     with pytest.raises(SettingError, match="A scout has times of its own"):
         scout().with_times("thesis")
 

@@ -18,6 +18,7 @@ from fieldmon.io.options import Upload
 from fieldmon.io.parse import result_words
 from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring.changes.transactions import MAGIC
+from fieldmon.monitoring.season import season_inspections
 from fieldmon.monitoring.season.inspection_import import read_brought, record_saved
 from fieldmon.plot.grid import plant_at, plant_numbers
 from fieldmon.plot.local_clock import local_clock
@@ -376,7 +377,7 @@ def recorded(
     their file waits with them.
     """
     try:
-        done = choices.open_season.record(results, source, who)
+        done = season_inspections.recorded(choices.open_season, (results, source, who))
     except ContradictionError:
         of = choices.key, choices.day
         unconfirmed.keep(Unconfirmed(*of, results, source, form, messages, who))
@@ -517,7 +518,8 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     if waiting is None:
         return ""
     taken = waiting.results.take(which)
-    done = choices.open_season.record(taken, waiting.source, waiting.who, confirmed=True)
+    told = taken, waiting.source, waiting.who
+    done = season_inspections.recorded(choices.open_season, told, confirmed=True)
     return _end_waiting(choices, waiting, done)
 
 

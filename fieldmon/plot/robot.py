@@ -23,10 +23,12 @@ _SECONDS, _SIZE = (
     AllowedRange(0.0, 86_400.0),
     AllowedRange(0.05, 10.0, said=worded("0.05 to 10 metres")),
 )
-# a study of what driving costs has a robot that is everywhere at once
+#: a study of what driving costs has a robot that is everywhere at once: no other is as quick
+EVERYWHERE_M_S = 1e6
 _ALLOWED = {
     "hours": AllowedRange(0.0, 24.0, above=True),
-    "speed_m_s": AllowedRange(0.0, 1e6, above=True),
+    # at 108 km/h nobody drives along plants
+    "speed_m_s": AllowedRange(0.0, 30.0, above=True),
     "look_s": replace(_SECONDS, above=True),
     "detection": CHANCE,
     "width_m": _SIZE,
@@ -36,8 +38,7 @@ _ALLOWED = {
     "turn_180_s": _SECONDS,
     "stop_s": _SECONDS,
 }
-#: at 30 m/s (108 km/h) nobody drives along plants
-_DRIVEN_MOST = {"speed_m_s": 30.0}
+_ALLOWED_EVERYWHERE = {name: one for name, one in _ALLOWED.items() if name != "speed_m_s"}
 
 
 class SaidIn(NamedTuple):
@@ -62,7 +63,7 @@ class SaidIn(NamedTuple):
 
 
 def _said_in(name: str) -> SaidIn:
-    most = _DRIVEN_MOST.get(name, _ALLOWED[name].most)
+    most = _ALLOWED[name].most
     if name == "speed_m_s":
         return SaidIn("speed_km_h", "km/h", KM_H, most * KM_H)
     unit = {"hours": "h", "detection": ""}.get(name, name.rpartition("_")[2])
@@ -201,8 +202,8 @@ class Robot:
     Raises
     ------
     SettingError
-        If speed, looking or hours are not above 0, hours above 24, seconds below 0, `detection` no
-        chance, or there is a length or turning radius without a width.
+        If speed, looking or hours are not above 0, speed above 30, hours above 24, seconds below 0,
+        `detection` no chance, or there is a length or turning radius without a width.
 
     Examples
     --------
@@ -233,7 +234,8 @@ class Robot:
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "The robot's")
-        if broken := broken_setting(self, _ALLOWED):
+        everywhere = self.speed_m_s == EVERYWHERE_M_S
+        if broken := broken_setting(self, _ALLOWED_EVERYWHERE if everywhere else _ALLOWED):
             raise SettingError(worded("The robot's {name} must be {rule}, not {value}.", **broken))
         if self.length_m is not None and self.width_m is None:
             raise SettingError(

@@ -55,6 +55,8 @@ def test_a_scout_walks_whatever_the_numbers_and_is_charged_no_robot_s():
         ("look_s", -1),
         ("hours", 0),
         ("hours", 25),
+        ("speed_m_s", 30.1),
+        ("speed_m_s", 200),
         ("row_change_s", -1),
         ("turn_180_s", float("nan")),
         ("stop_s", float("inf")),

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
         read_plot,
         read_plots,
         read_records,
+        read_risk,
         read_weather,
     )
     from fieldmon.io.plot_request import PlantingChoices
@@ -110,6 +111,7 @@ _MODULES = {
         "read_plot",
         "read_plots",
         "read_records",
+        "read_risk",
         "read_weather",
     ),
     "monitoring.treating.applications": ("Application",),
@@ -232,6 +234,7 @@ __all__ = [
     "read_plot",
     "read_plots",
     "read_records",
+    "read_risk",
     "read_weather",
     "routes",
     "rover",

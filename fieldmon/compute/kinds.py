@@ -58,6 +58,7 @@ _LEFT = frozenset(
         "object",
         "ArrayLike",
         "Belief",
+        "Column",
         "Cutoff",
         "KernelName",
         "Sampler",

@@ -17,9 +17,10 @@ from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspection_columns import COLUMNS
 
 if TYPE_CHECKING:
-    import datetime as dt
-
     from numpy.typing import NDArray
+
+    from fieldmon.compute.array_arguments import Column
+    from fieldmon.compute.day_arguments import Day
 
 
 CLEAN, FOUND, SKIPPED = 0, 1, 2
@@ -147,10 +148,10 @@ class Inspections:
     @classmethod
     def of(
         cls,
-        plant: NDArray[np.integer],
-        result: NDArray[np.integer],
-        on: dt.date | np.datetime64 | NDArray[np.datetime64],
-        **columns: NDArray[np.generic],
+        plant: Column,
+        result: Column,
+        on: Day | Column,
+        **columns: Column,
     ) -> Inspections:
         """Return inspections of one date, or of a date each; columns not given are unknown.
 
@@ -203,7 +204,7 @@ class Inspections:
         """Return no inspections."""
         return cls.of(np.empty(0, np.int32), np.empty(0, np.int8), np.datetime64("NaT"))
 
-    def take(self, which: NDArray[np.generic] | slice) -> Inspections:
+    def take(self, which: Column | slice) -> Inspections:
         """Return those at `which` indices, or of a mask ``(k,)`` or a slice.
 
         Raise `SettingError` if `which` is none of them.
@@ -219,7 +220,7 @@ class Inspections:
         }
         return Inspections(**both)
 
-    def on(self, date: dt.date | np.datetime64) -> Inspections:
+    def on(self, date: Day) -> Inspections:
         """Return those of one date; raise `ObservationError` if it is none."""
         day = days_of(date)
         if day is None or day.ndim:

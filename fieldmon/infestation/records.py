@@ -22,6 +22,8 @@ from fieldmon.plot.positions import lonlat_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.compute.array_arguments import Column
+    from fieldmon.compute.day_arguments import Day
     from fieldmon.compute.wording import Worded
 
 
@@ -149,10 +151,10 @@ class Records:
     @classmethod
     def of(
         cls,
-        lonlat: NDArray[np.float64],
-        present: NDArray[np.int8],
-        day: NDArray[np.datetime64] | None = None,
-        **columns: NDArray[np.generic],
+        lonlat: Column,
+        present: Column,
+        day: Day | Column | None = None,
+        **columns: Column,
     ) -> Records:
         """Return records with every column that is not given unknown.
 
@@ -204,7 +206,7 @@ class Records:
         _must_make_sense(given)
         return cls(points, results.astype(np.int8), days, **(unknown | given))  # type: ignore[arg-type]
 
-    def take(self, which: NDArray[np.generic]) -> Records:
+    def take(self, which: Column | slice) -> Records:
         """Return the records at `which` indices, or of a mask ``(k,)``.
 
         Raise `SettingError` if `which` is neither.

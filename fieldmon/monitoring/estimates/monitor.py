@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.compute.array_arguments import Column
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.forecast import Forecast
@@ -214,7 +215,7 @@ class Monitor:
         plot: Plot,
         sampler: str | Sampler = "adaptive",
         robot: Robot | None = None,
-        chance: NDArray[np.float64] | None = None,
+        chance: Column | None = None,
         belief_settings: BeliefSettings | None = None,
         seed: int = 1,
         *,

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.arguments import must_be, must_be_name_of_file
-from fieldmon.compute.kinds import checked, must_be_of
+from fieldmon.compute.kinds import must_be_of
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded, ImportDoubt, SettingError
 from fieldmon.io.import_report import Severity
@@ -380,7 +380,6 @@ def read_weather(source: Source, plot: Plot, **options: object) -> Weather:
     return read.value
 
 
-@checked
 def read_risk(
     source: Source, plot: Plot, meaning: str | None = None, *, mean_share: float | None = None,
     low_is_risky: bool = False, how: str | None = None, **options: object,
@@ -441,16 +440,13 @@ def read_risk(
     """
     must_be_file(source)
     must_be_plot(plot)
+    must_be_of("'mean_share' of read_risk", "float | None", mean_share)
+    must_be_of("'low_is_risky' of read_risk", "bool", low_is_risky)
     from fieldmon.infestation.prior.raster_risk import RiskSettings  # noqa: PLC0415 - with scipy
     from fieldmon.io.rasters.values import RasterOptions  # noqa: PLC0415 - half a second
 
-    if meaning is None and (mean_share is not None or low_is_risky):
-        raise SettingError(
-            "mean_share and low_is_risky of a risk raster must go with what its numbers mean, but "
-            'that is not said. Give meaning="rank" or meaning="score".'
-        )
-    said: Any = meaning
-    settings = None if said is None else RiskSettings(said, mean_share, low_is_risky)
+    said: tuple[Any, float | None, bool] = meaning, mean_share, low_is_risky
+    settings = None if said == (None, None, False) else RiskSettings(*said)
     wanted: Any = _chosen(RasterOptions(), options), how
     with _answered():
         read = risk_on(plot, RiskSource(source, settings, *wanted))

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
         read_plot,
         read_plots,
         read_records,
+        read_risk,
         read_weather,
     )
     from fieldmon.io.plot_request import PlantingChoices
@@ -111,6 +112,7 @@ _MODULES = {
         "read_plot",
         "read_plots",
         "read_records",
+        "read_risk",
         "read_weather",
     ),
     "monitoring.treating.applications": ("Application",),
@@ -234,6 +236,7 @@ __all__ = [
     "read_plot",
     "read_plots",
     "read_records",
+    "read_risk",
     "read_weather",
     "routes",
     "rover",

@@ -49,6 +49,7 @@ OTHER_ROBOT = {
     "width_m": 0.9,
     "length_m": 1.4,
     "turning_radius_m": 2.0,
+    "on_foot": True,
 }
 #: something else than `SEASON` says in each of its
 SEASON = MonitoringSettings(BEGINS, robot=ROBOT, sampler="bouncy")
@@ -191,6 +192,7 @@ NO_OPTION = {
     "detection": "a pest's file or a team's table says it",
     "stop_s": "--robot-times has it, with the others of a robot",
     "returns": "studies alone ask for a day that ends in the plot",
+    "on_foot": "--scout says it, and the page of a season",
 }
 
 
@@ -270,6 +272,7 @@ def test_how_a_team_works_together_can_be_changed_one_by_one(option, setting, va
 NOT_IN_TABLES = {
     "viewpoints": NO_OPTION["viewpoints"],
     "returns": NO_OPTION["returns"],
+    "on_foot": "the column who says it",
 }
 
 
@@ -291,6 +294,7 @@ NOT_OF_WAYS = {
     "width_m": "the ways of its aisles hold it",
     "length_m": "likewise",
     "turning_radius_m": "likewise",
+    "on_foot": "nobody is charged for it",
 }
 
 
@@ -308,8 +312,8 @@ EARLIER = EarlierSeason(
 )  # fmt: skip
 #: settings that say something of everything
 WHOLE = replace(
-    SEASON, team=(replace(MEMBER, robot=replace(ROBOT, turning_radius_m=2.0)),),
-    robot=replace(ROBOT, turning_radius_m=2.0),
+    SEASON, team=(replace(MEMBER, robot=replace(ROBOT, turning_radius_m=2.0, on_foot=True)),),
+    robot=replace(ROBOT, turning_radius_m=2.0, on_foot=True),
     belief=replace(SEASON.belief, earlier=EARLIER),
     pest=Pest(
         "own", stages=(Stage("egg", 10.0, 100.0),), generation=Stage("all", 10.0, 200.0),

@@ -9,6 +9,7 @@ import streamlit as st
 
 from fieldmon.monitoring.inspecting.contradictions import contradictions
 from fieldmon.monitoring.inspecting.known_inspections import count_new
+from fieldmon.monitoring.season import season_inspections
 
 from ..show import recorded_batches
 from ..state import notices, unconfirmed
@@ -117,7 +118,9 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     if waiting is None:
         return ""
     taken = waiting.results.take(which)
-    done = choices.open_season.record(taken, waiting.source, waiting.who, confirmed=True)
+    done = season_inspections.recorded(
+        choices.open_season, taken, waiting.source, waiting.who, confirmed=True
+    )
     return _end_waiting(choices, waiting, done)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from fieldmon.errors import ContradictionError
 from fieldmon.infestation.inspections import SKIPPED
 from fieldmon.io.parse import result_words
+from fieldmon.monitoring.season import season_inspections
 from fieldmon.plot.local_clock import local_clock
 
 from ..show import cautions
@@ -55,7 +56,7 @@ def recorded(
     their file waits with them.
     """
     try:
-        done = choices.open_season.record(results, source, who)
+        done = season_inspections.recorded(choices.open_season, results, source, who)
     except ContradictionError:
         of = choices.key, choices.day
         unconfirmed.keep(Unconfirmed(*of, results, source, form, messages, who))

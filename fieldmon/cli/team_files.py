@@ -52,11 +52,6 @@ def members_of(
             kind = replace(worker, scout=one.who == "scout").robot()
         late_s = 60.0 * (60 * (start.hour - first.hour) + start.minute - first.minute)
         own = replace(kind, **one.settings)  # type: ignore[arg-type]
-        if one.who == "scout" and not own.on_foot:
-            raise SettingError(
-                "a scout's row changes, turns and stops take what scouts take: leave row_change_s, "
-                "turn_180_s and stop_s empty."
-            )
         return TeamMember(one.name, own, one.gate, late_s)
 
     members = [_told_at(one, member, one, start) for one, start in zip(stated, starts, strict=True)]

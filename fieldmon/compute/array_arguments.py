@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from fieldmon.compute.arguments import shown
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from typing import TypeVar
 
     import numpy as np
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     K = TypeVar("K", np.float64, np.bool_)
+
+#: a column that a public function takes: a list, an array, or one of pandas or polars; what it
+#: must hold its function says, and looks at
+Column: TypeAlias = "ArrayLike | Sequence[Any]"
 
 
 def array_of(kind: type[K], what: str, given: object, instead: str = "") -> NDArray[K]:

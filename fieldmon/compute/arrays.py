@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -21,6 +21,28 @@ def read_only(array: A) -> A:
 def as_seen(array: A) -> A:
     """Return the same numbers, which nobody can change through what is returned."""
     return read_only(array.view())
+
+
+def as_kept(array: A) -> A:
+    """Return the same numbers, which nobody can change: a copy, unless nobody can already.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> chance = read_only(np.zeros(3))
+    >>> as_kept(chance) is chance, as_kept(chance[1:]).base is chance
+    (True, True)
+    >>> kept = as_kept(given := np.zeros(3))
+    >>> given[0] = 1.0
+    >>> kept.tolist()
+    [0.0, 0.0, 0.0]
+    """
+    owner: Any = array
+    while type(owner) is np.ndarray and not owner.flags.writeable:
+        if owner.base is None:
+            return array
+        owner = owner.base
+    return read_only(array.copy())
 
 
 def as_compiled(array: A) -> A:

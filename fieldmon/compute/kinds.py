@@ -13,6 +13,7 @@ from inspect import Parameter, signature
 from itertools import chain
 from math import isnan
 from numbers import Integral, Real
+from operator import is_
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from fieldmon.compute.arguments import shown, with_article
@@ -20,7 +21,7 @@ from fieldmon.compute.day_arguments import day_in, time_in
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
 F = TypeVar("F", bound="Callable[..., Any] | type")
 
@@ -57,6 +58,7 @@ _LEFT = frozenset(
         "object",
         "ArrayLike",
         "Belief",
+        "Column",
         "Cutoff",
         "KernelName",
         "Sampler",
@@ -84,6 +86,10 @@ _HELD = {
 }
 
 
+def _as_it_is(given: Any) -> Any:  # noqa: ANN401 - anything
+    return given
+
+
 class Kind(NamedTuple):
     """What may be handed over.
 
@@ -95,11 +101,14 @@ class Kind(NamedTuple):
         Tells whether something is of it.
     instead
         What to do where it is not; may be empty.
+    kept
+        Returns something of it as values keep it: numbers as Python's own, lists as tuples.
     """
 
     words: str
     fits: Callable[[Any], bool]
     instead: str = ""
+    kept: Callable[[Any], Any] = _as_it_is
 
 
 @lru_cache(maxsize=1000)
@@ -139,7 +148,10 @@ def must_be_of(what: str, annotation: str, given: object) -> None:
 
 
 def must_hold_kinds(settings: Any, whose: str) -> None:  # noqa: ANN401 - any dataclass
-    """Raise `SettingError` unless each field of a dataclass holds what it is annotated with.
+    """Let a dataclass hold what it is annotated with; raise `SettingError` where it does not.
+
+    A day or a time may be what `checked` takes for one. Numpy's numbers and texts become Python's
+    own, which can be written, and lists tuples, which nobody can change.
 
     Parameters
     ----------
@@ -150,8 +162,15 @@ def must_hold_kinds(settings: Any, whose: str) -> None:  # noqa: ANN401 - any da
     """
     of: Any = type(settings)
     for name, annotation, kind in _kinds_in(of):
-        if not kind.fits(given := getattr(settings, name)):
-            must_be_of(f"{whose} {name}", annotation, given)
+        given = told = getattr(settings, name)
+        if annotation in _DAYS:
+            told = day_in(given)
+        elif annotation in _TIMES:
+            told = time_in(given)
+        if not kind.fits(told):
+            must_be_of(f"{whose} {name}", annotation, told)
+        if (kept := kind.kept(told)) is not given:
+            object.__setattr__(settings, name, kept)
 
 
 @cache
@@ -258,6 +277,7 @@ def _either(one: Kind, other: Kind) -> Kind:
         " or ".join(dict.fromkeys(kind.words for kind in (one, other) if kind.words)),
         lambda given: one.fits(given) or other.fits(given),
         one.instead or other.instead,
+        lambda given: (one if one.fits(given) else other).kept(given),
     )
 
 
@@ -268,7 +288,7 @@ def _named(name: str) -> Kind:
         return kind_of(_ALIASES[name])
     if name in _PLAIN:
         words, fits = _PLAIN[name]
-        return Kind(words, fits, _INSTEAD.get(name, ""))
+        return Kind(words, fits, _INSTEAD.get(name, ""), _KEPT.get(name, _as_it_is))
     return Kind(
         with_article(name),
         lambda given: any(kind.__name__ == name for kind in type(given).__mro__),
@@ -297,6 +317,7 @@ def _of_parts(outer: str, inner: ast.expr) -> Kind:
             isinstance(given, dict)
             and all(key.fits(name) and value.fits(one) for name, one in given.items())
         ),
+        kept=lambda given: {key.kept(name): value.kept(one) for name, one in given.items()},
     )
 
 
@@ -304,14 +325,31 @@ def _of_entries(outer: str, parts: list[ast.expr]) -> Kind:
     each = [_read(part) for part in parts if ast.unparse(part) != "..."]
     if outer == "tuple" and len(each) == len(parts):
         words = "a pair of numbers" if {kind.words for kind in each} == {"a number"} else "a tuple"
-        return Kind(words, lambda given: _is_row(given, len(each)) and _all_fit(each, given))
+        return Kind(
+            words,
+            lambda given: _is_row(given, len(each)) and _all_fit(each, given),
+            kept=lambda given: _same_or_tuple(given, map(_kept_as, each, given)),
+        )
     (kind,) = each
     if outer == "Iterable":
         return Kind(f"a list of {_several(kind)}", lambda given: _all_of_it(kind, given))
     return Kind(
         f"a {outer.lower()} of {_several(kind)}",
         lambda given: _is_row(given) and all(kind.fits(one) for one in given),
+        kept=_as_it_is
+        if outer != "tuple"
+        else lambda given: _same_or_tuple(given, map(kind.kept, given)),
     )
+
+
+def _kept_as(kind: Kind, given: object) -> object:
+    return kind.kept(given)
+
+
+def _same_or_tuple(given: Any, kept: Iterable[Any]) -> tuple[Any, ...]:  # noqa: ANN401 - a row
+    """Return what is kept of a row: the same tuple where it is one and nothing becomes another."""
+    made = tuple(kept)
+    return given if isinstance(given, tuple) and all(map(is_, made, given)) else made
 
 
 def _several(kind: Kind) -> str:
@@ -381,6 +419,20 @@ def _is_true_or_false(given: object) -> bool:
     return isinstance(given, bool) or type(given).__name__ in {"bool", "bool_"}
 
 
+def _python_number(given: Any) -> Any:  # noqa: ANN401 - a number
+    """Return a number as Python's own, which JSON and databases take, whoever's it was."""
+    if type(given) is float or isinstance(given, int):
+        return given
+    return int(given) if isinstance(given, Integral) else float(given)
+
+
+_KEPT: dict[str, Callable[[Any], Any]] = {
+    "float": _python_number,
+    "int": _python_number,
+    "bool": bool,
+    # a text of numpy is one of Python too
+    "str": lambda given: str(given) if type(given).__name__ == "str_" else given,
+}
 _PLAIN: dict[str, tuple[str, Callable[[Any], bool]]] = {
     "float": ("a number", _is_number),
     "int": ("a whole number", _is_whole),

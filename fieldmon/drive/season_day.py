@@ -13,6 +13,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.days.day_ahead import DayAhead, through
 from fieldmon.monitoring.estimates.asked_day import AskedDay, PlantToInspect, plant_to_inspect
 from fieldmon.monitoring.phones.scouts import codes_on, inside
+from fieldmon.monitoring.season.season_inspections import recorded
 from fieldmon.monitoring.settings.shift_work import Besides
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
@@ -161,7 +162,7 @@ class SeasonDay(AskedDay):
         clock = grid_clock(self._season.plot.grid)
         at_s = clock.second_after(self._on, self.begun_s, now_s)
         one = as_inspection(stop.plant, found, (self._on, at_s), self._name)
-        self._season.record(one, self._source, into=self.batch)
+        recorded(self._season, one, self._source, into=self.batch)
 
     def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001
         self._at, self._gone_s = stop.plant, self._clock_s

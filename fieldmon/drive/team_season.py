@@ -19,6 +19,7 @@ from fieldmon.drive.season_day import (
 from fieldmon.errors import SettingError
 from fieldmon.monitoring.estimates.asked_day import AskedDay, PlantToInspect, plant_to_inspect
 from fieldmon.monitoring.phones.scouts import codes_on
+from fieldmon.monitoring.season.season_inspections import recorded
 from fieldmon.plot.local_clock import grid_clock
 from fieldmon.plot.travel import GATE, travel_s
 
@@ -211,7 +212,7 @@ class MemberDay(AskedDay):
         clock = grid_clock(team.season.plot.grid)
         at_s = clock.second_after(team.on, self.begun_s, now_s)
         one = as_inspection(stop.plant, found, (team.on, at_s), self._member.name)
-        team.season.record(one, team.source, into=team.batch)
+        recorded(team.season, one, team.source, into=team.batch)
 
     def _go_on(self, stop: PlantToInspect, found: bool | None, *, is_late: bool) -> None:  # noqa: FBT001
         team = self._team

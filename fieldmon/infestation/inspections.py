@@ -9,6 +9,7 @@ import numpy as np
 
 from fieldmon.compute.arguments import must_be_known, shown
 from fieldmon.compute.array_arguments import entries_of, must_share_index, texts_of
+from fieldmon.compute.arrays import as_kept
 from fieldmon.compute.day_arguments import days_of, seconds_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted
@@ -16,9 +17,10 @@ from fieldmon.errors import ObservationError
 from fieldmon.infestation.inspection_columns import COLUMNS
 
 if TYPE_CHECKING:
-    import datetime as dt
-
     from numpy.typing import NDArray
+
+    from fieldmon.compute.array_arguments import Column
+    from fieldmon.compute.day_arguments import Day
 
 
 CLEAN, FOUND, SKIPPED = 0, 1, 2
@@ -33,11 +35,11 @@ _GIVEN = {column.name: column.given for column in COLUMNS}
 
 
 def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to its kind here
-    """Return a column as it is kept, a view: the caller's own array stays as it is."""
+    """Return a column as it is kept: no array that its caller may change later."""
     (letters, words), texts = _GIVEN[name], _TYPES[name] is object
     # of columns that were held to their kind before, as mostly, there is nothing to find out
     if type(given) is np.ndarray and given.ndim == 1 and given.dtype == _TYPES[name] and not texts:
-        return given.view()
+        return as_kept(given)
     try:
         held: Any = days_of(given) if name == "date" else given
         # other programs may have put bytes into a season's file: they stay as they are
@@ -52,7 +54,7 @@ def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to it
         if values.size and values.dtype.kind not in letters:
             raise _wrong(name, given)
         with np.errstate(invalid="ignore"):
-            column: NDArray[Any] = values.astype(_TYPES[name], copy=False).view()
+            column: NDArray[Any] = as_kept(values.astype(_TYPES[name], copy=False))
     except (ValueError, TypeError, OverflowError) as error:
         raise _wrong(name, given) from error
     if words.startswith("whole") and not np.array_equal(column, values):
@@ -121,7 +123,6 @@ class Inspections:
                     f"All columns of the inspections must have {k} entries, "
                     f"but {name} has {len(column)}."
                 )
-            column.setflags(write=False)
             object.__setattr__(self, name, column)
         unknown = np.flatnonzero((self.result < CLEAN) | (self.result > SKIPPED))
         if unknown.size:
@@ -147,10 +148,10 @@ class Inspections:
     @classmethod
     def of(
         cls,
-        plant: NDArray[np.integer],
-        result: NDArray[np.integer],
-        on: dt.date | np.datetime64 | NDArray[np.datetime64],
-        **columns: NDArray[np.generic],
+        plant: Column,
+        result: Column,
+        on: Day | Column,
+        **columns: Column,
     ) -> Inspections:
         """Return inspections of one date, or of a date each; columns not given are unknown.
 
@@ -203,7 +204,7 @@ class Inspections:
         """Return no inspections."""
         return cls.of(np.empty(0, np.int32), np.empty(0, np.int8), np.datetime64("NaT"))
 
-    def take(self, which: NDArray[np.generic] | slice) -> Inspections:
+    def take(self, which: Column | slice) -> Inspections:
         """Return those at `which` indices, or of a mask ``(k,)`` or a slice.
 
         Raise `SettingError` if `which` is none of them.
@@ -219,7 +220,7 @@ class Inspections:
         }
         return Inspections(**both)
 
-    def on(self, date: dt.date | np.datetime64) -> Inspections:
+    def on(self, date: Day) -> Inspections:
         """Return those of one date; raise `ObservationError` if it is none."""
         day = days_of(date)
         if day is None or day.ndim:

@@ -10,6 +10,7 @@ import numpy as np
 
 from fieldmon.compute.arguments import must_be, must_be_known, shown
 from fieldmon.compute.array_arguments import array_of, entries_of, must_share_index, texts_of
+from fieldmon.compute.arrays import as_kept
 from fieldmon.compute.day_arguments import days_of
 from fieldmon.compute.kinds import must_be_of, must_hold_kinds
 from fieldmon.compute.units import Units
@@ -21,6 +22,8 @@ from fieldmon.plot.positions import lonlat_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.compute.array_arguments import Column
+    from fieldmon.compute.day_arguments import Day
     from fieldmon.compute.wording import Worded
 
 
@@ -90,13 +93,13 @@ class Records:
         must_hold_kinds(self, "The records'")
         lonlat_of("Positions of records", self.lonlat, _READ, nowhere=True)
         m = len(self.lonlat)
-        for name, values in vars(self).items():
+        for name, values in [*vars(self).items()]:
             if len(values) != m:
                 raise ObservationError(
                     f"All columns of the records must have {m} entries, "
                     f"but {name} has {len(values)}."
                 )
-            values.setflags(write=False)
+            object.__setattr__(self, name, as_kept(values))
 
     def __repr__(self) -> str:
         return f"<Records: {counted(len(self), 'record')}>"
@@ -148,10 +151,10 @@ class Records:
     @classmethod
     def of(
         cls,
-        lonlat: NDArray[np.float64],
-        present: NDArray[np.int8],
-        day: NDArray[np.datetime64] | None = None,
-        **columns: NDArray[np.generic],
+        lonlat: Column,
+        present: Column,
+        day: Day | Column | None = None,
+        **columns: Column,
     ) -> Records:
         """Return records with every column that is not given unknown.
 
@@ -203,13 +206,13 @@ class Records:
         _must_make_sense(given)
         return cls(points, results.astype(np.int8), days, **(unknown | given))  # type: ignore[arg-type]
 
-    def take(self, which: NDArray[np.generic]) -> Records:
+    def take(self, which: Column | slice) -> Records:
         """Return the records at `which` indices, or of a mask ``(k,)``.
 
         Raise `SettingError` if `which` is neither.
         """
         picked = entries_of("Records", which, len(self))
-        return Records(**{name: values[picked].copy() for name, values in vars(self).items()})
+        return Records(**{name: values[picked] for name, values in vars(self).items()})
 
     @classmethod
     def none(cls) -> Records:

@@ -26,8 +26,14 @@ from fieldmon.io.options import (
     yes_or_no,
 )
 from fieldmon.io.plot_records import records_on
-from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources, RecordSource
-from fieldmon.io.prepare import prepare
+from fieldmon.io.plot_request import (
+    PlantingChoices,
+    PlotRequest,
+    PlotSources,
+    RecordSource,
+    RiskSource,
+)
+from fieldmon.io.prepare import prepare, risk_on
 from fieldmon.io.read import read_plots as read_fields
 from fieldmon.io.read import read_weather as read_weather_file
 from fieldmon.io.readers.inspection_options import InspectionOptions
@@ -39,6 +45,9 @@ from fieldmon.plot.plot import must_be_plot
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
+
+    import numpy as np
+    from numpy.typing import NDArray
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.records import Records
@@ -367,6 +376,80 @@ def read_weather(source: Source, plot: Plot, **options: object) -> Weather:
     wanted = _chosen(WeatherOptions(now=utc_now()), options).on(plot.field)
     with _answered():
         read = read_weather_file(source, wanted)
+    warn_of(read.messages)
+    return read.value
+
+
+def read_risk(
+    source: Source, plot: Plot, meaning: str | None = None, *, mean_share: float | None = None,
+    low_is_risky: bool = False, how: str | None = None, **options: object,
+) -> NDArray[np.float64]:  # fmt: skip
+    """Return the risk of each plant from a raster, for `plan_day` and `Season.create`.
+
+    Parameters
+    ----------
+    source
+        Path of a GeoTIFF or another raster that says where it lies.
+    plot
+        Whose plants they are.
+    meaning
+        What its numbers are: ``"chance"``, ``"percent"``, or of what only shows which plants are at
+        more risk ``"rank"`` (their order) or ``"score"`` (how far from the average). None: as the
+        file says, which those written by fieldmon do.
+    mean_share
+        Of rank and score: share of the plants that are infested for this reason.
+    low_is_risky
+        Of rank and score: whether low values are the risky ones, as of a vegetation index.
+    how
+        What of a plant's ground counts: ``"mean"`` (None, too), ``"nearest"``, ``"bilinear"`` or
+        ``"highest"``.
+    **options
+        What the file leaves open: ``band="2"``, ``nodata="0"``, ``crs="EPSG:2039"``.
+
+    Returns
+    -------
+    ndarray
+        ``(n,)`` chances; NaN where the raster says nothing.
+
+    Warns
+    -----
+    ImportDoubt
+        For everything that was guessed, left out or is doubtful.
+
+    Raises
+    ------
+    ChoiceNeeded
+        If the file leaves a choice, or nobody says what its numbers are.
+    ObservationError
+        If they are not what they are said to be.
+    FileProblem
+        If it cannot be read.
+
+    Examples
+    --------
+    >>> import fieldmon as fm, numpy as np, rasterio
+    >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+    >>> lies = rasterio.transform.from_bounds(*plot.field.boundary.bounds, 200, 200)
+    >>> shape = {"width": 200, "height": 200, "count": 1, "dtype": "float32"}
+    >>> with rasterio.open("ndvi.tif", "w", crs="EPSG:4326", transform=lies, **shape) as file:
+    ...     file.write(np.linspace(0.2, 0.8, 40_000, dtype="float32").reshape(1, 200, 200))
+    >>> risk = fm.read_risk("ndvi.tif", plot, "rank", mean_share=0.03, low_is_risky=True)
+    >>> risk.shape, round(float(risk.mean()), 4)
+    ((3825,), 0.03)
+    >>> day = fm.plan_day(plot, on="2026-11-18", risk=risk)
+    """
+    must_be_file(source)
+    must_be_plot(plot)
+    must_be_of("'mean_share' of read_risk", "float | None", mean_share)
+    must_be_of("'low_is_risky' of read_risk", "bool", low_is_risky)
+    from fieldmon.infestation.prior.raster_risk import RiskSettings  # noqa: PLC0415 - with scipy
+    from fieldmon.io.rasters.values import RasterOptions  # noqa: PLC0415 - half a second
+
+    said: tuple[Any, float | None, bool] = meaning, mean_share, low_is_risky
+    settings = None if said == (None, None, False) else RiskSettings(*said)
+    wanted: Any = _chosen(RasterOptions(), options), how
+    with _answered():
+        read = risk_on(plot, RiskSource(source, settings, *wanted))
     warn_of(read.messages)
     return read.value
 

@@ -215,10 +215,14 @@ def refuse_too_wide(team: Iterable[TeamMember], plot: Plot) -> None:
 def must_differ(members: Sequence[TeamMember]) -> None:
     """Refuse a team of none, or one in which two share a name."""
     names = [person_key(member.name) for member in members]
-    if not names or len(set(names)) < len(names):
+    if not names:
+        raise SettingError(
+            worded("A team must have 1 member or more, but it has none. Give one: team_of(1).")
+        )
+    if len(set(names)) < len(names):
         raise SettingError(
             worded(
                 "A team must have members of different names, but they are {names}.",
-                names=", ".join(member.name for member in members) or "none",
+                names=", ".join(member.name for member in members),
             )
         )

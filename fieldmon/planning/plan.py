@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from geopandas import GeoDataFrame
     from numpy.typing import NDArray
 
+    from fieldmon.compute.array_arguments import Column
     from fieldmon.planning.route import Route
     from fieldmon.planning.wishes import Wishes
     from fieldmon.planning.workday import Workday
@@ -158,7 +159,7 @@ def plan_day(
     *,
     robot: Robot | None = None,
     sampler: str | Sampler = "adaptive",
-    risk: NDArray[np.float64] | None = None,
+    risk: Column | None = None,
 ) -> DayPlan:
     """Plan a day on a plot of which nothing but records is known.
 

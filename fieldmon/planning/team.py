@@ -30,8 +30,9 @@ from fieldmon.samplers.base import NEVER, Scene
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
+    from fieldmon.compute.array_arguments import Column
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
     from fieldmon.plot.plot import Plot
@@ -122,7 +123,7 @@ class TeamPlan:
 @checked
 def plan_team(
     plot: Plot,
-    chance: ArrayLike,
+    chance: Column,
     members: Sequence[TeamMember],
     *,
     on: str | date | datetime | np.datetime64 | None = None,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import shapely
 from shapely import MultiLineString, MultiPolygon
 
-from fieldmon.compute.arrays import read_only
+from fieldmon.compute.arrays import as_kept
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import counted, worded
 from fieldmon.errors import PlotError
@@ -113,7 +113,7 @@ class Field:
             lonlat_of("A gate", [self.gate])
         if self.plants is not None:
             lonlat_of("Plants", self.plants)
-            read_only(self.plants)
+            object.__setattr__(self, "plants", as_kept(self.plants))
 
     def __repr__(self) -> str:
         parts = counted(len(self.boundary.geoms), "part")

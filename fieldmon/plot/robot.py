@@ -23,10 +23,12 @@ _SECONDS, _SIZE = (
     AllowedRange(0.0, 86_400.0),
     AllowedRange(0.05, 10.0, said=worded("0.05 to 10 metres")),
 )
-# a study of what driving costs has a robot that is everywhere at once
+#: a study of what driving costs has a robot that is everywhere at once: no other is as quick
+EVERYWHERE_M_S = 1e6
 _ALLOWED = {
     "hours": AllowedRange(0.0, 24.0, above=True),
-    "speed_m_s": AllowedRange(0.0, 1e6, above=True),
+    # at 108 km/h nobody drives along plants
+    "speed_m_s": AllowedRange(0.0, 30.0, above=True),
     "look_s": replace(_SECONDS, above=True),
     "detection": CHANCE,
     "width_m": _SIZE,
@@ -36,8 +38,7 @@ _ALLOWED = {
     "turn_180_s": _SECONDS,
     "stop_s": _SECONDS,
 }
-#: at 30 m/s (108 km/h) nobody drives along plants
-_DRIVEN_MOST = {"speed_m_s": 30.0}
+_ALLOWED_EVERYWHERE = {name: one for name, one in _ALLOWED.items() if name != "speed_m_s"}
 
 
 class SaidIn(NamedTuple):
@@ -62,7 +63,7 @@ class SaidIn(NamedTuple):
 
 
 def _said_in(name: str) -> SaidIn:
-    most = _DRIVEN_MOST.get(name, _ALLOWED[name].most)
+    most = _ALLOWED[name].most
     if name == "speed_m_s":
         return SaidIn("speed_km_h", "km/h", KM_H, most * KM_H)
     unit = {"hours": "h", "detection": ""}.get(name, name.rpartition("_")[2])
@@ -161,7 +162,8 @@ class Robot:
 
     The defaults are the thesis's robot (2.5 km/h, 40 s a plant, 12 h a day), but for its row
     changes, turns and stops: those are what simulated drives took, and the thesis's are
-    ``with_times("thesis")``. A scout on foot is a robot with other numbers, see :func:`scout`.
+    ``with_times("thesis")``. A scout on foot is a robot that walks, with other numbers, see
+    :func:`scout`.
 
     Parameters
     ----------
@@ -193,12 +195,15 @@ class Robot:
         without room for its arcs and shunts are not driven, and a row change is charged what they
         take on the plot, unless its seconds are said; see `Aisles.worked_by`. None: it turns on
         the spot. Needs a width.
+    on_foot
+        Whether it is a person who walks, whatever the numbers: nobody is sent where people may not
+        be yet, as after spraying, and `fieldmon drive` drives no person.
 
     Raises
     ------
     SettingError
-        If speed, looking or hours are not above 0, hours above 24, seconds below 0, `detection` no
-        chance, or there is a length or turning radius without a width.
+        If speed, looking or hours are not above 0, speed above 30, hours above 24, seconds below 0,
+        `detection` no chance, or there is a length or turning radius without a width.
 
     Examples
     --------
@@ -225,10 +230,12 @@ class Robot:
     width_m: float | None = None
     length_m: float | None = None
     turning_radius_m: float | None = None
+    on_foot: bool = False
 
     def __post_init__(self) -> None:
         must_hold_kinds(self, "The robot's")
-        if broken := broken_setting(self, _ALLOWED):
+        everywhere = self.speed_m_s == EVERYWHERE_M_S
+        if broken := broken_setting(self, _ALLOWED_EVERYWHERE if everywhere else _ALLOWED):
             raise SettingError(worded("The robot's {name} must be {rule}, not {value}.", **broken))
         if self.length_m is not None and self.width_m is None:
             raise SettingError(
@@ -268,8 +275,8 @@ class Robot:
         return next((name for name, times in ROBOT_TIMES.items() if times == own), None)
 
     @property
-    def on_foot(self) -> bool:
-        """Return whether it is charged what a scout on foot is, see :func:`scout`."""
+    def on_foot_by_times(self) -> bool:
+        """Return whether it is charged what a scout usually is: one walked where nobody said."""
         return (self.row_change_s, self.turn_180_s, self.stop_s) == SCOUT_TIMES
 
     def with_times(self, name: str) -> Robot:
@@ -325,7 +332,7 @@ def scout(**fields: Any) -> Robot:  # noqa: ANN401 - of `Robot`
     Returns
     -------
     Robot
-        With the numbers of a scout.
+        With the numbers of a scout; it is `on_foot`.
 
     Raises
     ------
@@ -338,8 +345,11 @@ def scout(**fields: Any) -> Robot:  # noqa: ANN401 - of `Robot`
     >>> ann = fm.scout(hours=2)
     >>> ann.day_s, ann.visit_s, ann.detects
     (7200.0, 35.0, 0.69)
+    >>> fm.scout(stop_s=8).on_foot
+    True
     """
-    return replace(Robot(4.0 / 3.6, *SCOUT_TIMES, look_s=30.0, hours=4.0), **fields)
+    walks = Robot(4.0 / 3.6, *SCOUT_TIMES, look_s=30.0, hours=4.0, on_foot=True)
+    return replace(walks, **fields)
 
 
 def rover(**fields: Any) -> Robot:  # noqa: ANN401 - as above

@@ -191,6 +191,7 @@ def _of_ways(robot: Robot, units: Units) -> Iterator[tuple[str, str]]:
     times = robot.row_change_s, robot.turn_180_s, robot.stop_s
     yield words.TIMES, joined("; ", [figure(each_s, "g", " s") for each_s in times])
     yield words.WAY_BACK, words.YES if robot.returns else words.NO
+    yield words.ON_FOOT, words.YES if robot.on_foot else words.NO
     size = {
         words.WIDTH: robot.width_m,
         words.LENGTH: robot.length_m,

@@ -29,9 +29,10 @@ from fieldmon.simulation.treating import WHOLE
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
     from pandas import DataFrame
 
+    from fieldmon.compute.array_arguments import Column
     from fieldmon.plot.plot import Plot
     from fieldmon.samplers.base import Sampler
     from fieldmon.simulation.metrics import SeasonMetrics
@@ -263,7 +264,7 @@ def _insects(season: SimulationSettings) -> str:
 @checked
 def compare(
     plot: Plot,
-    chance: ArrayLike,
+    chance: Column,
     samplers: Samplers = ("adaptive", "dynamic", "naive"),
     *,
     settings: CompareSettings | None = None,

@@ -18,18 +18,14 @@ from fieldmon.simulation.start import Start, season_start
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from fieldmon.compute.array_arguments import Column
     from fieldmon.plot.plot import Plot
     from fieldmon.samplers.base import Sampler
     from fieldmon.simulation.metrics import SeasonMetrics
     from fieldmon.simulation.season import SimulatedDay
 
 
-def draw_start(
-    plot: Plot, chance: NDArray[np.float64], share: float = 0.02, *, seed: int = 1
-) -> Start:
+def draw_start(plot: Plot, chance: Column, share: float = 0.02, *, seed: int = 1) -> Start:
     """Draw which plants are infested on a simulated season's first morning.
 
     Parameters

@@ -1,6 +1,7 @@
 """What a signature names is what a caller must hand over; anything else is a sentence."""
 
-from dataclasses import dataclass
+import json
+from dataclasses import dataclass, field
 from datetime import date, datetime, time
 from fractions import Fraction
 from pathlib import Path
@@ -88,6 +89,51 @@ def test_a_setting_of_another_kind_is_named(bad):
     (name,) = bad
     with pytest.raises(SettingError, match=f"^The robot's {name} must be"):
         _Settings(**bad)
+
+
+@dataclass(frozen=True)
+class _Kept:
+    hours: "float | None" = 4.0
+    seed: "int" = 1
+    traced: "bool" = True
+    name: "str" = ""
+    begins: "date | None" = None
+    starts: "time" = time(6)
+    gate: "tuple[float, float] | None" = None
+    steps: "tuple[tuple[float, float], ...]" = ()
+    settings: "dict[str, float]" = field(default_factory=dict)
+
+    def __post_init__(self):
+        must_hold_kinds(self, "A season's")
+
+
+def test_a_dataclass_keeps_what_can_be_written_and_what_nobody_can_change():
+    steps, settings = [[np.float32(20), 0.5], (25, np.float64(0.75))], {"every": np.int64(3)}
+    made = _Kept(
+        np.int64(4), np.uint8(2), np.False_, np.str_("a"), np.datetime64("2026-11-18"), "7:00",
+        np.array([35.5, 30.5]), steps, settings,
+    )  # fmt: skip
+    steps[1], settings["every"] = (1.0, 1.0), 9
+    assert made == _Kept(
+        4, 2, False, "a", TODAY, time(7), (35.5, 30.5), ((20.0, 0.5), (25, 0.75)), {"every": 3}
+    )
+    assert repr(made) == repr(_Kept(**vars(made)))
+    assert "np." not in repr(made)
+    assert json.dumps([made.hours, made.seed, made.gate, made.steps, made.settings])
+    # what is such already stays the same thing
+    again = _Kept(**vars(made))
+    assert again.steps is made.steps
+    assert _Kept(Fraction(7, 2)).hours == 3.5
+
+
+@pytest.mark.parametrize("begins", ["soon", 20_000, pd.NaT])
+def test_a_dataclass_takes_days_as_functions_do(begins):
+    for given in ("2026-11-18", "2026-11-18T06:00", datetime(2026, 11, 18, 6), TODAY):
+        assert _Kept(begins=given).begins == TODAY
+    with pytest.raises(SettingError, match=r"^A season's begins must be a date, but it is "):
+        _Kept(begins=begins)
+    with pytest.raises(SettingError, match=r'^A season\'s starts must be a time.*Give "06:00"'):
+        _Kept(starts="soon")
 
 
 @checked

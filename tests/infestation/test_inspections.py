@@ -155,6 +155,27 @@ def test_nobody_can_change_them_and_the_callers_arrays_stay_his_own():
     assert plants.flags.writeable
 
 
+def test_a_callers_buffers_that_are_filled_anew_change_no_inspections():
+    """A loop over days, with arrays of the very types kept, changed what the days before said."""
+    columns = vars(week())
+    given = {name: column.copy() for name, column in columns.items()}
+    shared = {name: column.view() for name, column in given.items()}
+    for column in shared.values():
+        column.setflags(write=False)
+    made = [
+        Inspections(**given),
+        Inspections(**shared),
+        Inspections.of(given["plant"], given["result"], given["date"]),
+    ]
+    for column in given.values():
+        column[:] = column[::-1].copy()
+    for one in made:
+        assert one.plant.tolist() == columns["plant"].tolist()
+        assert one.result.tolist() == columns["result"].tolist()
+        assert one.date.tolist() == columns["date"].tolist()
+    assert made[0].notes.tolist() == columns["notes"].tolist()
+
+
 def test_those_of_a_date_and_those_really_inspected():
     assert week().on(MONDAY).plant.tolist() == week().on(date(2026, 4, 6)).plant.tolist() == [7, 3]
     assert week().on(np.datetime64("2026-05-01")).plant.tolist() == []

@@ -127,3 +127,14 @@ def test_records_are_said_with_their_days(days, said):
     )
     assert records.in_words() == said
     assert records.sentence() == f"Chances and hot spots begin with {said}."
+
+
+def test_a_callers_arrays_stay_his_own_and_change_no_records():
+    lonlat, day = np.array([[35.1, 30.3], [35.2, 30.4]]), np.array(["2026-04-06", "NaT"], "M8[D]")
+    given = [lonlat, np.array([1, 0], np.int8), day]
+    made = Records.of(*given)
+    before = {name: values.copy() for name, values in vars(made).items()}
+    for values in given:
+        values[:] = values[::-1].copy()
+    for name, values in before.items():
+        np.testing.assert_array_equal(getattr(made, name), values)

@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import ChoiceNeeded, ImportDoubt, SettingError
+from fieldmon.infestation.prior.raster_risk import RiskSettings
 from fieldmon.io import library, read
 from fieldmon.io.options import PlotOptions, ReadOptions, Upload
-from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources
-from fieldmon.io.prepare import prepare
+from fieldmon.io.plot_request import PlantingChoices, PlotRequest, PlotSources, RiskSource
+from fieldmon.io.prepare import prepare, risk_on
+from fieldmon.plot.plot import Plot
+from tests.io.rasters import raster_files
 from tests.paths import SAMPLE_DATA
 
 ESTATE = SAMPLE_DATA / "paran_estate.zip"
@@ -190,3 +193,22 @@ def test_what_is_no_file_is_refused_by_its_name(name, told):
 def test_an_option_that_there_is_none_of_is_refused(call, more, gate):
     with pytest.raises(SettingError, match="no option 'colour'"):
         call(ESTATE, *(gate for _ in more), colour="red")
+
+
+def test_the_risk_of_a_raster_is_that_of_commands_and_what_it_means_is_asked(tmp_path):
+    plot = Plot.of(raster_files.PLOT)
+    values = raster_files.ramp()
+    path = raster_files.write(tmp_path / "ndvi.tif", values)
+    said = {"mean_share": 0.04, "low_is_risky": True}
+    risk, doubts = heard(library.read_risk, path, plot, "rank", **said)
+    assert doubts == []
+    settings = RiskSettings("rank", **said)
+    assert np.array_equal(risk, risk_on(plot, RiskSource(path, settings)).value)
+    with pytest.raises(ChoiceNeeded, match=r"Answer with meaning='rank', for instance\.$"):
+        library.read_risk(path, plot)
+    with pytest.raises(SettingError, match=r"must be one of chance, .*, but it is None"):
+        library.read_risk(path, plot, **said)
+    alike = raster_files.write(tmp_path / "alike.tif", np.full_like(values, 0.3))
+    assert heard(library.read_risk, alike, plot, "chance")[1]
+    with pytest.raises(SettingError, match="'low_is_risky' of read_risk must be True or False"):
+        library.read_risk(path, plot, "rank", mean_share=0.04, low_is_risky=1)

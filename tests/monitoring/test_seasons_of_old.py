@@ -258,6 +258,25 @@ def test_a_season_of_format_14_shows_what_both_noted_of_one_find(tmp_path):
     assert season.inspections.notes.tolist() == ["webs", ""]
 
 
+def test_in_a_season_of_format_15_those_walk_who_are_charged_a_scouts_times(tmp_path):
+    """Made before it was said who walks: a scout, and a team of whom one stops for 8 s."""
+    season = Season(shutil.copy(FOLDER / "of_format_15.gpkg", tmp_path))
+    assert (tmp_path / "of_format_15.gpkg.format-15").is_file()
+    assert season.verify() == season.check_against_log() == ()
+    seen = season.settings
+    told = {one.name: one.robot for one in seen.team} | {"": seen.robot}
+    assert [name for name, robot in told.items() if robot.on_foot] == ["Ada", ""]
+    season.change(seen, seen)
+    assert season.log()[-1].what["names"] == ""  # what is not said is written as it was
+    bob = replace(seen.team[1], robot=replace(told["Bob"], on_foot=True))
+    season.change(replace(seen, team=(seen.team[0], bob)), seen)
+    walks = Season(season.path).settings.team[1].robot
+    assert (walks.on_foot, walks.stop_s) == (True, 8.0)
+    assert "Bob 1 h, 30 s a plant, 4 km/h, finds 69 %, " in (said := season.log()[-1].what["said"])
+    assert "on foot yes" in said
+    assert season.undo_change() == seen
+
+
 def _only_the_map_differs(season, day):
     """Hold that a map that learns comes out as it learns now, that this is said, and no more."""
     (said,) = season.verify()

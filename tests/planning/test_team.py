@@ -181,7 +181,7 @@ def test_the_same_team_has_the_same_plan():
 @pytest.mark.parametrize(
     ("members", "says"),
     [
-        ((), "must have members of different names"),
+        ((), r"must have 1 member or more, but it has none. Give one: team_of\(1\)."),
         ((TeamMember("a"), TeamMember("A")), "must have members of different names"),
         (team_of(2, Robot(hours=0.001)), "must be long enough"),
     ],

@@ -40,9 +40,10 @@ def test_a_scout_is_a_robot_with_other_numbers():
         scout(hours=25)
 
 
-def test_a_scout_is_known_by_its_times_whatever_the_hours_and_is_charged_no_robot_s():
-    assert replace(scout().with_hours(7), look_s=50.0).on_foot
+def test_a_scout_walks_whatever_the_numbers_and_is_charged_no_robot_s():
+    assert replace(scout(stop_s=8, turn_180_s=0).with_hours(7), look_s=50.0).on_foot
     assert not Robot().on_foot
+    assert not Robot(row_change_s=3, turn_180_s=2, stop_s=5).on_foot
     with pytest.raises(SettingError, match="A scout has times of its own"):
         scout().with_times("thesis")
 
@@ -54,6 +55,8 @@ def test_a_scout_is_known_by_its_times_whatever_the_hours_and_is_charged_no_robo
         ("look_s", -1),
         ("hours", 0),
         ("hours", 25),
+        ("speed_m_s", 30.1),
+        ("speed_m_s", 200),
         ("row_change_s", -1),
         ("turn_180_s", float("nan")),
         ("stop_s", float("inf")),
@@ -71,6 +74,14 @@ def test_an_impossible_number_is_refused_by_name(setting, value):
 def test_viewpoints_must_rise(steps):
     with pytest.raises(SettingError, match="both rising"):
         Viewpoints(steps)
+
+
+def test_steps_given_as_a_list_are_not_changed_later_and_have_a_hash_as_all_settings():
+    steps = [(10.0, 0.4), (20.0, 0.7)]
+    seen_by = Viewpoints(steps)
+    steps[1] = (20.0, 3.0)
+    assert seen_by == Viewpoints(((10.0, 0.4), (20.0, 0.7)))
+    assert len({Robot(viewpoints=seen_by), Robot(viewpoints=seen_by)}) == 1
 
 
 def test_no_chance_is_above_one():

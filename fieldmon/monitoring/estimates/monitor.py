@@ -35,12 +35,14 @@ from fieldmon.plot.plot import must_be_plot
 from fieldmon.plot.robot import Robot, must_be_robot
 from fieldmon.samplers import sampler_or_name
 from fieldmon.samplers.base import NEVER, Scene, resting_place
+from fieldmon.samplers.checked_sampler import must_detect
 
 if TYPE_CHECKING:
     from types import TracebackType
 
     from numpy.typing import NDArray
 
+    from fieldmon.compute.array_arguments import Column
     from fieldmon.decisions.map_verdict import MapVerdict
     from fieldmon.infestation.belief import Belief
     from fieldmon.infestation.forecast import Forecast
@@ -83,8 +85,8 @@ class Monitor:
     Raises
     ------
     SettingError
-        If `plot` is none, there is no such sampler, `chance` does not fit the plants, or a pest's
-        finds are not traced.
+        If `plot` is none, there is no such sampler, `chance` does not fit the plants, inspections
+        of the robot can find nothing, or a pest's finds are not traced.
 
     Examples
     --------
@@ -106,7 +108,7 @@ class Monitor:
         plot: Plot,
         sampler: str | Sampler = "adaptive",
         robot: Robot | None = None,
-        chance: NDArray[np.float64] | None = None,
+        chance: Column | None = None,
         belief_settings: BeliefSettings | None = None,
         seed: int = 1,
         *,
@@ -125,6 +127,7 @@ class Monitor:
         self.pest = pest
         self.day_number = 0
         self._sampler = sampler_or_name(sampler)
+        must_detect(self._sampler, self.robot)
         self._streams = RandomStreams(int(seed))
         first = _first_chance(plot, chance)
         self._belief: Belief = self.belief_settings.first_morning(

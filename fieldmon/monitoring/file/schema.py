@@ -12,7 +12,7 @@ from fieldmon.monitoring.file.qgis_styles import add_asked_styles, add_photo_sty
 if TYPE_CHECKING:
     import sqlite3
 
-VERSION = 15
+VERSION = 16
 #: files of this version and later have a log
 LOGS_SINCE = 7
 #: the first fieldmon that reads files of this version

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING
@@ -10,8 +11,9 @@ import numpy as np
 
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import worded
-from fieldmon.errors import FileProblem, ObservationError
+from fieldmon.errors import FileProblem, ImportDoubt, ObservationError
 from fieldmon.infestation.inspections import FOUND, Inspections
+from fieldmon.io.readers.date_doubts import to_come
 from fieldmon.monitoring.changes import corrections, outside_changes, season_log
 from fieldmon.monitoring.estimates.told_detection import said_now
 from fieldmon.monitoring.file import tables
@@ -41,12 +43,14 @@ from fieldmon.plot.local_clock import local_clock
 if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Sequence
+    from datetime import date
     from pathlib import Path
 
     from fieldmon.compute.day_arguments import Day
     from fieldmon.monitoring.file.tables import KeptMessage
     from fieldmon.monitoring.inspecting.batches import Batch, BatchContents
     from fieldmon.monitoring.settings.settings import MonitoringSettings
+    from fieldmon.plot.local_clock import LocalClock
 
 
 @checked
@@ -84,9 +88,15 @@ class SeasonInspections(SeasonCorrections):
             counts 0.
         SettingError
             If a date is not of this season.
+
+        Warns
+        -----
+        ImportDoubt
+            If a date has not come on the plot, in a season that has begun: a slip in a date.
         """
-        _must_count_finds(inspections)
-        (done,) = self.record_all([(inspections, source)], who, confirmed=confirmed, into=into)
+        done = recorded(self, inspections, source, who, confirmed=confirmed, into=into)
+        if done.batch is not None:
+            _doubt_days_to_come(inspections, self.settings.begins, local_clock(self.plot.field))
         return done
 
     def record_all(
@@ -177,6 +187,11 @@ class SeasonInspections(SeasonCorrections):
             counts 0.
         SettingError
             If a date is not of this season.
+
+        Warns
+        -----
+        ImportDoubt
+            As `record` does.
         """
         _must_count_finds(inspections)
         with self._writing() as db:
@@ -196,6 +211,9 @@ class SeasonInspections(SeasonCorrections):
             elif done.batch is not None:
                 day = settings_of(db).day((others if done.more else news).date.min().item())
                 self._refresh(db, day, before)
+            begins = settings_of(db).begins
+        if done.batch is not None or taken:
+            _doubt_days_to_come(inspections, begins, local_clock(self.plot.field))
         return replace(done, corrected=len(holding))
 
     def _add(
@@ -385,6 +403,19 @@ class SeasonInspections(SeasonCorrections):
             return tables.read_messages(db)
 
 
+def recorded(
+    season: SeasonInspections, inspections: Inspections, source: str, who: str = "", *,
+    confirmed: bool = False, into: int | None = None,
+) -> Recorded:  # fmt: skip
+    """Add inspections as `Season.record` does, without a warning of days that have not come.
+
+    For robots and pages: the ones drive days to come, the others say themselves what has not come.
+    """
+    _must_count_finds(inspections)
+    (done,) = season.record_all([(inspections, source)], who, confirmed=confirmed, into=into)
+    return done
+
+
 def _must_count_finds(inspections: Inspections) -> None:
     """Raise `ObservationError` where a find counts 0; seasons of old hold such ones."""
     nothing = (inspections.result == FOUND) & (inspections.count == 0)
@@ -395,6 +426,23 @@ def _must_count_finds(inspections: Inspections) -> None:
                 "count (NaN).",
                 value=int(nothing.argmax()) + 1,
             )
+        )
+
+
+def _doubt_days_to_come(inspections: Inspections, begins: date, clock: LocalClock) -> None:
+    """Warn whoever called a checked method of a season of what was inspected after today.
+
+    In a season that has not begun either it is a rehearsal.
+    """
+    today = clock.today()
+    ahead = inspections.date[to_come(inspections.date, today)]
+    if begins <= today and len(ahead):
+        warnings.warn(
+            f"Inspections must be of days that have come, but {ahead.max()} has not: it is {today} "
+            "on the plot. If it is a slip, take them back with season.undo(), and record them with "
+            "their day.",
+            ImportDoubt,
+            stacklevel=4,
         )
 
 

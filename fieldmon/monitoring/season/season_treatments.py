@@ -75,7 +75,7 @@ class SeasonTreatments(OpenSeason):
         area
             Outline, lon/lat; None: the whole plot, unless `plants` are given.
         product
-            What was used, where nothing else is said of it.
+            Trade name of what was used, where `application` names none.
         application
             What was applied and how. What it does not say of waiting periods and of the
             mode-of-action group comes from the product's label, where the season has one.
@@ -85,9 +85,10 @@ class SeasonTreatments(OpenSeason):
         Raises
         ------
         SettingError
-            If no plant was treated, or nothing tells how well it works.
+            If no plant was treated, nothing tells how well it works, or `product` is another than
+            that of `application`.
         """
-        said = Application(product) if application is None else application
+        said = (application or Application()).of_product(product)
         place = self._place(area, plants)
         works = self._efficacy(said.product) if efficacy is None else efficacy
         with self._writing() as db:

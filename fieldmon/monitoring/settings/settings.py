@@ -465,15 +465,21 @@ _TIMES_OF_OLD = ROBOT_TIMES["thesis"]._asdict()
 
 
 def _plain_robot(robot: Robot) -> dict[str, Any]:
-    """Return a robot as JSON has it; what turns on the spot says nothing of a turning radius."""
+    """Return a robot as JSON has it; what turns on the spot says nothing of a turning radius.
+
+    And nothing of who walks, where that is as its times have it.
+    """
     plain = asdict(robot)
+    if robot.on_foot == robot.on_foot_by_times:
+        del plain["on_foot"]
     if robot.turning_radius_m is None:
         del plain["turning_radius_m"]
     return plain
 
 
 def _robot(plain: dict[str, Any]) -> Robot:
-    return Robot(**{**_TIMES_OF_OLD, **plain, "viewpoints": _viewpoints(plain)})
+    robot = Robot(**{**_TIMES_OF_OLD, **plain, "viewpoints": _viewpoints(plain)})
+    return robot if "on_foot" in plain else replace(robot, on_foot=robot.on_foot_by_times)
 
 
 def told_to_detect(plain: dict[str, Any], pest: Pest | None = None) -> float:

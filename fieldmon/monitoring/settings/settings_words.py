@@ -27,7 +27,7 @@ _NAMES = {
     "width": worded("width"), "length": worded("length"),
     "turning radius": worded("turning radius"),
     "detection": worded("detection"), "detection by seconds": worded("detection by seconds"),
-    "way back": worded("way back to the gate within the hours"),
+    "way back": worded("way back to the gate within the hours"), "on foot": worded("on foot"),
     "shared out": worded("rows shared out by what is believed"),
     "contact": worded("contact"), "least gain": worded("least gain"),
     "passing": worded("headland to pass each other"),
@@ -48,6 +48,7 @@ _SAID_BY = {
     "robot width_m": "width", "robot length_m": "length",
     "robot turning_radius_m": "turning radius", "robot detection": "detection",
     "robot viewpoints": "detection by seconds", "robot returns": "way back",
+    "robot on_foot": "on foot",
     "team teamwork together": "shared out", "team teamwork contact_s": "contact",
     "team teamwork least_gain": "least gain", "team teamwork passing_m": "passing",
     "season starts": "start", "season harvest": "harvest", "season language": "language",
@@ -198,6 +199,7 @@ def _each_of_worker(robot: Robot) -> dict[str, str]:
             last=last_s,
         ),
         "way back": worded("yes") if robot.returns else worded("no"),
+        "on foot": worded("yes") if robot.on_foot else worded("no"),
         **{name: f"{value_m:g} m" for name, value_m in size.items() if value_m is not None},
     }
 
@@ -206,6 +208,8 @@ def worker_in_words(member: TeamMember) -> Worded:
     """Return one of a team in words: the usual of everybody, and what else is not usual."""
     robot = member.robot
     usual = _each_of_worker(scout() if robot.on_foot else Robot())
+    if robot.on_foot != robot.on_foot_by_times:
+        del usual["on foot"]  # its times do not tell
     first = worded(
         "{name} {hours:g} h, {look:g} s a plant, {speed:.3g} km/h, finds {detects}",
         name=member.name, hours=robot.hours, look=robot.look_s, speed=KM_H * robot.speed_m_s,

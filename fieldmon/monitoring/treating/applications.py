@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.compute.kinds import checked, must_hold_kinds
 from fieldmon.compute.wording import worded
 from fieldmon.decisions.doses import WATER_L_HA
-from fieldmon.decisions.labels import checked_waits
+from fieldmon.decisions.labels import checked_waits, plain_name
 from fieldmon.errors import SettingError
 from fieldmon.pests.weather import DAY_S
 
@@ -129,6 +129,28 @@ class Application:
             return math.inf
         of_day = at.hour * 3600.0 + at.minute * 60.0 + at.second
         return of_day + (DAY_S if self.ends_next_day else 0.0)
+
+    def of_product(self, product: str) -> Application:
+        """Return it with its `product`, where it names none; raise `SettingError` for another.
+
+        Examples
+        --------
+        >>> import fieldmon as fm
+        >>> fm.Application(operator="Bo").of_product("Soap").product
+        'Soap'
+        """
+        if not self.product.strip():
+            return replace(self, product=product)
+        if product.strip() and plain_name(product) != plain_name(self.product):
+            raise SettingError(
+                worded(
+                    "A treatment must be with one product, but it is with {product!r}, and its "
+                    "application with {other!r}. Name it once.",
+                    product=product,
+                    other=self.product,
+                )
+            )
+        return self
 
     def by_label(self, label: ProductLabel | None) -> Application:
         """Return it with what nobody said of waiting and group taken from the product's label."""

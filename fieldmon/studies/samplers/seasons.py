@@ -7,6 +7,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from fieldmon.compute.random_streams import RandomStreams
+from fieldmon.plot.robot import EVERYWHERE_M_S
 from fieldmon.simulation.metrics import season_metrics
 from fieldmon.simulation.paired_seasons import paired
 from fieldmon.simulation.season import simulated_days
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     Setting = tuple[Scenario, Added | None]
     Key = tuple[str, int] | tuple[str, int, str]
 
-_FAST = 1e6
 MEASURES = ("infested_plant_days", "d50", "d80", "inspected", "found", "visited_pct")
 
 
@@ -115,7 +115,7 @@ def season(
     """Return the days of a contender's season."""
     robot, sampler = scenario.robot, contender.sampler
     if not contender.drives:
-        robot = replace(robot, speed_m_s=_FAST, row_change_s=0.0)
+        robot = replace(robot, speed_m_s=EVERYWHERE_M_S, row_change_s=0.0)
     if scenario.flaw == "detection":
         sampler = Misinformed(sampler)
     settings = replace(scenario.settings, believe=contender.believe)

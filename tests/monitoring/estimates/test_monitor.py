@@ -203,6 +203,12 @@ def test_a_chance_map_that_does_not_fit_is_refused(plot, chance):
         Monitor(plot, chance=chance)
 
 
+def test_a_robot_that_can_find_nothing_is_refused_as_in_a_plan(plot):
+    said = "An inspection must be able to find something, but 5 s at a plant find 0 %"
+    with pytest.raises(SettingError, match=said):
+        Monitor(plot, robot=Robot(look_s=5))
+
+
 def test_finds_that_are_only_flagged_stay_infested(plot):
     monitor = Monitor(plot, robot=Robot(hours=1), belief_settings=BeliefSettings(treated=False))
     with monitor.day() as day:

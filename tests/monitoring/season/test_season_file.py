@@ -10,8 +10,9 @@ import pytest
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.infestation.records import Records
-from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
+from fieldmon.monitoring import Application, KeptMessage, MonitoringSettings, Season
 from fieldmon.monitoring.changes.earlier_settings import before_change
 from fieldmon.monitoring.changes.transactions import Store
 from fieldmon.monitoring.estimates.figures_of_day import progress
@@ -282,6 +283,29 @@ def test_settings_are_changed_by_settings_or_a_sentence(season):
     for settings, seen in ((None, season.settings), (season.settings, {"hours": 4})):
         with pytest.raises(SettingError, match="must be MonitoringSettings"):
             season.change(settings, seen)
+
+
+def test_what_numpy_calls_a_number_and_texts_of_days_come_into_a_season_as_pythons_own(season):
+    half = np.float32(0.5)
+    plain = MonitoringSettings(
+        BEGINS, time(7), Robot(hours=4), seed=3, prior=PriorSettings(background_chance=0.5),
+        team=(TeamMember("Ann", gate=(35.15, 30.36), starts_s=0.5),), harvest=on(60),
+    )  # fmt: skip
+    same = MonitoringSettings(
+        str(BEGINS), "07:00", Robot(hours=np.int64(4)), seed=np.int64(3),
+        prior=PriorSettings(background_chance=half), harvest=np.datetime64(on(60)),
+        team=[TeamMember("Ann", gate=np.array([35.15, 30.36]), starts_s=half)],
+    )  # fmt: skip
+    assert same == plain
+    season.change(same, season.settings)
+    season.treat(BEGINS, half, application=Application(
+        "Soap", waiting_days=np.int64(3), irac_groups=["6"], began="06:00",
+    ))  # fmt: skip
+    again = Season(season.path)
+    assert again.settings == plain
+    (kept,) = again.treatments()
+    assert kept.application == Application("Soap", None, waiting_days=3, irac_groups=("6",),
+                                           began=time(6))  # fmt: skip
 
 
 def test_a_season_of_the_library_takes_what_its_pest_says(tmp_path):

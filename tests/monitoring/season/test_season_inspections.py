@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from fieldmon.errors import ContradictionError, ObservationError, SettingError
+from fieldmon.errors import ContradictionError, ImportDoubt, ObservationError, SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring.estimates.verifying import check_against_log
-from tests.monitoring.seasons import BEGINS, some_results
+from tests.monitoring.seasons import BEGINS, clock_on, on, some_results
 
 
 def test_the_same_results_twice_change_nothing(season):
@@ -45,6 +45,20 @@ def test_missing_texts_of_pandas_are_none_and_are_filled_in_like_them(season):
     with season.store.reading() as db:
         kept = db.execute("SELECT who, notes FROM inspections").fetchall()
     assert kept == [("Ann", ""), ("Ben", "ok")] * 2
+
+
+def test_what_was_found_on_a_day_that_has_not_come_is_doubted_once(season, monkeypatch):
+    clock_on(monkeypatch, 3)
+    season.record(Inspections.of([2], [CLEAN], on(3)))
+    later = Inspections.of([3, 4], [FOUND, CLEAN], [on(3), "2028-04-09"])
+    for record, told in ((season.record, later), (season.record_instead, later.take([1]))):
+        with pytest.warns(ImportDoubt, match=f"2028-04-09 has not: it is {on(3)} on the") as said:
+            record(told)
+        assert [one.filename for one in said] == [__file__]
+        season.record(told)  # it is known, and was doubted
+        season.undo()
+    clock_on(monkeypatch, -1)  # a season that has not begun is a rehearsal
+    season.record(later)
 
 
 def test_a_find_that_counts_0_is_refused(season):

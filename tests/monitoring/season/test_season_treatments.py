@@ -149,6 +149,17 @@ def test_what_is_recorded_again_is_known_whatever_the_label_says_by_then(season)
     assert check_against_log(season) == ()
 
 
+def test_a_product_named_beside_the_application_is_its_own_with_the_waits_of_its_label(season):
+    season.keep_labels([LABEL])
+    season.treat(BEGINS, 0.9, product="Acarol", application=Application(operator="Bo"))
+    season.treat(on(1), 0.9, product="ACAROL", application=Application("Acarol"))
+    with pytest.raises(SettingError, match="one product, but it is with 'Soap', and its applicat"):
+        season.treat(on(2), 0.9, product="Soap", application=Application("Acarol"))
+    kept = [one.application for one in season.treatments()]
+    assert [(one.product, one.operator) for one in kept] == [("Acarol", "Bo"), ("Acarol", "")]
+    assert {(one.waiting_days, one.reentry_hours) for one in kept} == {(7, 12.0)}
+
+
 def test_of_a_product_that_is_asked_about_the_wait_is_not_that_of_one_sprayed_that_day(season):
     every = np.ones(len(season.plot.grid), bool)
     season.treat(BEGINS, 0.9, application=Application("Acarol", waiting_days=7))

@@ -83,7 +83,7 @@ def test_of_a_member_all_is_told_that_is_not_usual():
     late = TeamMember("Ann", slow, (35.1, 30.25), 900.0)
     assert worker_in_words(late) == (
         "Ann 4 h, 30 s a plant, 4 km/h, finds 69 %, row changes, turns and stops 8, 2 and 5 s, "
-        "width 0.5 m, begins 15 min later, gate 35.100000, 30.250000"
+        "on foot yes, width 0.5 m, begins 15 min later, gate 35.100000, 30.250000"
     )
     said = taken_back(replace(FIRST, team=(late,)), replace(FIRST, team=(ANN,)))
     assert "gate 35.100000, 30.250000 (now Ann 4 h" in said

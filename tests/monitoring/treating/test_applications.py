@@ -38,7 +38,7 @@ def test_what_cannot_be_is_refused(wrong):
 
 @pytest.mark.parametrize(
     "said",
-    [{"product": 3}, {"operator": None}, {"reason": 10**30}, {"began": "8:30"}, {"ended": 8.5}],
+    [{"product": 3}, {"operator": None}, {"reason": 10**30}, {"began": "eight"}, {"ended": 8.5}],
 )
 def test_what_is_said_of_a_treatment_is_of_its_kind(said):
     (name,) = said

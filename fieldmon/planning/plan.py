@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from datetime import date, datetime, time
 from types import NoneType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -217,7 +217,8 @@ def plan_day(
     given = Records.none() if records is None else records
     day = np.datetime64(starts.date(), "D")
     warn_of_left_out(given, day, plot.field)
-    today = first_day(plot, given, day, plans, risk)
+    held: Any = risk  # to its kind where it becomes chances
+    today = first_day(plot, given, day, plans, held)
     if not len(today.route):
         raise SettingError(
             worded(

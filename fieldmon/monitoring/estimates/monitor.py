@@ -497,7 +497,7 @@ class MonitorDay(AskedDay):
         return plant_to_inspect(self._scene.grid, int(stops.plant[k]), arrive_s, *long)
 
 
-def _first_chance(plot: Plot, chance: NDArray[np.float64] | None) -> NDArray[np.float64]:
+def _first_chance(plot: Plot, chance: Column | None) -> NDArray[np.float64]:
     if chance is None:
         none, day = Records.none(), np.datetime64(local_clock(plot.field).today())
         return prior_chance(plot.grid, plot.field, none, day, PriorSettings())

@@ -618,7 +618,7 @@ def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before
     if before:
         typer.echo(
             f"This is since it went on: {counted(before, 'inspection')} of the day before that "
-            "are in the season only."
+            "are in the season."
         )
     if options.output is None:
         return

@@ -95,7 +95,7 @@ def test_a_day_of_a_season_is_one_batch_and_is_not_driven_twice(run, short):
     code, out, _, _ = run("drive", short, "--date", BEGINS, "--made-up")
     assert code == 0
     assert "goes on after plant" in out
-    assert f"{batch.rows} inspections of the day before that are in the season only" in out
+    assert f"{batch.rows} inspections of the day before that are in the season." in out
     assert Season(short).batches() == (batch,)
 
 

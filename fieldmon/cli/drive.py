@@ -280,10 +280,10 @@ def _season(options: DriveOptions, file: Path) -> None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
         _tell_plan(goes_on=today.goes_on)
     before = season.contents([today.batch])[today.batch].n if today.batch is not None else 0
-    so_far = DrivenDay()
+    to, so_far = _next_part(options) if before else options, DrivenDay()
 
     def tables(*, stopped: bool) -> None:
-        _write(so_far, on, options, _name(options), before)
+        _write(so_far, on, to, _name(options), before)
         _tell_replanned(today.replanned - 1)
         if stopped:
             _tell_stopped(season, on, today.batch)
@@ -292,7 +292,7 @@ def _season(options: DriveOptions, file: Path) -> None:
 
         def bag() -> None:
             begins = _begins(season, on, today.begun_s)
-            _write_bag((recording, so_far), begins, options, goes_on=before > 0)
+            _write_bag((recording, so_far), begins, to)
 
         with _written(bag, tables), _home_when_told(robot, so_far, options.serial):
             if told := time_results(today, grid_clock(season.plot.grid), _live(robot)):
@@ -371,6 +371,7 @@ def _team_day(
         typer.echo(f"{on} goes on (batch {today.batch}).")
         _tell_plan(goes_on=today.goes_on)
     before = {one.name: len(season.worked(on, one.name)) for one in today.robots}
+    own |= {name: _next_part(own[name]) for name, n in before.items() if n}
     recordings = {
         one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
         for one in today.robots
@@ -388,8 +389,7 @@ def _team_day(
             begun_s = begun[name].begun_s
             planned_s = season.begun_s(on, name) if begun_s is None else begun_s
             begins = _begins(season, on, planned_s)
-            noted = recordings[name], begun[name]
-            _write_bag(noted, begins, own[name], goes_on=before[name] > 0)
+            _write_bag((recordings[name], begun[name]), begins, own[name])
     missing = dict.fromkeys(each.broken for each in driven.values() if each.broken)
     _tell_replanned(today.replanned - 1)
     if today.stops:
@@ -488,32 +488,39 @@ def _begins(season: Season, on: date, begun_s: float) -> datetime:
     return local_clock(season.plot.field).moment(begins.date(), begins.time())
 
 
-def _write_bag(
-    noted: tuple[Recording, DrivenDay],
-    begins: datetime,
-    options: DriveOptions,
-    *,
-    goes_on: bool = False,
-) -> None:
-    """Write the bag, if asked for: of a day that goes on, beside that of what was driven before."""
+def _write_bag(noted: tuple[Recording, DrivenDay], begins: datetime, options: DriveOptions) -> None:
+    """Write the bag, if asked for."""
     if options.bag is None:
         return
     from fieldmon.drive.bag import write_bag
 
-    to = _next_part(options.bag, Path.exists) if goes_on else options.bag
     recording, driven = noted
     recording.end(driven)
-    bag, *layouts = write_bag(recording, begins, to)
+    bag, *layouts = write_bag(recording, begins, options.bag)
     beside = " and ".join(path.name for path in layouts)
     typer.echo(f"Bag written to {bag}; layouts beside it: {beside}")
 
 
-def _next_part(path: Path, is_there: Callable[[Path], bool]) -> Path:
-    """Return where what was driven since a day went on is written: beside what was before."""
-    to, part = path, 2
-    while is_there(to):
-        to, part = path.with_stem(f"{path.stem}-{part}"), part + 1
+def _next_part(options: DriveOptions) -> DriveOptions:
+    """Return where what is driven since a day went on is written: beside what was before.
+
+    Tables and bag go by one number.
+    """
+    to, part = options, 2
+    while any(file.exists() for file in (*_tables_of(to), to.bag) if file is not None):
+        output, bag = (
+            None if path is None else path.with_stem(f"{path.stem}-{part}")
+            for path in (options.output, options.bag)
+        )
+        to, part = replace(options, output=output, bag=bag), part + 1
     return to
+
+
+def _tables_of(options: DriveOptions) -> tuple[Path, ...]:
+    """Return the tables that are written: of the day, and of its stops."""
+    from fieldmon.drive.day_tables import stops_path
+
+    return () if options.output is None else (options.output, stops_path(options.output))
 
 
 @contextmanager
@@ -611,7 +618,7 @@ def _physics(options: DriveOptions, plot: Plot, worker: Robot) -> Physics | None
 def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before: int = 0) -> None:
     """Say what a day came to, and write its tables; `before` were inspected in an earlier run."""
     from fieldmon.compute.wording import counted
-    from fieldmon.drive.day_tables import day_table, in_words, stop_table, stops_path
+    from fieldmon.drive.day_tables import day_table, in_words, stop_table
 
     who = f"{name}, {on}" if options.serial == name else f"{on}"
     typer.echo(f"{who}: {in_words(driven)}")
@@ -624,22 +631,19 @@ def _write(driven: DrivenDay, on: date, options: DriveOptions, name: str, before
         return
     from fieldmon.io.atomic_write import write_whole
 
-    to = options.output
-    if before:
-        to = _next_part(to, lambda path: path.exists() or stops_path(path).exists())
+    to, stops = _tables_of(options)
     write_whole(to, day_table(driven, on, name, before))
-    write_whole(stops_path(to), stop_table(driven))
-    typer.echo(f"Written to {to} and {stops_path(to)}")
+    write_whole(stops, stop_table(driven))
+    typer.echo(f"Written to {to} and {stops}")
 
 
 def _refuse_written_over(season: Season | None, each: Collection[DriveOptions]) -> None:
     """Refuse files that cannot be written, and tables that would replace what was filled in."""
     from fieldmon.drive.bag import require_bag
-    from fieldmon.drive.day_tables import is_driven_table, stops_path
+    from fieldmon.drive.day_tables import is_driven_table
     from fieldmon.io.atomic_write import require_place
 
-    outputs = [one.output for one in each if one.output is not None]
-    files = [file for path in outputs for file in (path, stops_path(path))]
+    files = [file for one in each for file in _tables_of(one)]
     for file in files:
         require_place(file)
     for one in each:

@@ -20,7 +20,7 @@ def test_who_stops_waits_until_all_is_done_and_is_heard_then(name):
 
     before = signal.signal(one, stop)
     try:
-        with pytest.raises(KeyboardInterrupt), stops_wait():
+        with pytest.raises(KeyboardInterrupt), stops_wait():  # noqa: PT012 - that all is done
             signal.raise_signal(one)
             done.append(name)
         assert done == [name]

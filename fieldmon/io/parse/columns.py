@@ -92,9 +92,7 @@ def recognised(names: Iterable[str]) -> frozenset[str]:
 def plays_the_same(name: str, other: str) -> bool:
     """Return whether both names are known, and of one role."""
     own = plain(name)
-    return own in _ALL and any(
-        own in words and plain(other) in words for words in _PLAIN.values()
-    )
+    return own in _ALL and any(own in words and plain(other) in words for words in _PLAIN.values())
 
 
 def _is_numbered(name: str) -> bool:

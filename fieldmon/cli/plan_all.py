@@ -9,7 +9,9 @@ import signal
 import time
 from concurrent.futures import FIRST_COMPLETED, Executor, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import islice
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
@@ -19,6 +21,7 @@ import typer
 from fieldmon.cli.messages import assumed_in_words, tell_assumed_of_plots
 from fieldmon.cli.progress import progress
 from fieldmon.cli.season_files import refuse_unrecorded
+from fieldmon.cli.stopped import STOPPED_CODE
 from fieldmon.compute.cores import cores
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole
@@ -96,10 +99,16 @@ def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None 
     refuse_unrecorded(None, (day.folder / name for name in left))
     if len(left) < len(tasks):
         typer.echo(f"{len(tasks) - len(left)} of {len(tasks)} plots were planned already.")
+    plots_of = {name: task.plot.name for name, task in tasks.items()}
+    write = partial(_write, day.folder, plots_of, rows)
+    write()  # from now on routes of an earlier run are not those of its summary
     try:
-        _plan(left, rows, digests, day, workers or cores())
+        _plan(left, rows, digests, day, (workers or cores(), write))
+    except KeyboardInterrupt as end:
+        _tell_stopped(rows, tasks, day.folder)
+        raise SystemExit(STOPPED_CODE) from end  # what was written is said already
     finally:
-        _write(day.folder, tasks, rows)
+        write()
     _tell(rows, day.folder)
 
 
@@ -156,11 +165,15 @@ def _plan(
     rows: dict[str, Row],
     digests: dict[str, str],
     day: EstateDay,
-    workers: int,
+    how: tuple[int, Callable[[], None]],
 ) -> None:
-    """Plan tasks in worker processes, a few ahead of them, and keep `rows` and the disk current."""
+    """Plan tasks in worker processes, a few ahead of them, and keep `rows` and the disk current.
+
+    `how`: in so many processes, and what writes the summary.
+    """
     if not tasks:
         return
+    workers, write = how
 
     def keep(one: Future[Row]) -> None:
         # also those that end while a stop is on its way
@@ -176,7 +189,7 @@ def _plan(
                 one.result()
                 bar.update(1)
                 if time.monotonic() - saved > _EVERY_S:
-                    _write(day.folder, digests, rows)
+                    write()
                     saved = time.monotonic()
         except BrokenProcessPool as error:
             raise FileProblem(
@@ -205,14 +218,19 @@ def _ended(
     keep: Callable[[Future[Row]], None],
 ) -> Iterator[Future[Row]]:
     """Hand tasks to a pool, some ahead of it; yield each as it ends, `keep` hears of it before."""
+    from fieldmon.simulation.executor import ctrl_c_waits
+
     waiting = iter(tasks)
+    # a process may be started for each, and hears Ctrl-C before it is told to pass it by
+    starting = ctrl_c_waits if isinstance(pool, ProcessPoolExecutor) else nullcontext
 
     def more(n: int) -> set[Future[Row]]:
         handed: set[Future[Row]] = set()
-        for item in islice(waiting, n):
-            one = pool.submit(_work, *item)
-            one.add_done_callback(keep)
-            handed.add(one)
+        with starting():
+            for item in islice(waiting, n):
+                one = pool.submit(_work, *item)
+                one.add_done_callback(keep)
+                handed.add(one)
         return handed
 
     running = more(_AHEAD)
@@ -258,16 +276,15 @@ def _work(name: str, task: Task) -> Row:
     }
 
 
-def _write(folder: Path, order: Iterable[str], rows: dict[str, Row]) -> None:
+def _write(folder: Path, plots: dict[str, str], rows: dict[str, Row]) -> None:
+    """Write the summary: a line for each of the plots named, by the names of their files."""
     text = io.StringIO()
     table = csv.DictWriter(text, _COLUMNS)
     table.writeheader()
-    # no file is written for a plot that was refused
-    table.writerows(
-        _safe(rows[name] | ({"file": ""} if rows[name]["state"] == "refused" else {}))
-        for name in order
-        if name in rows
-    )
+    for name, plot in plots.items():
+        row = rows.get(name) or {"plot": plot, "state": "not planned"}
+        # no file is written for a plot that was refused
+        table.writerow(_safe(row | ({} if row["state"] == "planned" else {"file": ""})))
     # the mark at the beginning tells a spreadsheet that names may be in any script
     write_whole(folder / SUMMARY, text.getvalue().encode("utf-8-sig"))
 
@@ -277,6 +294,22 @@ def _safe(row: Row) -> Row:
     return {
         key: safe_cell(value) if isinstance(value, str) else value for key, value in row.items()
     }
+
+
+def _tell_stopped(rows: dict[str, Row], tasks: Iterable[str], folder: Path) -> None:
+    """Print what is finished of a run that somebody stopped, and which routes are of another."""
+    from fieldmon.compute.wording import counted
+
+    names = list(tasks)
+    n = sum(row["state"] == "planned" for row in rows.values())
+    said = f"{n} of {counted(len(names), 'plot')} planned; the same command goes on from there."
+    if old := [name for name in names if name not in rows and (folder / name).exists()]:
+        some = ", ".join([*old[:_NAMED], *["..."][: len(old) - _NAMED]])
+        said += (
+            f" Of an earlier run {'is' if len(old) == 1 else 'are'} still "
+            f"{counted(len(old), 'route')} in {folder}: {some}."
+        )
+    typer.echo(said, err=True)
 
 
 def _tell(rows: dict[str, Row], folder: Path) -> None:

@@ -305,10 +305,8 @@ def _tell_stopped(rows: dict[str, Row], tasks: Iterable[str], folder: Path) -> N
     said = f"{n} of {counted(len(names), 'plot')} planned; the same command goes on from there."
     if old := [name for name in names if name not in rows and (folder / name).exists()]:
         some = ", ".join([*old[:_NAMED], *["..."][: len(old) - _NAMED]])
-        said += (
-            f" Of an earlier run {'is' if len(old) == 1 else 'are'} still "
-            f"{counted(len(old), 'route')} in {folder}: {some}."
-        )
+        of_them = "is 1 route" if len(old) == 1 else f"are {len(old)} routes"
+        said += f" Of an earlier run there {of_them} still in {folder}: {some}."
     typer.echo(said, err=True)
 
 

@@ -222,7 +222,7 @@ def test_who_stops_another_day_reads_which_routes_are_of_the_day_before(
     assert code == 130
     assert "2 of 6 plots planned; the same command goes on from there." in err
     files = f"{before['Plot 3']}, {before['Plot 5']}."
-    assert f"Of an earlier run are still 2 routes in routes: {files}" in err
+    assert f"Of an earlier run there are 2 routes still in routes: {files}" in " ".join(err.split())
     assert "nothing was written" not in err
     assert [row["state"] for row in summary().values()] == ["planned"] * 2 + ["not planned"] * 4
     assert {row["file"] for row in summary().values()} == {before["Plot 1"], before["Plot 2"], ""}

@@ -266,6 +266,7 @@ MISTAKES = {
     "no geometry": (
         lambda _: fm.Plot.from_geopandas(gpd.GeoDataFrame({"a": [1]})), "which column holds",
     ),
+    "a file as a frame": (lambda _: fm.read_plot(pd.DataFrame()), 'frame.to_csv("table.csv"'),
     "a file as a number": (lambda _: fm.read_plot(3), "A file must be given by its path"),
     "a plot as text": (lambda _: fm.read_records("a.csv", near="x"), "A plot must be what"),
     "a season's robot": (lambda plot: fm.Season.create("s.gpkg", plot, robot=4), "a Robot, but"),

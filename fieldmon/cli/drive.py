@@ -20,7 +20,13 @@ from fieldmon.cli.drive_messages import (
 )
 from fieldmon.cli.drive_options import DriveOptions, Drives
 from fieldmon.cli.drive_team import drive_as_team
-from fieldmon.cli.driven_files import moment_begun, refuse_written_over, write_bag_of, write_tables
+from fieldmon.cli.driven_files import (
+    moment_begun,
+    next_part,
+    refuse_written_over,
+    write_bag_of,
+    write_tables,
+)
 from fieldmon.cli.files_to_plot import prepared
 from fieldmon.cli.messages import tell_assumed, tell_past_midnight
 from fieldmon.cli.option_groups import with_options
@@ -160,10 +166,10 @@ def _season(options: DriveOptions, file: Path) -> None:
         typer.echo(f"{on} goes on after plant {today.at} (batch {today.batch}).")
         tell_plan(goes_on=today.goes_on)
     before = season.contents([today.batch])[today.batch].n if today.batch is not None else 0
-    so_far = DrivenDay()
+    to, so_far = next_part(options) if before else options, DrivenDay()
 
     def tables(*, stopped: bool) -> None:
-        write_tables(so_far, on, options, options.name, before)
+        write_tables(so_far, on, to, options.name, before)
         tell_replanned(today.replanned - 1)
         if stopped:
             tell_stopped(season, on, today.batch)
@@ -172,7 +178,7 @@ def _season(options: DriveOptions, file: Path) -> None:
 
         def bag() -> None:
             begins = moment_begun(season, on, today.begun_s)
-            write_bag_of((recording, so_far), begins, options, goes_on=before > 0)
+            write_bag_of((recording, so_far), begins, to)
 
         with _written(bag, tables), _home_when_told(robot, so_far, options.serial):
             if told := time_results(today, grid_clock(season.plot.grid), _live(robot)):

@@ -9,7 +9,13 @@ import typer
 
 from fieldmon.cli.drive_messages import say, tell_left_out, tell_plan, tell_replanned, tell_stopped
 from fieldmon.cli.drive_options import Drives
-from fieldmon.cli.driven_files import moment_begun, refuse_written_over, write_bag_of, write_tables
+from fieldmon.cli.driven_files import (
+    moment_begun,
+    next_part,
+    refuse_written_over,
+    write_bag_of,
+    write_tables,
+)
 from fieldmon.cli.messages import tell_assumed, tell_past_midnight
 from fieldmon.cli.season_files import refuse_too_wide
 from fieldmon.cli.stopped import STOPPED_CODE
@@ -76,6 +82,7 @@ def _team_day(
         typer.echo(f"{on} goes on (batch {today.batch}).")
         tell_plan(goes_on=today.goes_on)
     before = {one.name: len(season.work(on, one.name).inspections) for one in today.robots}
+    own |= {name: next_part(own[name]) for name, n in before.items() if n}
     recordings = {
         one.name: Recording(today.member(one.name).aisles, one.robot, season.morning(on))
         for one in today.robots
@@ -93,8 +100,7 @@ def _team_day(
             begun_s = begun[name].begun_s
             planned_s = season.work(on, name).begun_s if begun_s is None else begun_s
             begins = moment_begun(season, on, planned_s)
-            noted = recordings[name], begun[name]
-            write_bag_of(noted, begins, own[name], goes_on=before[name] > 0)
+            write_bag_of((recordings[name], begun[name]), begins, own[name])
     missing = dict.fromkeys(each.broken for each in driven.values() if each.broken)
     tell_replanned(today.replanned - 1)
     if today.stops:

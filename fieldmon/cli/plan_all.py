@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
@@ -21,6 +22,7 @@ import typer
 from fieldmon.cli.messages import assumed_in_words, tell_assumed_of_plots
 from fieldmon.cli.progress import progress
 from fieldmon.cli.season_files import refuse_unrecorded
+from fieldmon.cli.stopped import STOPPED_CODE
 from fieldmon.compute.cores import cores
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.io.atomic_write import write_whole
@@ -36,6 +38,7 @@ from fieldmon.samplers.own import label_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from concurrent.futures import Future
+    from contextlib import AbstractContextManager
     from datetime import datetime
     from pathlib import Path
 
@@ -100,10 +103,16 @@ def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None 
     refuse_unrecorded(None, (day.folder / name for name in left))
     if len(left) < len(tasks):
         typer.echo(f"{len(tasks) - len(left)} of {len(tasks)} plots were planned already.")
+    plots_of = {name: task.plot.name for name, task in tasks.items()}
+    write = partial(_write, day.folder, plots_of, rows)
+    write()  # from now on routes of an earlier run are not those of its summary
     try:
-        _plan(left, rows, digests, day, workers or cores())
+        _plan(left, rows, digests, day, (workers or cores(), write))
+    except KeyboardInterrupt as end:
+        _tell_stopped(rows, tasks, day.folder)
+        raise SystemExit(STOPPED_CODE) from end  # what was written is said already
     finally:
-        _write(day.folder, tasks, rows)
+        write()
     _tell(rows, day.folder)
 
 
@@ -160,11 +169,17 @@ def _plan(
     rows: dict[str, Row],
     digests: dict[str, str],
     day: EstateDay,
-    workers: int,
+    how: tuple[int, Callable[[], None]],
 ) -> None:
-    """Plan tasks in worker processes, a few ahead of them, and keep `rows` and the disk current."""
+    """Plan tasks in worker processes, a few ahead of them, and keep `rows` and the disk current.
+
+    `how`: in so many processes, and what writes the summary.
+    """
     if not tasks:
         return
+    from fieldmon.simulation.executor import ctrl_c_waits
+
+    workers, write = how
 
     def keep(one: Future[Row]) -> None:
         # also those that end while a stop is on its way
@@ -173,6 +188,8 @@ def _plan(
             rows[row["file"]] = row | {"digest": digests[row["file"]]}
 
     pool, work = _pool(min(workers, len(tasks)), day) if len(tasks) > _FEW else _here(day)
+    # a process may be started for each, and hears Ctrl-C before it is told to pass it by
+    handing = ctrl_c_waits if isinstance(pool, ProcessPoolExecutor) else nullcontext
 
     def submit(name: str, task: Task) -> Future[Row]:
         return pool.submit(work, name, task)
@@ -180,11 +197,11 @@ def _plan(
     names, saved = list(tasks), time.monotonic()
     with progress("Planning", len(names)) as bar:
         try:
-            for one in _ended(submit, tasks.items(), keep):
+            for one in _ended(submit, tasks.items(), keep, handing):
                 one.result()
                 bar.update(1)
                 if time.monotonic() - saved > _EVERY_S:
-                    _write(day.folder, digests, rows)
+                    write()
                     saved = time.monotonic()
         except BrokenProcessPool as error:
             raise FileProblem(
@@ -211,16 +228,21 @@ def _ended(
     submit: Callable[[str, Task], Future[Row]],
     tasks: Iterable[tuple[str, Task]],
     keep: Callable[[Future[Row]], None],
+    handing: Callable[[], AbstractContextManager[None]],
 ) -> Iterator[Future[Row]]:
-    """Hand over tasks, some ahead; yield each as it ends, `keep` hears of it before."""
+    """Hand over tasks, some ahead; yield each as it ends, `keep` hears of it before.
+
+    Tasks are handed over within `handing`.
+    """
     waiting = iter(tasks)
 
     def more(n: int) -> set[Future[Row]]:
         handed: set[Future[Row]] = set()
-        for item in islice(waiting, n):
-            one = submit(*item)
-            one.add_done_callback(keep)
-            handed.add(one)
+        with handing():
+            for item in islice(waiting, n):
+                one = submit(*item)
+                one.add_done_callback(keep)
+                handed.add(one)
         return handed
 
     running = more(_AHEAD)
@@ -271,16 +293,15 @@ def _work(day: EstateDay, name: str, task: Task) -> Row:
     }
 
 
-def _write(folder: Path, order: Iterable[str], rows: dict[str, Row]) -> None:
+def _write(folder: Path, plots: dict[str, str], rows: dict[str, Row]) -> None:
+    """Write the summary: a line for each of the plots named, by the names of their files."""
     text = io.StringIO()
     table = csv.DictWriter(text, _COLUMNS)
     table.writeheader()
-    # no file is written for a plot that was refused
-    table.writerows(
-        _safe(rows[name] | ({"file": ""} if rows[name]["state"] == "refused" else {}))
-        for name in order
-        if name in rows
-    )
+    for name, plot in plots.items():
+        row = rows.get(name) or {"plot": plot, "state": "not planned"}
+        # no file is written for a plot that was refused
+        table.writerow(_safe(row | ({} if row["state"] == "planned" else {"file": ""})))
     # the mark at the beginning tells a spreadsheet that names may be in any script
     write_whole(folder / SUMMARY, text.getvalue().encode("utf-8-sig"))
 
@@ -290,6 +311,20 @@ def _safe(row: Row) -> Row:
     return {
         key: safe_cell(value) if isinstance(value, str) else value for key, value in row.items()
     }
+
+
+def _tell_stopped(rows: dict[str, Row], tasks: Iterable[str], folder: Path) -> None:
+    """Print what is finished of a run that somebody stopped, and which routes are of another."""
+    from fieldmon.compute.wording import counted
+
+    names = list(tasks)
+    n = sum(row["state"] == "planned" for row in rows.values())
+    said = f"{n} of {counted(len(names), 'plot')} planned; the same command goes on from there."
+    if old := [name for name in names if name not in rows and (folder / name).exists()]:
+        some = ", ".join([*old[:_NAMED], *["..."][: len(old) - _NAMED]])
+        of_them = "is 1 route" if len(old) == 1 else f"are {len(old)} routes"
+        said += f" Of an earlier run there {of_them} still in {folder}: {some}."
+    typer.echo(said, err=True)
 
 
 def _tell(rows: dict[str, Row], folder: Path) -> None:

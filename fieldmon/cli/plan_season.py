@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from datetime import datetime, time, timedelta
 from functools import cache
 from math import isfinite
@@ -27,10 +27,10 @@ from fieldmon.cli.season_files import (
 )
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
 from fieldmon.cli.times import clock, day, day_on
-from fieldmon.errors import SettingError
+from fieldmon.errors import FileProblem, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from datetime import date
     from pathlib import Path
 
@@ -112,8 +112,21 @@ def _plan_alone(
     tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
     ahead = with_forecast(today.route, lambda: season.forecast(on))
-    write_routes(ahead, options.output, season.settings.language)
-    write_chance_map(options.chance_map, season.plot, season.evening(on))
+    with _kept(season, on):
+        write_routes(ahead, options.output, season.settings.language)
+        write_chance_map(options.chance_map, season.plot, season.evening(on))
+
+
+@contextmanager
+def _kept(season: Season, on: date) -> Iterator[None]:
+    """Say that a season has the plan, though a file of it cannot be written."""
+    try:
+        yield
+    except FileProblem as error:
+        raise FileProblem(
+            f"{error} The plan of {on} is kept in {season.path.name}; of files, only those named "
+            "above were written."
+        ) from error
 
 
 def _tell_route(season: Season, on: date, today: DayPlan) -> None:
@@ -303,10 +316,11 @@ def _plan_team(
     tell_assumed(season.assumed(settings))
     _tell_detection(season, on)
     ahead = cache(lambda: season.forecast(on))
-    for member, today, paths in zip(team, days, files, strict=True):
-        route = with_forecast(today.route, ahead)
-        write_member(member.name, route, paths, season.settings.language)
-    write_chance_map(options.chance_map, season.plot, season.evening(on))
+    with _kept(season, on):
+        for member, today, paths in zip(team, days, files, strict=True):
+            route = with_forecast(today.route, ahead)
+            write_member(member.name, route, paths, season.settings.language)
+        write_chance_map(options.chance_map, season.plot, season.evening(on))
 
 
 def _tell_routes(

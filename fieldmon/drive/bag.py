@@ -12,7 +12,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.drive.bag_layouts import foxglove_layout, rviz_layout
 from fieldmon.errors import FieldmonError, FileProblem, SettingError
-from fieldmon.io.atomic_write import require_place, write_whole
+from fieldmon.io.atomic_write import require_place, why_not_written, write_whole
 from fieldmon.plot.clearance import half_canopy_m
 
 if TYPE_CHECKING:
@@ -66,15 +66,25 @@ def write_bag(recording: Recording, begins: datetime, to: Path) -> tuple[Path, P
     Raises
     ------
     FileProblem, SettingError
-        As `require_bag` does.
+        As `require_bag` does, and if there is no room.
     """
     require_bag(to)
     writer, store = _rosbags()
-    with working_folder() as folder:
-        inner = Path(folder) / "bag"
-        with writer(inner) as bag:
-            _Pen(bag, store, begins.timestamp()).write(recording)
-        data = next(inner.glob("*.mcap*")).read_bytes()
+    try:
+        with working_folder() as folder:
+            inner = Path(folder) / "bag"
+            with writer(inner) as bag:
+                _Pen(bag, store, begins.timestamp()).write(recording)
+            data = next(inner.glob("*.mcap*")).read_bytes()
+    except OSError as error:
+        raise FileProblem(
+            worded(
+                "{target} could not be written: there is no room for it in the folder for "
+                "temporary files ({value}). Make room, or name another folder in TMPDIR.",
+                target=to,
+                value=why_not_written(error),
+            )
+        ) from error
     layouts = to.with_suffix(".rviz"), to.with_suffix(".foxglove.json")
     write_whole(to, data)
     write_whole(layouts[0], rviz_layout())
@@ -270,7 +280,9 @@ def _filled(poses: Float) -> Float:
     long_s = np.diff(poses[:, 0])
     n = np.maximum(np.ceil(long_s / _FIX_S - 1e-9), 1).astype(int)
     k = np.repeat(np.arange(len(n)), n)
-    share = _FIX_S * (np.arange(len(k)) - np.repeat(np.cumsum(n) - n, n)) / long_s[k]
+    since_s = _FIX_S * (np.arange(len(k)) - np.repeat(np.cumsum(n) - n, n))
+    # two poses may be of one moment
+    share = np.divide(since_s, long_s[k], out=np.zeros(len(k)), where=long_s[k] > 0)
     between = poses[k] + share[:, None] * np.diff(poses, axis=0)[k]
     between[:, 3] = poses[k, 3]
     return np.concatenate([between, poses[-1:]])

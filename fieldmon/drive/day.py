@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fieldmon.compute.held_signals import stops_wait
 from fieldmon.compute.wording import counted
 from fieldmon.drive.errand import Errand
 from fieldmon.plot.travel import GATE, robot_clock, travel_s
@@ -217,11 +218,12 @@ def drive_day(
         visit = driver.visit(errand)
         charged_s = drive_s + stop.inspect_s
         driven_s = charged_s if visit.done_s is None else visit.done_s - since_s
-        if visit.there:
-            day.tell(visit.found, visit.done_s)
-        driven.stops.append(DrivenStop(stop, visit, charged_s, driven_s))
-        if watch is not None:
-            watch(driven.stops[-1], errand)
+        with stops_wait():  # or a season has a plant that tables and bag lack
+            if visit.there:
+                day.tell(visit.found, visit.done_s)
+            driven.stops.append(DrivenStop(stop, visit, charged_s, driven_s))
+            if watch is not None:
+                watch(driven.stops[-1], errand)
         if visit.stuck:
             return driven
     if robot.returns and driven.stops and day.at != GATE:

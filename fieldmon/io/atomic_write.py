@@ -81,8 +81,7 @@ def write_whole(path: str | Path, data: bytes) -> None:
     except OSError as error:
         raise FileProblem(
             worded(
-                "{target} could not be written ({value}); nothing was "
-                "changed. Make room or choose another place.",
+                "{target} could not be written ({value}). Make room or choose another place.",
                 target=target,
                 value=why_not_written(error),
             )

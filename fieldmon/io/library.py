@@ -479,13 +479,23 @@ def _how_read(
 def must_be_file(source: Any, what: str = "A file") -> None:  # noqa: ANN401 - anything
     """Raise `SettingError` unless this is a file: its path, or what was uploaded."""
     uploads = isinstance(source, tuple) and len(source)
+    frame = _written_as(source)
     for one in source if uploads else (source,):
         must_be(
             f"{what} must be given by its path", one, Upload if uploads else (str, Path, Upload),
-            'Give "estate.zip", or Path("estate.zip").',
+            frame or 'Give "estate.zip", or Path("estate.zip").',
         )  # fmt: skip
     if not uploads:
         must_be_name_of_file(what, source)
+
+
+def _written_as(source: Any) -> str:  # noqa: ANN401 - anything
+    """Return how a frame of pandas or GeoPandas is given; empty: it is none."""
+    if hasattr(source, "to_file"):
+        return 'Write it to a file first: frame.to_file("table.gpkg").'
+    if hasattr(source, "to_csv"):
+        return 'Write it to a file first: frame.to_csv("table.csv", index=False).'
+    return ""
 
 
 @contextmanager

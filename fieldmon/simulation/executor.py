@@ -114,7 +114,7 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator[Client]:
         with client:
             yield client
         return
-    with _ctrl_c_waits(), dask.config.set(_QUIET):
+    with ctrl_c_waits(), dask.config.set(_QUIET):
         local = LocalCluster(
             n_workers=workers or cores(),
             threads_per_worker=1,
@@ -126,7 +126,7 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator[Client]:
 
 
 @contextmanager
-def _ctrl_c_waits() -> Iterator[None]:
+def ctrl_c_waits() -> Iterator[None]:
     """Let Ctrl-C wait until workers have started; they themselves, who inherit this, never hear it.
 
     Whoever started them ends them.

@@ -57,7 +57,7 @@ def test_a_day_of_a_season_is_one_batch_and_is_not_driven_twice(run, short):
     code, out, _, _ = run("drive", short, "--date", BEGINS, "--made-up")
     assert code == 0
     assert "goes on after plant" in out
-    assert f"{batch.rows} inspections of the day before that are in the season only" in out
+    assert f"{batch.rows} inspections of the day before that are in the season." in out
     assert Season(short).batches() == (batch,)
 
 
@@ -92,12 +92,13 @@ def test_a_day_that_is_stopped_says_what_is_kept_and_writes_its_table(
     monkeypatch.setattr(ChargedRobot, "visit", visit)
     first = [tmp_path / name for name in ("day.mcap", "day.csv", "day.stops.csv")]
     held = [path.read_bytes() for path in first]
+    (tmp_path / "day-2.csv").write_text("of a run whose bag failed", encoding="utf-8")
     _, out, _, made = run(*words, "day.mcap")
     assert "follows what is left of the plan given out last" in out
     assert [path.read_bytes() for path in first] == held
-    second = {"day-2.mcap", "day-2.rviz", "day-2.foxglove.json", "day-2.csv", "day-2.stops.csv"}
+    second = {"day-3.mcap", "day-3.rviz", "day-3.foxglove.json", "day-3.csv", "day-3.stops.csv"}
     assert second <= {path.name for path in made}
-    assert table(tmp_path / "day-2.csv")[0]["stops_before"] == "3"
+    assert table(tmp_path / "day-3.csv")[0]["stops_before"] == "3"
 
 
 def test_a_day_past_midnight_says_so_and_writes_its_tables(run, season, tmp_path):

@@ -190,9 +190,11 @@ def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(
     os.kill(command.pid, signal.SIGINT)
     _, complaint = command.communicate(timeout=100)
     assert command.returncode == 130, complaint
-    assert complaint.endswith("Stopped; nothing was written that is not complete.\n")
-    half = summary("r")
-    assert 0 < len(half) < 24
+    assert "Traceback" not in complaint
+    half = [name for name, row in summary("r").items() if row["state"] == "planned"]
+    assert 0 < len(half) < 24 == len(summary("r"))
+    said = f"{len(half)} of 24 plots planned; the same command goes on from there.\n"
+    assert complaint.endswith(said)
     # as the stopped run did, but here: starting workers again takes longer than the plots do
     monkeypatch.setattr(plan_all, "_FEW", 24)
     code, said, err, _ = run("plan", "parcels.geojson", "--all", "-o", "r")
@@ -200,6 +202,33 @@ def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(
     assert f"{len(half)} of 24 plots were planned already" in said
     assert len(summary("r")) == 24
     assert all(row["state"] == "planned" for row in summary("r").values())
+
+
+def test_who_stops_another_day_reads_which_routes_are_of_the_day_before(
+    run, parcels, summary, monkeypatch
+):
+    words = ["plan", parcels, "--all", "-o", "routes", "--hours", 1, "--no-bound", "--date"]
+    assert run(*words, "2026-11-02")[0] == 0
+    before = {name: row["file"] for name, row in summary().items()}
+    work, left = plan_all._work, iter([True] * 2)
+
+    def stopped(*task):
+        if not next(left, False):
+            raise KeyboardInterrupt
+        return work(*task)
+
+    monkeypatch.setattr(plan_all, "_work", stopped)
+    code, _, err, _ = run(*words, "2026-11-03")
+    assert code == 130
+    assert "2 of 6 plots planned; the same command goes on from there." in err
+    files = f"{before['Plot 3']}, {before['Plot 5']}."
+    assert f"Of an earlier run there are 2 routes still in routes: {files}" in " ".join(err.split())
+    assert "nothing was written" not in err
+    assert [row["state"] for row in summary().values()] == ["planned"] * 2 + ["not planned"] * 4
+    assert {row["file"] for row in summary().values()} == {before["Plot 1"], before["Plot 2"], ""}
+    monkeypatch.setattr(plan_all, "_work", work)
+    # the routes of the day before that are gone are not taken for those
+    assert "already" not in run(*words, "2026-11-02")[1]
 
 
 @pytest.mark.parametrize("words", [["--feature", "1"], ["--gate", "5,45"]])

@@ -1,7 +1,9 @@
 """`fieldmon plan` with a season: from plan to status, and again."""
 
 import csv
+import errno
 import json
+import os
 from datetime import date, time, timedelta
 
 import numpy as np
@@ -11,6 +13,7 @@ from fieldmon.compute.wording import written
 from fieldmon.errors import ImportDoubt
 from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.days import kept_routes
 from fieldmon.monitoring.days.day_ahead import WorkPart, route_ahead, work_hours
 from fieldmon.monitoring.phones import scouts
 from fieldmon.monitoring.treating.applications import Application
@@ -46,6 +49,29 @@ def test_a_sheet_to_print_is_in_the_language_of_the_season(run, season, tmp_path
     sheet = (tmp_path / "sheet.html").read_text()
     assert '<html lang="es" dir="ltr"' in sheet
     assert "<th>hilera</th>" in sheet
+
+
+def test_where_a_route_cannot_be_written_it_is_said_that_the_season_has_the_plan(
+    run, season, monkeypatch
+):
+    sync, left = os.fsync, iter([True])
+
+    def full(file):
+        if not next(left, False):
+            raise OSError(errno.ENOSPC, "No space left on device")
+        sync(file)
+
+    monkeypatch.setattr(os, "fsync", full)
+    words = "--date", BEGINS, "--no-bound", "-o", "a.csv", "-o", "b.geojson"
+    code, out, err, made = run("plan", season, *words)
+    assert code == 2
+    assert {path.name for path in made} == {"a.csv"}
+    assert "Route written to a.csv" in out
+    err = " ".join(err.split())
+    assert "b.geojson could not be written (No space left on device). Make room" in err
+    assert f"The plan of {BEGINS} is kept in {season.name}; of files, only those named" in err
+    with Season(season).store.reading() as db:
+        assert len(kept_routes.days(db)) == 1
 
 
 def test_command_report_and_phone_say_the_same_route_and_hours_after_any_record(

@@ -1,5 +1,6 @@
 """Bags, read back by another reader than the one that wrote them."""
 
+import errno
 import math
 from datetime import UTC, datetime, timedelta
 from itertools import pairwise
@@ -9,11 +10,12 @@ import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
+from fieldmon.drive import bag
 from fieldmon.drive.bag import read_bag, write_bag
 from fieldmon.drive.charged_robot import ChargedRobot
 from fieldmon.drive.day import drive_day
 from fieldmon.drive.recording import Recording
-from fieldmon.errors import SettingError
+from fieldmon.errors import FileProblem, SettingError
 from fieldmon.monitoring.estimates.monitor import Monitor
 
 BEGINS = datetime(2026, 4, 6, 3, tzinfo=UTC)
@@ -102,6 +104,7 @@ def test_fixes_are_those_that_the_robot_had_and_it_turns_as_it_did(plot, robot, 
     for k in range(50):
         made.track.add(0.1 * k, 0.05 * k, 0.0, 3.1 + 0.01 * k)  # backwards, and over half a turn
         made.track.fix(0.1 * k, 0.05 * k + 7.0, 5.0)
+    made.track.add(4.9, 2.45, 0.0, 3.59)  # of the same moment
     path, *_ = write_bag(made, BEGINS, tmp_path / "day.mcap")
     got = {topic: [] for topic in ("/gps/fix", "/odom")}
     for topic, _, message in read_bag(path, tuple(got)):
@@ -139,6 +142,15 @@ def test_four_hours_of_driving_are_less_than_ten_megabytes(plot, robot, tmp_path
         recording.track.add(0.1 * k, x, y, yaw)
     path, *_ = write_bag(recording, BEGINS + timedelta(hours=3), tmp_path / "long.mcap")
     assert path.stat().st_size < 10e6 / 16
+
+
+def test_a_bag_for_which_is_no_room_is_named(recording, tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.EFBIG, "File too large")
+
+    monkeypatch.setattr(bag._Pen, "write", full)
+    with pytest.raises(FileProblem, match=r"day\.mcap could not be written.*File too large"):
+        write_bag(recording, BEGINS, tmp_path / "day.mcap")
 
 
 def test_a_bag_of_another_name_is_refused(recording, tmp_path):

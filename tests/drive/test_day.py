@@ -1,10 +1,12 @@
 """The loop: asked, driven, told, and what the day comes to."""
 
+import signal
+
 import numpy as np
 import pytest
 
 from fieldmon.drive.charged_robot import ChargedRobot
-from fieldmon.drive.day import drive_day
+from fieldmon.drive.day import DrivenDay, drive_day
 from fieldmon.drive.day_tables import in_words
 from fieldmon.drive.errand import Visit
 
@@ -69,6 +71,22 @@ def test_whoever_watches_is_told_of_each_stop_once_it_is_recorded(monitor, plot,
         )
     assert [number for _, _, number in seen] == [told for _, told, _ in seen]
     assert any(stop.visit.found for stop, _, _ in seen)
+
+
+def test_who_stops_the_drive_waits_until_a_told_plant_is_noted_too(monitor, plot, robot):
+    so_far, seen = DrivenDay(), []
+    with monitor.day() as day:
+        tell = day.tell
+
+        def tell_and_stop(*result):
+            tell(*result)
+            signal.raise_signal(signal.SIGINT)
+
+        day.tell = tell_and_stop
+        who = robot, ChargedRobot(lambda stop: False)  # noqa: ARG005
+        with pytest.raises(KeyboardInterrupt):
+            drive_day(day, plot.aisles.for_robot(robot), who, lambda *one: seen.append(one), so_far)
+        assert len(day.plants) == len(so_far.stops) == len(seen) == 1
 
 
 class Crawls(Slow):

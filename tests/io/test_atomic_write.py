@@ -27,7 +27,7 @@ def test_on_a_full_disk_the_old_file_stays_and_nothing_else(tmp_path, monkeypatc
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(FileProblem, match=r"No space left on device\); nothing was changed"):
+    with pytest.raises(FileProblem, match=r"No space left on device\)\. Make room"):
         write_whole(path, b"two")
     assert path.read_bytes() == b"one"
     assert list(tmp_path.iterdir()) == [path]

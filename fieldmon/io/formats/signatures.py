@@ -86,8 +86,8 @@ _MAGIC = (
 )
 _INDEX = worded("is only an index of a shapefile. Choose the .shp with it, or all of them zipped")
 _PICTURE = worded(
-    "is a picture without a position on the earth. Choose a GeoTIFF, or the plot as GeoPackage or "
-    "shapefile"
+    "is a picture, and positions in photos are not read. Choose a GeoTIFF, a table of records with "
+    "positions, or the plot as GeoPackage or shapefile"
 )
 _REFUSED_MAGIC = (
     (b"\x1f\x8b", worded("is packed with gzip. Unpack it and choose the file inside")),
@@ -216,6 +216,14 @@ def _text_kind(head: bytes, name: str) -> FileKind:
     for pattern, kind in _TEXTS:
         if pattern.match(text):
             return kind
+    if _is_wide_text(text):
+        raise FileProblem(
+            worded(
+                "{name} seems to be text in UTF-16 without the mark that says so. Save it as "
+                'UTF-8, in a spreadsheet as "CSV UTF-8".',
+                name=name,
+            )
+        )
     if b"\x00" in text:
         raise FileProblem(
             worded(
@@ -223,6 +231,19 @@ def _text_kind(head: bytes, name: str) -> FileKind:
             )
         )
     return FileKind.TABLE
+
+
+def _is_wide_text(head: bytes) -> bool:
+    """Return whether bytes are Latin letters of two bytes each, of which one is empty."""
+    pairs = head[: len(head) // 2 * 2]
+    for empty, letters in ((pairs[1::2], pairs[::2]), (pairs[::2], pairs[1::2])):
+        if len(empty) > _FEW_LETTERS and not letters.count(0):
+            # a few letters may be Hebrew or Arabic
+            return 2 * empty.count(0) > len(empty)
+    return False
+
+
+_FEW_LETTERS = 8
 
 
 def _xml_kind(start: bytes, name: str) -> FileKind:

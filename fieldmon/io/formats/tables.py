@@ -18,7 +18,7 @@ from fieldmon.io.formats.split_degrees import names_degrees, with_degrees
 from fieldmon.io.formats.wkt import with_shapes
 from fieldmon.io.formats.workbooks import sheet_rows
 from fieldmon.io.import_report import ImportMessage, doubtful, dropped, seen
-from fieldmon.io.parse.columns import recognised
+from fieldmon.io.parse.columns import plays_the_same, recognised
 from fieldmon.io.parse.dates import dates
 from fieldmon.io.parse.degrees import degrees
 from fieldmon.io.parse.quotes import refuse_open_quote
@@ -115,7 +115,8 @@ def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer
     rows, head = _headed(rows, name, header)
     limits.check("columns", len(rows[head]), limits.COLUMNS, name)
     names = _names(rows[head])
-    body = _body(rows, head)
+    lines = _body(rows, head)
+    body = [row for row in lines if not _repeats_names(row, rows[head])]
     if not body:
         raise FileProblem(
             worded("{name} must hold records below its column names, but holds none.", name=name)
@@ -123,6 +124,7 @@ def _table(rows: list[list[Any]], name: str, header: str | None = None) -> Layer
     messages = (
         *_about_header(name, len(rows[0]), head, header),
         *_about_repeated_names(rows[head]),
+        *_about_repeated_lines(len(lines) - len(body)),
         *_about_longer(body, len(names)),
     )
     above = "\n".join(", ".join(text(v) for v in row) for row in rows[:head])
@@ -169,6 +171,52 @@ def _about_repeated_names(cells: list[Any]) -> tuple[ImportMessage, ...]:
     return (doubtful(said),)
 
 
+def _in_one_line(rows: list[list[Any]], head: int) -> tuple[list[list[Any]], int]:
+    """Return rows, and which names the columns: two lines in one where both name some of them.
+
+    So people write who merge cells: a position, and below it lat and lon.
+    """
+    for upper in (head, head - 1):
+        above, below = (rows[k] if 0 <= k < len(rows) else [] for k in (upper, upper + 1))
+        pairs = [(text(a), text(b)) for a, b in zip_longest(above, below)]
+        lacks = any(any(pair) and not pair[head - upper] for pair in pairs)
+        if lacks and _names_some(above) and _names_some(below):
+            return [*rows[:upper], [b or a for a, b in pairs], *rows[upper + 2 :]], upper
+    return rows, head
+
+
+def _names_some(row: list[Any]) -> bool:
+    """Return whether a row holds known names of columns, and no data."""
+    if len(recognised(map(text, row))) < 2 or _is_remark(row):
+        return False
+    return not any(_kind(value) in _DATA for value in row)
+
+
+def _repeats_names(row: list[Any], names: list[Any]) -> bool:
+    """Return whether a line below the column names says them once more, or others for the same."""
+    same = others = 0
+    for value, name in zip_longest(row, names[: len(row)]):
+        if not _is_filled(value):
+            continue
+        if text(value).casefold() == text(name).casefold():
+            same += 1
+        elif isinstance(value, str) and plays_the_same(value, text(name)):
+            others += 1
+        else:
+            return False
+    return same > 1 or (same + others > 1 and (same > 0 or others > 2))
+
+
+def _about_repeated_lines(n: int) -> tuple[ImportMessage, ...]:
+    """Return what was left out of lines that say the column names once more."""
+    if not n:
+        return ()
+    said = worded(
+        "{n} {n:line that repeats|lines that repeat} the column names {n:was|were} left out.", n=n
+    )
+    return (dropped(said),)
+
+
 def _about_longer(body: list[list[Any]], n_columns: int) -> tuple[ImportMessage, ...]:
     """Return what was left out of lines with more cells than there are columns."""
     longer = sum(len(row) > n_columns and any(map(text, row[n_columns:])) for row in body)
@@ -197,6 +245,7 @@ def _headed(rows: list[list[Any]], name: str, header: str | None) -> tuple[list[
                 )
             )
         head = found
+        rows, head = _in_one_line(rows, head)
         if header is None and looks_like_data(rows[head], rows[head + 1 :]):
             shown = ", ".join(text(v) for v in rows[head][:5] if text(v))
             raise ChoiceNeeded(

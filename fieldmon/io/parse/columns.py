@@ -89,6 +89,12 @@ def recognised(names: Iterable[str]) -> frozenset[str]:
     return frozenset(name for name in names if plain(name) in _ALL or _is_numbered(name))
 
 
+def plays_the_same(name: str, other: str) -> bool:
+    """Return whether both names are known, and of one role."""
+    own = plain(name)
+    return own in _ALL and any(own in words and plain(other) in words for words in _PLAIN.values())
+
+
 def _is_numbered(name: str) -> bool:
     """Return whether a column numbers rows or plants by its name."""
     own = plain(name)

@@ -86,6 +86,8 @@ class DatedColumn(NamedTuple):
     n_serial: int
     #: cells that could be day or month first, in a column that has certain ones of both kinds
     n_mixed: int = 0
+    #: in such a column, how many are certain to be day first, and one of them; and month first
+    sure: tuple[tuple[int, str], ...] = ()
 
     @property
     def broken(self) -> tuple[str, ...]:
@@ -98,7 +100,7 @@ def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> DatedC
 
     The order of day and month is the one told; else the only one that fits all of the column. Where
     both fit, `is_ambiguous` is true and the days are read day first; where neither does, `n_mixed`
-    says how many cells could be either, read day first too.
+    says how many cells could be either, read day first too, and `sure` which are of one kind.
     """
     cells = [text(v) for v in column]
     distinct = sorted(set(cells))
@@ -115,7 +117,12 @@ def dates(column: NDArray[np.object_], order: DateOrder | None = None) -> DatedC
     serial = sum(known[c] is not None and _is_serial(c) for c in cells)
     either = set() if day_first or month_first or order else {c for c in distinct if _either(c)}
     mixed = sum(c in either for c in cells)
-    return DatedColumn(days, used if numeric else None, ambiguous, unread, serial, mixed)
+    kinds: tuple[tuple[int, str], ...] = ()
+    if not (day_first or month_first or order):
+        which = {c: _beyond_12(c) for c in distinct}
+        sure = [[c for c in cells if which[c] == k] for k in (0, 1)]
+        kinds = tuple((len(one), one[0]) for one in sure if one)
+    return DatedColumn(days, used if numeric else None, ambiguous, unread, serial, mixed, kinds)
 
 
 def is_written_as_day(cell: str) -> bool:
@@ -140,6 +147,13 @@ def _either(cell: str) -> bool:
         return False
     first, second = int(found.group(1)), int(found.group(2))
     return first <= 12 and second <= 12 and first != second
+
+
+def _beyond_12(cell: str) -> int | None:
+    """Return which number of a date alone can be no month: its first (0) or second; None: none."""
+    found = _NUMERIC.match(_date_alone(cell))
+    beyond = [] if not found else [k for k in (0, 1) if int(found.group(k + 1)) > 12]
+    return beyond[0] if len(beyond) == 1 else None
 
 
 def dates_of_parts(year: Float, month: Float, day: Float) -> DatedColumn:

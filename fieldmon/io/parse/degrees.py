@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fieldmon.io.formats.layer import text
-from fieldmon.io.parse.values import decimal_mark, number, plain_numbers
+from fieldmon.io.parse.values import decimal_mark, is_missing, number, plain_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
 
 _HEMISPHERE = re.compile(r"^([NSEW])\s*(.*)$|^(.*?)\s*([NSEW])$", re.IGNORECASE)
+_BEGINS_A_NUMBER = re.compile(r"\s*[-+]?[.,]?\d")
 _DMS = re.compile(
     r"^([-+]?\d{1,3})\s*(?:°|º|d|deg|:|\s)\s*"
     r"(\d{1,2}(?:[.,]\d+)?)\s*(?:'|′|’|m|min|:|\s|$)\s*"
@@ -98,9 +100,21 @@ def all_degrees(
 
 
 def hemispheres(cells: Iterable[str]) -> set[str]:
-    """Return the letters N, S, E, W with which cells say where they lie."""
+    """Return the letters N, S, E, W with which cells of numbers say where they lie."""
     found = (_HEMISPHERE.match(cell.strip()) for cell in set(cells))
-    return {(m.group(1) or m.group(4)).upper() for m in found if m}
+    # "lon" and "north" are words
+    return {
+        (m.group(1) or m.group(4)).upper()
+        for m in found
+        if m and _BEGINS_A_NUMBER.match(m.group(2) or m.group(3) or "")
+    }
+
+
+def is_lettered(cells: Iterable[str], letters: str) -> bool:
+    """Return whether most cells that hold something have one of these letters N, S, E, W."""
+    held = Counter(cell for cell in cells if not is_missing(cell))
+    lettered = sum(n for cell, n in held.items() if hemispheres([cell]) & set(letters))
+    return 2 * lettered > held.total()
 
 
 class CellPositions(NamedTuple):

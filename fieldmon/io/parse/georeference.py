@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -431,4 +432,35 @@ def _distance(
                 **told,
             )
         return [doubtful(said, remedy=_exchange(crs, options))]
+    if (other := _nearer_zone(lonlat, crs, options.near)) is not None:
+        zone, there = other
+        said = worded(
+            "It lies {away:.0f} km from the plot or place nearby, but {there:.0f} km from it in "
+            "UTM zone {zone}.",
+            away=away,
+            there=there,
+            zone=zone[-2:] + ("S" if zone.startswith("EPSG:327") else "N"),
+        )
+        return [doubtful(said, None, Remedy("crs", zone, worded("Read as {name}", name=zone)))]
     return [doubtful(worded("It lies {away:.0f} km from the plot or place nearby.", away=away))]
+
+
+# UTM on WGS 84, north and south, and on ETRS89: the last two digits are the zone
+_UTM_CODE = re.compile(r"EPSG:(32[67]|258)\d\d")
+_ZONE_DEG = 6.0
+
+
+def _nearer_zone(
+    lonlat: NDArray[np.float64], crs: pyproj.CRS, near: tuple[float, float]
+) -> tuple[str, float] | None:
+    """Return the code of the UTM zone in which positions would lie at a place, and how far off."""
+    zone, code = utm_zone(crs), code_of(crs)
+    if zone is None or not _UTM_CODE.fullmatch(code):
+        return None
+    here = int((near[0] + 180.0) // _ZONE_DEG) + 1
+    others = [one for one in (here, here - 1, here + 1) if one != zone and 1 <= one <= 60]
+    # coordinates of all zones are alike, six degrees further
+    step = np.array([_ZONE_DEG, 0.0])
+    away = {one: _nearest_km(lonlat + (one - zone) * step, near) for one in others}
+    best = min(away, key=lambda one: away[one])
+    return (f"{code[:-2]}{best:02d}", away[best]) if away[best] <= _FAR_KM else None

@@ -30,8 +30,8 @@ from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.degrees import (
     all_degrees,
     halves,
-    hemispheres,
     is_dotted,
+    is_lettered,
     positions_in_cells,
 )
 from fieldmon.io.parse.geometry import geometry_kinds
@@ -240,8 +240,9 @@ def _letters_are_crossed(layer: Layer, names: tuple[str, ...]) -> bool:
     columns = [layer.column(name) for name in names]
     if any(plain_numbers(column) is not None for column in columns):
         return False
-    lon, lat = (hemispheres(text(v) for v in column) for column in columns)
-    return bool(lon | lat) and lon <= set("NS") and lat <= set("EW")
+    lon, lat = ([text(v) for v in column] for column in columns)
+    crossed = is_lettered(lon, "NS") or is_lettered(lat, "EW")
+    return crossed and not is_lettered(lon, "EW") and not is_lettered(lat, "NS")
 
 
 def _order_of(is_certain: bool, name: str) -> list[ImportMessage]:  # noqa: FBT001 - one caller

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import joined, worded
+from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import (
     ImportMessage,
     Remedy,
@@ -33,16 +34,29 @@ def read_day_first() -> ImportMessage:
     return guessed(said, None, Remedy("date_order", "mdy", worded("Read month first")))
 
 
-def mixed_dates(read: DatedColumn, where: str | None = None) -> list[ImportMessage]:
-    """Return a doubt where a column has dates that are certain in one order, and in the other."""
-    if not read.n_mixed:
-        return []
-    said = worded(
-        "Dates stand day first and month first in one column: {n} that could be either were read "
-        "day first. Write them all as 2026-11-18.",
-        n=read.n_mixed,
+def refuse_mixed(read: DatedColumn, name: str) -> None:
+    """Raise `ChoiceNeeded` where dates of `name` are certain in one order, and others in another.
+
+    Those that could be either would be guessed, and the others of one order be lost.
+    """
+    if len(read.sure) < 2:
+        return
+    (n_day, day), (n_month, month) = read.sure
+    raise ChoiceNeeded(
+        worded(
+            "Dates must stand in one order, but those of {name!r} do not: {n_day} {n_day:is|are} day "
+            "first ({day}), {n_month} month first ({month}), and {n} could be either. Write them "
+            "all as 2026-11-18. Or choose one order: what is no date in it counts as unknown.",
+            name=name,
+            n_day=n_day,
+            day=day,
+            n_month=n_month,
+            month=month,
+            n=read.n_mixed,
+        ),
+        "date_order",
+        ("dmy", "mdy"),
     )
-    return [doubtful(said, where)]
 
 
 def to_come(day: NDArray[np.datetime64], today: date | None = None) -> NDArray[np.bool_]:

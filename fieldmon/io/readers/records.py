@@ -38,7 +38,7 @@ from fieldmon.io.readers.date_doubts import (
     broken_times,
     in_future,
     midnights_left_out,
-    mixed_dates,
+    refuse_mixed,
     unread_dates,
 )
 from fieldmon.io.readers.inspection_file.columns import faces_named, own_column
@@ -277,6 +277,7 @@ def _as_local(
 
 
 def _about_dates(read: DatedColumn, where: str, record: NDArray[np.int64]) -> list[ImportMessage]:
+    refuse_mixed(read, where)
     messages = []
     if read.is_ambiguous:
         messages.append(
@@ -286,7 +287,6 @@ def _about_dates(read: DatedColumn, where: str, record: NDArray[np.int64]) -> li
                 Remedy("date_order", "mdy", worded("Read month first")),
             )
         )
-    messages += mixed_dates(read, where)
     if read.n_serial:
         messages.append(
             guessed(

@@ -23,7 +23,7 @@ from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone
 from fieldmon.io.parse.columns import find, plain
 from fieldmon.io.parse.dates import dates
 from fieldmon.io.parse.values import number, numbers
-from fieldmon.io.readers.date_doubts import mixed_dates, read_day_first
+from fieldmon.io.readers.date_doubts import read_day_first, refuse_mixed
 from fieldmon.io.readers.weather_rows import utc_times
 from fieldmon.io.readers.weather_services import NO_SERVICE, WeatherService, read_as_lst, told_zone
 
@@ -160,7 +160,7 @@ def times_of(
     Raises
     ------
     ChoiceNeeded
-        If dates could be day or month first.
+        If dates could be day or month first, or are both.
     """
     zone = zone_of(options.zone) if options.zone else UTC
     cells = _cells(layer, columns)
@@ -177,12 +177,13 @@ def times_of(
             "date_order",
             ("dmy", "mdy"),
         )
+    refuse_mixed(read, layer.name)
     clocks = {cell: clock_time(cell) for cell in set(cells)}
     local, stated = _local_times(cells, read.day, clocks)
     ends, said_of_hours = _hours_that_end(layer, columns, service, clocks)
     if ends:
         local -= np.timedelta64(_HOUR_S, "s")
-    messages = [*mixed_dates(read), *said_of_hours, *([read_day_first()] if dotted else [])]
+    messages = [*said_of_hours, *([read_day_first()] if dotted else [])]
     by_day = all(clock is None for clock in clocks.values())
     if by_day or np.isnat(local).all():
         at = utc_times(local, zone)

@@ -65,8 +65,8 @@ def test_a_riff_is_a_picture_only_if_it_says_so():
         (b"7z\xbc\xaf\x27", "7z archive"),
         (b"Rar!\x1a", "RAR archive"),
         (b"%PDF-1.7", "PDF"),
-        (b"\x89PNG\r\n", "picture without a position"),
-        (b"\xff\xd8\xff\xe0", "picture without a position"),
+        (b"\x89PNG\r\n", "positions in photos are not read"),
+        (b"\xff\xd8\xff\xe0", "positions in photos are not read"),
         (b"AC1027", "CAD drawing"),
         (b"AutoCAD Binary DXF\r\n", "ASCII DXF"),
         (b"\x00\x00\x27\x0a\xff\xff\xfe\x70", "only an index of a shapefile"),
@@ -78,6 +78,8 @@ def test_a_riff_is_a_picture_only_if_it_says_so():
         (b"<svg>", "drawing without positions"),
         (b"<root>", "begins with <root>"),
         (b"\x01\x00\x02\x00", "none of them"),
+        ("date,lat,מספר\n".encode("utf-16-le"), "text in UTF-16 without the mark"),
+        ("date,lat,מספר\n".encode("utf-16-be"), "text in UTF-16 without the mark"),
     ],
 )
 def test_what_cannot_be_read_is_refused_with_what_it_is(head, says):

@@ -83,6 +83,21 @@ def test_a_table_begins_below_two_lines_about_its_place(tmp_path):
     assert len(read(tmp_path, "lat,lon\n30,35\n\n31,36\n32,37\n")) == 3
 
 
+@pytest.mark.parametrize("again", ["lon,lat,count", "Lon,LAT,", ",lat,mites"])
+def test_a_line_that_repeats_the_names_is_left_out_and_said(tmp_path, again):
+    layer = read(tmp_path, f"lon,lat,count\n35,30,4\n{again}\n36,31,5\n")
+    assert rows_of(layer)[1:] == [["35", "30", "4"], ["36", "31", "5"]]
+    assert "1 line that repeats the column names was left out" in sentences(layer)
+    assert len(read(tmp_path, "name,result\nlat,found\nrow,clean\n")) == 2
+
+
+def test_names_in_two_lines_are_read_as_of_one(tmp_path):
+    names = ["date", "lat", "lon", "count", "eggs"]
+    for above in ("date,position,,mites,", "date,,,mites,", "date,aa,bb,mites,"):
+        layer = read(tmp_path, f"{above}\n,lat,lon,count,eggs\n2026-10-01,30,35,0,1\n")
+        assert rows_of(layer) == [names, ["2026-10-01", "30", "35", "0", "1"]]
+
+
 def test_columns_without_a_name_are_numbered_and_repeated_ones_told_apart(tmp_path):
     layer = read(tmp_path, "lon,,lat,lon\n1,2,3,4\n5\n")
     assert rows_of(layer) == [

@@ -38,6 +38,7 @@ def test_a_column_of_coordinates_may_mix_what_people_write():
     read = all_degrees(cells("30°30'", "30.25", None, "x"))
     np.testing.assert_array_equal(read, [30.5, 30.25, np.nan, np.nan])
     assert hemispheres(["N 30", "35 E", "12"]) == {"N", "E"}
+    assert hemispheres(["lon", "north", "east", "S", "N -"]) == set()
 
 
 @pytest.mark.parametrize(

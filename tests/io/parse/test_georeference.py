@@ -1,5 +1,7 @@
 """Coordinates are put on the earth, or asked for, but never taken for what they are not."""
 
+import re
+
 import numpy as np
 import pyproj
 import pytest
@@ -138,6 +140,14 @@ def test_what_lies_far_from_the_place_named_is_doubtful_and_a_swap_is_offered():
     (far,) = place(PARAN + np.array([2.0, 0.0]), "EPSG:4326", near).messages
     assert far.remedy is None
     assert "km from the plot or place nearby" in far.sentence
+
+
+def test_of_a_utm_zone_that_is_not_that_of_the_place_the_right_one_is_offered():
+    near = ReadOptions(near=(35.15, 30.36))
+    placed = place(projected("EPSG:32636"), "EPSG:32635", near)
+    (said,) = (one for one in placed.messages if one.severity is Severity.DOUBTFUL)
+    assert re.search(r"It lies 57\d km .* but \d km from it in UTM zone 36N\.", said.sentence)
+    assert said.remedy.setting == "crs=EPSG:32636"
 
 
 @pytest.mark.parametrize(("decimals", "step_m"), [(3, 111.32), (5, 1.1132), (0, 111_320.0)])

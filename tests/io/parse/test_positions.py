@@ -51,6 +51,9 @@ def test_columns_whose_letters_are_crossed_are_exchanged_and_that_is_said():
     found = located(layer, ANY)
     np.testing.assert_allclose(found.lonlat, [[35.15, 30.36], [35.16, 30.37]])
     assert "Longitudes stood in the column of latitudes" in sentences(found)
+    for word in ("lon", "1 N"):  # one cell does not speak for all
+        found = located(table(lon=[word, "35.15", "35.16"], lat=["lat", "30.36", "30.37"]), ANY)
+        np.testing.assert_allclose(found.lonlat[-2:], [[35.15, 30.36], [35.16, 30.37]])
 
 
 def test_two_coordinates_in_a_column_whose_order_nothing_tells_are_a_guess_with_a_way_out():

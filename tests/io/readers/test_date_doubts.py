@@ -1,35 +1,44 @@
-"""Dates in both orders or of days to come are doubted, in records and in findings; no others."""
+"""Dates in both orders are asked about, of days to come doubted, in records and in findings."""
 
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
 
+from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import Severity
-from fieldmon.io.options import Upload
+from fieldmon.io.options import RecordOptions, Upload
 from fieldmon.io.parse.dates import dates
-from fieldmon.io.readers.date_doubts import in_future, mixed_dates
+from fieldmon.io.readers.date_doubts import in_future, refuse_mixed
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections
+from fieldmon.io.readers.records import records_of
 from fieldmon.plot.layout import rectangle
+from tests.io.tables_of_cells import table
 
 BOTH = ["18/11/2026", "11/15/2026", "11/06/2026"]
 
 
-@pytest.mark.parametrize(("column", "doubts"), [(BOTH, 1), (BOTH[:1], 0), (BOTH[1:], 0), ([], 0)])
-def test_it_is_said_with_how_many_could_be_either(column, doubts):
-    said = mixed_dates(dates(np.array(column, object)), "date")
-    assert len(said) == doubts
-    for one in said:
-        assert one.severity == Severity.DOUBTFUL
-        assert "1 that could be either were read day first" in one.sentence
+@pytest.mark.parametrize("column", [BOTH[:1], BOTH[1:], [], ["13/13/2026", *BOTH[1:]]])
+def test_dates_of_one_order_are_not_asked_for(column):
+    refuse_mixed(dates(np.array(column, object)), "date")
 
 
-def test_findings_say_so_too():
+def test_where_dates_stand_in_both_orders_for_sure_it_is_asked_in_which_and_an_answer_holds():
+    said = (
+        r"1 is day first \(18/11/2026\), 1 month first \(11/15/2026\), and 1 could be either\. "
+        "Write them all as 2026-11-18"
+    )
     lines = "".join(f"{k + 1},yes,{day}\n" for k, day in enumerate(BOTH))
     file = Upload("found.csv", f"plant,found,date\n{lines}".encode())
-    read = read_inspections(file, rectangle(2, 5), None)
-    assert any("could be either" in message.sentence for message in read.messages)
+    with pytest.raises(ChoiceNeeded, match=said) as asked:
+        read_inspections(file, rectangle(2, 5), None)
+    assert (asked.value.option, asked.value.choices) == ("date_order", ("dmy", "mdy"))
+    read = read_inspections(file, rectangle(2, 5), InspectionOptions(date_order="dmy"))
+    assert len(read.value) == 3
+    records = table(date=BOTH, lon=[35.1] * 3, lat=[30.3] * 3)
+    with pytest.raises(ChoiceNeeded, match=said):
+        records_of(records, RecordOptions())
 
 
 def days_from_now(n):

@@ -7,7 +7,7 @@ import numpy as np
 import openpyxl
 import pytest
 
-from fieldmon.errors import FileProblem
+from fieldmon.errors import ChoiceNeeded, FileProblem
 
 HOURS = [(18 + k // 24, k % 24) for k in range(48)]
 #: local midnight in Jerusalem's winter
@@ -135,6 +135,7 @@ def test_a_station_whose_clock_is_never_put_forward_is_in_standard_time(read_wea
     assert "Clocks skip 2026-03-27 02:00, but it was measured" in said(imported)
 
 
-def test_days_and_months_in_both_orders_are_told(read_weather):
+def test_days_and_months_in_both_orders_are_asked_about(read_weather):
     days = "".join(f"{day},20\n" for day in ("13/11/2026", "12/11/2026", "11/14/2026"))
-    assert "day first and month first in one column" in said(read_weather(f"date,temp (C)\n{days}"))
+    with pytest.raises(ChoiceNeeded, match=r"1 is day first .* 1 month first .*1 could"):
+        read_weather(f"date,temp (C)\n{days}")

@@ -128,7 +128,7 @@ class InspectionRows:
         """Return the number of records."""
         return len(self.result)
 
-    def take(self, which: NDArray[np.bool_]) -> Self:
+    def take(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Self:
         """Return those records."""
         columns = vars(self).items()
         return replace(self, **{name: c[which] for name, c in columns if c is not None})

@@ -20,6 +20,7 @@ from fieldmon.io.import_report import Imported, ImportMessage, doubtful, guessed
 from fieldmon.io.options import source_name
 from fieldmon.io.parse.columns import is_position, plain
 from fieldmon.io.parse.result_words import gone_note
+from fieldmon.io.parse.values import numbers
 from fieldmon.io.readers.inspection_file.columns import (
     columns_of,
     detects_in,
@@ -128,11 +129,32 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
         mark_called=mark_called,
         lacks=np.full(len(layer), _lacking(layer, columns)),
     )
-    kept = whole.take(said)
+    kept = whole.take(_in_order(layer, times.when, times.day, said))
     pests = texts_in(layer, columns.species)[said].tolist()
     spelt = one_pest(columns.species, pests)[1] if columns.species else []
     every = (*layer.messages, *messages, *results.messages, *more, *times.messages, *spelt)
     return Imported(kept, every)
+
+
+def _in_order(
+    layer: Layer,
+    when: NDArray[np.datetime64],
+    day: NDArray[np.datetime64],
+    said: NDArray[np.bool_],
+) -> NDArray[np.intp]:
+    """Return which records say a result, ``(m,)``: in the order of stops where none has a time.
+
+    Programs sort the lines of a file given out, and some formats do so themselves.
+    """
+    kept = np.flatnonzero(said)
+    if not np.isnat(when[kept]).all():
+        return kept
+    for role in ("stop", "arrive_s"):
+        name = next((n for n in layer.columns if plain(n) == plain(role)), None)
+        stop = None if name is None else numbers(layer.column(name))[kept]
+        if stop is not None and np.isfinite(stop).any():
+            return kept[np.lexsort((stop, day[kept].astype("datetime64[D]").astype(np.int64)))]
+    return kept
 
 
 def _notes(layer: Layer, results: SeenResults) -> NDArray[np.str_]:

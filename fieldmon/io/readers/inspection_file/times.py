@@ -26,8 +26,8 @@ from fieldmon.io.readers.date_doubts import (
     broken_times,
     in_future,
     midnights_left_out,
-    mixed_dates,
     read_day_first,
+    refuse_mixed,
     unread_days,
 )
 from fieldmon.io.readers.inspection_file.columns import arrivals_in, own_column, texts_in
@@ -68,6 +68,7 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
         for said, clock, day in zip(days, clocks, own, strict=True)
     ]
     read = dates(_object(on), options.date_order)
+    refuse_mixed(read, layer.name)
     at = [clock or said for said, clock in zip(days, clocks, strict=True)]
     read_clocks = {cell: clock_time(cell) for cell in set(at)}
     timed = np.array([read_clocks[cell] is not None for cell in at], bool)
@@ -105,7 +106,7 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     about += _about_times(broken, read.is_ambiguous, n_utc)
     idle = _of_told_day(options.day, day, needed=unsaid & np.isnat(planned))
     idle += _of_writing(date, options)
-    return NotedTimes(when, day, [*mixed_dates(read), *in_future(day), *idle, *of_days, *about])
+    return NotedTimes(when, day, [*in_future(day), *idle, *of_days, *about])
 
 
 def _of_told_day(

@@ -29,6 +29,18 @@ def test_only_rows_that_say_anything_are_kept_with_their_numbers_in_the_file():
     assert "1 of 3 records left unknown: not filled in" in sentences(read)
 
 
+@pytest.mark.parametrize("column", ["stop", "arrive_s"])
+def test_results_without_times_come_in_the_order_of_stops_unless_lines_have_times(column):
+    cells = {"plant": [7, 8, 9], "found": ["x", "no", "no"], column: [30.5, 4.25, 12.5]}
+    rows = rows_in(table(**cells), NOTHING).value
+    assert rows.plant.tolist() == [8, 9, 7]
+    assert rows.source_row.tolist() == [2, 3, 1]
+    timed = table(**cells, time=["08:00", None, None], date=["2026-11-30"] * 3)
+    assert rows_in(timed, NOTHING).value.plant.tolist() == [7, 8, 9]
+    days = table(**cells, date=["2026-11-29", "2026-11-30", "2026-11-30"])
+    assert rows_in(days, NOTHING).value.plant.tolist() == [7, 8, 9]
+
+
 def test_a_result_that_cannot_be_read_is_not_said_to_be_empty():
     said = sentences(rows_in(table(plant=[7, 8, 9], found=["maybe", None, "no"]), NOTHING))
     assert "1 record says neither clean nor found" in said

@@ -81,7 +81,7 @@ def _files(choices: Choices, plan: HandoffPlan) -> None:
     ending = f".{name}.zip" if chosen.several else chosen.endings[0]
     st.download_button(
         texts.DOWNLOAD_AS.format(reader=_reader(name)), partial(made, chosen, plan),
-        f"route_{choices.day}{ending}", key="download_format", type="primary",
+        f"{choices.file_name('route', choices.whose_day or '')}{ending}", key="download_format", type="primary",
         on_click=_taken, args=(choices,),
     )  # fmt: skip
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import share_figure
 from fieldmon.infestation.inspections import RESULT_CODES
 
 from ..words import texts
@@ -47,6 +48,8 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
         parts.append(texts.BATCHES_SAID[batch.kind].format(source=from_, n=batch.rows))
     if batch.kind == "treatment" and said is not None:
         parts.append(texts.PLANTS_COUNTED.format(n=said.n))
+        if said.efficacy is not None:
+            parts.append(texts.BATCH_EFFICACY.format(share=in_words(share_figure(said.efficacy))))
     is_corrected = batch.kind == "corrections"
     # results may be brought days later
     if said is not None and not is_corrected and {said.first, said.last} != {str(at.date())}:

@@ -981,7 +981,7 @@ BATCHES_SAID = {
     "treatment": "treatment {source}",
     "corrections": "corrections: {source}",
 }
-BATCH_OF_DAY = "inspected {days}"
+BATCH_OF_DAY, BATCH_EFFICACY = "inspected {days}", "efficacy {share}"
 # as a season's file names them, in English: another language may be read later
 BATCH_SOURCES = {"typed in": "typed in", "route table": "route table", "scout mode": "scout mode",
                  "phone": "phone"}  # fmt: skip
@@ -998,6 +998,10 @@ TREATED_PART = "Treatment noted, of {plants}."
 TREAT_UNSAID = (
     "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
     "it kills, as on the label or by experience."
+)
+TREAT_SHARE = (
+    "The efficacy must be said in percent, but {said:g} was given, which is hardly any. Give "
+    "{meant:g} for {meant:g} %, or 0 if it kills none."
 )
 DECIDE_TREATED = "The zones were treated"
 DECIDE_TREATED_NOTE = (

@@ -11,7 +11,7 @@ from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, SKIPPED, Inspe
 from fieldmon.monitoring import Application, Season
 from fieldmon.plot.grid import plant_numbers
 from tests.app.chosen import in_season
-from tests.app.driving import go
+from tests.app.driving import apart, go
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 DAY = np.datetime64("2026-11-16")
@@ -77,9 +77,10 @@ def test_a_treatment_is_told_by_how_many_plants_were_treated_and_when(season_app
     every, some = (int(one.place.plants.sum()) for one in kept.treatments())
     assert some < every == len(kept.plot.grid)
     go(season_app, "record")
-    said = [one.value.replace(",", "") for one in season_app.markdown if "treatment" in one.value]
-    assert f"treatment \u2068oil\u2069 · {some} plants · Mon 16 Nov" in said[0]
-    assert f"treatment \u2068soap\u2069 · {every} plants · Mon 16 Nov" in said[1]
+    lines = [apart(one.value) for one in season_app.markdown if "treatment" in one.value]
+    said = [one.replace(",", "") for one in lines]
+    assert f"treatment \u2068oil\u2069 · {some} plants · efficacy 80 % · Mon 16 Nov" in said[0]
+    assert f"treatment \u2068soap\u2069 · {every} plants · efficacy 80 % · Mon 16 Nov" in said[1]
 
 
 def test_every_result_has_its_word():

@@ -610,7 +610,7 @@ def undo(choices: Choices, batch: int, who: str = "") -> str:
     _ask_no_undo()
     if batch not in {one.number for one in choices.open_season.batches() if not one.undone}:
         raise SettingError(texts.UNDONE_BEFORE)
-    return in_words(choices.open_season.undo(batch, who=who))
+    return recorded_batches.undone(choices.open_season.undo(batch, who=who))
 
 
 @notices.reporting
@@ -618,4 +618,4 @@ def redo(choices: Choices, batch: int) -> str:
     """Let a batch that was undone count again, unless somebody did so in another window."""
     if batch not in {one.number for one in choices.open_season.batches() if one.undone}:
         raise SettingError(texts.REDONE_BEFORE)
-    return in_words(choices.open_season.redo(batch))
+    return recorded_batches.undone(choices.open_season.redo(batch))

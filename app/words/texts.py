@@ -172,7 +172,13 @@ BOUND_HELP = (
 )
 NO_STOPS = "The working day is too short to reach a plant and come back. Give more working hours."
 MESSAGES = "What the import found"
-MESSAGES_NONE = "The files were read as they are."
+MESSAGES_NONE, MESSAGES_DRAWN = "The files were read as they are.", "The plot is as you drew it."
+FEW_PLANTS = Plural(
+    "There is room for {n} plant only on this plot. Look whether its outline, and how far rows and "
+    "plants are apart, are right.",
+    "There is room for {n} plants only on this plot. Look whether its outline, and how far rows "
+    "and plants are apart, are right.",
+)
 RECORDS_OF_BEGIN = "Of the records, as known on {day}, when the season began:"
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
@@ -976,6 +982,8 @@ UNDO_ASK_DAY = "It is of {days}, and this page is about {day}."
 UNDO_YES, UNDO_NO = "Take it back", "Leave it"
 UNDONE_BEFORE = "This was taken back already, perhaps in another window. Nothing changed."
 RESULT_COUNTED = "{result}, count {n}"
+UNDONE_WHAT, AGAIN_WHAT = "Undone: {what}.", "Counts again: {what}."
+UNDONE_FROM, UNDONE_WITH = "Undone: {what} from {source}.", "Undone: {what} with {product}."
 BATCHES_SAID = {
     "findings": Plural("{n:,} plant, {found:,} found", "{n:,} plants, {found:,} found"),
     "treatment": "treatment {source}",
@@ -1119,6 +1127,11 @@ SCOUT_DONE = Plural(
     "### Done for today\n{inspected:,} plant inspected, {found:,} found.",
     "### Done for today\n{inspected:,} plants inspected, {found:,} found.", by="inspected",
 )  # fmt: skip
+SCOUT_DONE_OF = Plural(
+    "### Nothing to inspect on {day}\n{inspected:,} plant inspected, {found:,} found.",
+    "### Nothing to inspect on {day}\n{inspected:,} plants inspected, {found:,} found.",
+    by="inspected",
+)
 SCOUT_START = (
     "Work starts at {start} by the settings of this season; it is {now}. The hours run from the "
     "first plant recorded."

@@ -20,7 +20,8 @@ DATES = {"2026-11-16": "%Y-%m-%d", "16.11.2026": "%d.%m.%Y", "16/11/2026": "%d/%
 _SMALL = 0.1
 #: a number with its unit
 IN_UNIT = {"m": "{value} m", "km": "{value} km", "ft": "{value} ft", "mi": "{value} mi",
-           "m2": "{value} m²", "ha": "{value} ha", "dunam": "{value} dunam", "acre": "{value} acre"}  # fmt: skip
+           "m2": "{value} m²",
+           "ha": "{value} ha", "dunam": "{value} dunam", "acre": "{value} acre"}  # fmt: skip
 
 
 def in_unit(value: float, form: str, unit: str) -> Worded:

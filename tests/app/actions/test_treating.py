@@ -96,6 +96,7 @@ def test_a_dose_without_a_unit_is_asked_for_and_an_efficacy_that_is_a_share(seas
     assert "must have a number and a unit" in season_app.error[0].value
     # a command takes a share: here it would be hardly any
     boxed(season_app.number_input, "efficacy").set_value(0.8)
+    boxed(season_app.text_input, "treat unit").set_value("l/ha")
     press(season_app, "Note the treatment")
     assert "Give 80 for 80 %" in apart(season_app.error[0].value)
     assert season().treatments() == ()

@@ -61,7 +61,7 @@ def test_faces_are_counted_by_the_advice_as_by_the_status_and_that_is_said(seaso
     treated = two.advice(BEGINS, AdviceSettings(0.05, costs=CHEAP))
     assert any(one.startswith("6 plants were treated that day") for one in treated.reasons())
     assert two.contents([(last := two.batches()[0]).number])[last.number].n == 6
-    assert two.log()[-1].what["said"].startswith("soap on 0.00")
+    assert two.log()[-1].what["said"].startswith("soap on 72 m²")
     assert ", 6 plants in row" in two.log()[-1].what["said"]
     said = "Each face counts as a plant"
     assert said in advice.said_of_zones()[-1]

@@ -44,19 +44,21 @@ def _show_asking(choices: Choices, plants: tuple[int, ...]) -> None:
     st.text_input(texts.ASK_PHOTO, key=_NOTE, max_chars=photos_asked.LONGEST_NOTE)
     counted = texts.PLANTS_COUNTED.format(n=len(plants))
     st.button(texts.ASK_PHOTO_BUTTON.format(plants=counted), key="ask_photo", on_click=_ask,
-              args=(choices, plants), help=texts.ASK_PHOTO_NOTE)  # fmt: skip
+              args=(choices, plants))  # fmt: skip
+    st.caption(texts.ASK_PHOTO_NOTE)
 
 
 def _show_one(choices: Choices, one: AskedPhoto) -> None:
     numbered = choices.open_season.plant_numbers
-    said, ends = st.columns([3, 1], vertical_alignment="center")
     row = choices.open_season.plot.grid.line_signs[int(numbered.line[one.plant])]
     number = int(numbered.number[one.plant])
     plant = plant_in_words(choices.open_season.plot.grid, one.plant, number)
     note = texts.isolated(one.note)
-    said.markdown(texts.ASKED_PHOTO.format(row=row, plant=plant, note=note))
-    ends.button(texts.ASK_NO_MORE, key=f"no photo {one.id}", on_click=_ask_no_more,
-                args=(choices, one.id))  # fmt: skip
+    # a button is as wide as its words, in every language
+    with st.container(horizontal=True, vertical_alignment="center"):
+        st.markdown(texts.ASKED_PHOTO.format(row=row, plant=plant, note=note))
+        st.button(texts.ASK_NO_MORE, key=f"no photo {one.id}", width="content",
+                  on_click=_ask_no_more, args=(choices, one.id))  # fmt: skip
 
 
 @notices.reporting

@@ -53,7 +53,8 @@ def _watch(work: WatchedComparison | DriveRun | LiveDrive, key: str) -> None:
 
 def show_progress(running: WatchedComparison) -> None:
     """Say how far it is; while there is no answer yet, wait a little for the first."""
-    if not running.running and not running.done:  # nothing was begun: that says no more than this
+    if not running.running and not running.done:  # nothing was begun
+        st.info(texts.COMPARE_EMPTY)
         return
     draw = st.progress
     for _ in range(_STEPS):

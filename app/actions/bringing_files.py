@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
 import streamlit as st
 
 from fieldmon.errors import ChoiceNeeded
@@ -14,7 +15,7 @@ from fieldmon.io.import_report import Severity
 from fieldmon.io.parse.result_words import words_in, words_told
 
 from ..show import answers_map
-from ..state import brought_files, chosen_day, plot_source, rasters
+from ..state import brought_files, chosen_day, drawn_plot, plot_source, rasters
 from ..state.brought_files import (
     BLOCKS,
     PLANTS,
@@ -50,6 +51,8 @@ _ICONS = {
 # questions that a box of their own answers: for another file, or beside the file
 _OWN_BOXES = frozenset({"kind", "plots", "plants", "meaning"})
 _MOST_BUTTONS = 12
+# fewer plants than these are hardly a plot
+_FEW_PLANTS = 10
 # what may be answered of findings with a button: all others are boxes, or need a value
 _OF_FINDINGS = frozenset({"found", "clean", "gone", "columns"})
 # what a word for a result may mean, and the option that takes it so
@@ -312,10 +315,20 @@ def _take_words(asked: str, keys: dict[str, str]) -> None:
             brought_files.answer(asked, name, words_told([*said[name], *new]))
 
 
-def show_messages(said: tuple[FileMessage, ...]) -> None:
-    """Show what imports had to say, the gravest first, each remedy as a button."""
+def show_of_plot(choices: Choices) -> None:
+    """Show what the imports of a plot had to say, and whether hardly any plant stands on it."""
+    n = len(np.unique(choices.plot.grid.vine))
+    if n < _FEW_PLANTS:
+        st.warning(texts.FEW_PLANTS.format(n=n))
+    is_own = plot_source.chosen() == plot_source.FILES
+    is_drawn = is_own and bool(drawn_plot.corners_of_plot())
+    show_messages(choices.messages, texts.MESSAGES_DRAWN if is_drawn else "")
+
+
+def show_messages(said: tuple[FileMessage, ...], none: str = "") -> None:
+    """Show what imports had to say, the gravest first, each remedy as a button; or else `none`."""
     if not said:
-        st.markdown(texts.MESSAGES_NONE)
+        st.markdown(none or texts.MESSAGES_NONE)
     for number, one in enumerate(sorted(said, key=lambda one: -one.message.severity.rank)):
         _show_message(number, one)
     for asked in dict.fromkeys(one.asked for one in said):

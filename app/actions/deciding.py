@@ -167,14 +167,14 @@ def files(choices: Choices, advice: Advice) -> None:
         st.download_button(
             texts.DECIDE_PDF,
             lambda: pdf_bytes(report(), "a4"),
-            f"advice_{choices.day}.pdf",
+            f"{choices.file_name('advice')}.pdf",
             "application/pdf",
             on_click="ignore",
         )
         st.download_button(
             texts.REPORT_HTML,
             lambda: html_text(report()),
-            f"advice_{choices.day}.html",
+            f"{choices.file_name('advice')}.html",
             "text/html",
             on_click="ignore",
         )
@@ -185,7 +185,8 @@ def files(choices: Choices, advice: Advice) -> None:
     name = f"zones_{choices.day}{ending}"
     of = advice.treatment_map(choices.plot.field, product)
     st.download_button(
-        texts.DECIDE_DOWNLOAD, lambda: treatment_map_bytes(of, name), name,
+        texts.DECIDE_DOWNLOAD, lambda: treatment_map_bytes(of, name),
+        f"{choices.file_name('zones')}{ending}",
         type="secondary" if advice.is_below else "primary",
         key="decide download", on_click="ignore",
     )  # fmt: skip

@@ -79,9 +79,10 @@ def _files(choices: Choices, plan: HandoffPlan) -> None:
                         format_func=lambda one: f"{_reader(one)}: {one}")  # fmt: skip
     chosen = FORMATS[name]
     ending = f".{name}.zip" if chosen.several else chosen.endings[0]
+    called = choices.file_name("route", choices.whose_day or "")
     st.download_button(
         texts.DOWNLOAD_AS.format(reader=_reader(name)), partial(made, chosen, plan),
-        f"route_{choices.day}{ending}", key="download_format", type="primary",
+        f"{called}{ending}", key="download_format", type="primary",
         on_click=_taken, args=(choices,),
     )  # fmt: skip
 

@@ -196,8 +196,9 @@ def _report(choices: Choices, _: DayPlan, step: Step) -> None:
     made = report.to_come(choices)
     # made when it is asked for: fonts are cut and plants are drawn, in a second or two
     st.download_button(
-        texts.STEP_BUTTONS[REPORT], lambda: pdf_bytes(made(), paper), f"day_{choices.day}.pdf",
-        "application/pdf", on_click=morning_steps.note, args=(choices, REPORT), **_shown(step),
+        texts.STEP_BUTTONS[REPORT], lambda: pdf_bytes(made(), paper),
+        f"{choices.file_name('day')}.pdf", "application/pdf",
+        on_click=morning_steps.note, args=(choices, REPORT), **_shown(step),
     )  # fmt: skip
 
 

@@ -69,7 +69,7 @@ def show(choices: Choices, zones: Callable[[], Zoned] | None = None) -> None:
     if zones is None:
         _where(boxes)
     st.file_uploader(texts.TREAT_FILE, key=boxes.key(_FILE), help=texts.TREAT_FILE_HELP)
-    boxes.show(st.number_input, texts.TREAT_EFFICACY, 0, 100, step=5, box="efficacy")
+    boxes.show(st.number_input, texts.TREAT_EFFICACY, 0.0, 100.0, step=5.0, box="efficacy")
     boxes.show(st.text_input, texts.TREAT_PRODUCT, box="product", default="")
     with st.expander(texts.TREAT_RECORD):
         _boxes(boxes)
@@ -164,6 +164,8 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
     said = _said(boxes)
     if efficacy is None and not said.product:
         raise SettingError(texts.TREAT_UNSAID)
+    if efficacy is not None and 0 < efficacy <= 1:  # as the command takes it
+        raise SettingError(texts.TREAT_SHARE.format(said=efficacy, meant=100 * efficacy))
     works = None if efficacy is None else efficacy / 100
     plants, read = (_plants(boxes) if zones is None else None), _of_file(boxes)
     zoned = None if zones is None or read is not None else zones()

@@ -11,7 +11,6 @@ from fieldmon.errors import SettingError
 from ..show import recorded_batches
 from ..state import notices
 from ..words import texts
-from ..words.language import in_words
 
 if TYPE_CHECKING:
     from fieldmon.monitoring.inspecting.batches import Batch, BatchContents
@@ -87,7 +86,7 @@ def undo(choices: Choices, batch: int, who: str = "") -> str:
     _ask_no_undo()
     if batch not in {one.number for one in choices.open_season.batches() if not one.undone}:
         raise SettingError(texts.UNDONE_BEFORE)
-    return in_words(choices.open_season.undo(batch, who=who))
+    return recorded_batches.undone(choices.open_season.undo(batch, who=who))
 
 
 @notices.reporting
@@ -95,4 +94,4 @@ def redo(choices: Choices, batch: int) -> str:
     """Let a batch that was undone count again, unless somebody did so in another window."""
     if batch not in {one.number for one in choices.open_season.batches() if one.undone}:
         raise SettingError(texts.REDONE_BEFORE)
-    return in_words(choices.open_season.redo(batch))
+    return recorded_batches.undone(choices.open_season.redo(batch))

@@ -12,6 +12,7 @@ import shapely
 import streamlit as st
 from pydeck import Layer
 
+from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import chance_figure, share_figure
 from fieldmon.io.spray_rate import litres_figure
 from fieldmon.plot.grid import plant_numbers, row_ends
@@ -131,7 +132,9 @@ def zone_map(choices: Choices, advice: Advice) -> MapContent:
     places = [one for one in day.labels if one["k"] not in {"stop", "leg"}]
     below = [layer for layer in day.layers if layer.id not in _OF_ROUTE]
     content = replace(day, labels=places, layers=below, play=None)
-    key = f"zones {choices.key} {choices.revision} {choices.day} {choices.dark} {advice.asked}"
+    # by what is drawn: results may have come since the advice was worked out
+    drawn = digest(advice.zones.zone, [(one.share, one.verdict) for one in advice.said.zones])
+    key = f"zones {choices.key} {choices.dark} {advice.asked} {drawn}"
     layers = cached.layers(key, partial(_layers, advice, dark=choices.dark))
     if not layers:
         return content

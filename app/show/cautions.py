@@ -9,7 +9,6 @@ import streamlit as st
 
 from fieldmon.monitoring.days.kept_routes import closed_to_kept
 from fieldmon.monitoring.estimates.last_days import recorded_ahead
-from fieldmon.monitoring.treating.cautions import harvest_unsaid
 from fieldmon.monitoring.treating.closures import closed_in_words, closed_plants, is_all_closed
 from fieldmon.planning.skips import left_out_in_words
 
@@ -121,10 +120,8 @@ def show_treatments(choices: Choices) -> None:
     """Show when harvest may begin, and what inspections tell of each treatment."""
     season, units = choices.open_season, choices.units.in_sentences(choices.on)
     if (harvest := season.harvest_from(choices.on)) is not None:
-        first, waits = harvest
-        if first is None:
-            st.markdown(in_words(harvest_unsaid(waits, units)))
-        else:
+        first, _ = harvest
+        if first is not None:  # else it is warned of already
             st.markdown(texts.HARVEST_FROM.format(day=choices.units.said_day(first, choices.on)))
     effects = season.effects(choices.on, units)
     if effects:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.digest import digest
+
 from ..state import cached, chosen_day
 from ..words import language, texts
 from . import field_map
@@ -62,7 +64,7 @@ def day_map(
     ]
     play = route_layers.playback(route, driven.begins)
     if play is not None:
-        play["key"] = f"{language.current()} {_route_key(choices, route)}"
+        play["key"] = f"{language.current()} {choices.revision} {_route_key(choices, route)}"
     return MapContent(
         **field_map.of_plot(choices, len(route)), layers=layers,
         switches=switches(layers, off, ("numbers", "rows")), shades=shades,
@@ -81,7 +83,8 @@ def season_frames(choices: Choices) -> Frames | None:
     kept = np.unique(np.linspace(0, len(days) - 1, min(len(days), _FRAMES)).round().astype(int))
     days = [days[k] for k in kept.tolist()]
     at = [replace(choices, day=day) for day in days]
-    key = f"{language.current()} {choices.key} {choices.revision} {choices.day} {choices.dark}"
+    now_known = f"{choices.revision} {digest(days)}"  # days may have come since they were listed
+    key = f"{language.current()} {choices.key} {now_known} {choices.day} {choices.dark}"
     names = tuple(choices.units.said_day(day) for day in days)
     now = int(np.searchsorted(days, choices.day))
     shown = cached.frames(key, lambda: [marks.with_hot(_plants(one), _hot(one)) for one in at])
@@ -234,9 +237,9 @@ def route_of(choices: Choices, route: Route) -> list[Layer]:
 
 
 def _route_key(choices: Choices, route: Route) -> str:
-    shown = f"{choices.robot} {choices.sampler} {choices.dark} {choices.wishes}"
-    shown = f"{shown} {route.end_s} {len(route)}"
-    return f"route {choices.key} {choices.revision} {choices.day} {shown}"
+    """Return a key of what is drawn: results may have come since the route was planned."""
+    drawn = digest(route.plant, route.line_m, route.line_stop, route.line_s, route.leave_s)
+    return f"route {choices.key} {choices.day} {choices.dark} {drawn}"
 
 
 def _hot_layers(choices: Choices) -> list[Layer]:

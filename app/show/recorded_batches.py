@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import Worded, share_figure
 from fieldmon.infestation.inspections import RESULT_CODES
 
 from ..words import texts
@@ -47,6 +48,8 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
         parts.append(texts.BATCHES_SAID[batch.kind].format(source=from_, n=batch.rows))
     if batch.kind == "treatment" and said is not None:
         parts.append(texts.PLANTS_COUNTED.format(n=said.n))
+        if said.efficacy is not None:
+            parts.append(texts.BATCH_EFFICACY.format(share=in_words(share_figure(said.efficacy))))
     is_corrected = batch.kind == "corrections"
     # results may be brought days later
     if said is not None and not is_corrected and {said.first, said.last} != {str(at.date())}:
@@ -57,6 +60,28 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     parts += [texts.isolated(who) if who else "", texts.UNDONE if batch.undone else ""]
     parts.append(texts.COUNTS_ELSEWHERE if batch.stands_back(said) else "")
     return " · ".join(part for part in parts if part)
+
+
+def undone(said: str) -> str:
+    """Return what the season says it took back, or counts again, in the current language.
+
+    Without the number of the batch, which only commands need.
+    """
+    parts = said.parts if isinstance(said, Worded) and said.parts else (said,)
+    return " ".join(_unnumbered(one) for one in parts)
+
+
+def _unnumbered(one: str) -> str:
+    if not isinstance(one, Worded) or not {"batch", "what"} <= one.values.keys():
+        return in_words(one)
+    blanks = one.values
+    what = in_words(blanks["what"])
+    if "source" in blanks:
+        return texts.UNDONE_FROM.format(what=what, source=texts.isolated(source(blanks["source"])))
+    if "product" in blanks:
+        return texts.UNDONE_WITH.format(what=what, product=texts.isolated(blanks["product"]))
+    again = one.words.startswith("Batch {batch} counts again")
+    return (texts.AGAIN_WHAT if again else texts.UNDONE_WHAT).format(what=what)
 
 
 def why_to_ask(choices: Choices, batch: Batch, said: BatchContents | None) -> list[str]:

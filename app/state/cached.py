@@ -4,6 +4,9 @@ Keys are digests and frozen settings, never arrays.
 Streamlit hashes large arrays from a sample of their cells; a plot that differs in one plant would
 be taken for the same. So values that cannot be keyed come in as ``_arguments``, which Streamlit
 leaves out, beside a key that stands for them. `cached_files` and `cached_simulations` do the same.
+
+Results come while a page is made. So a key that names a revision is read before what it stands for,
+or else names what was read by its digest: what is older than its key would be shown to everybody.
 """
 
 from __future__ import annotations

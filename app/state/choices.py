@@ -7,6 +7,7 @@ from datetime import date
 from typing import TYPE_CHECKING
 
 from fieldmon.infestation.prior.prior_settings import PriorSettings
+from fieldmon.io.writers.file_names import plain_name
 from fieldmon.monitoring.phones import photos_asked
 from fieldmon.planning.plan import PlanSettings
 from fieldmon.planning.wishes import Wishes
@@ -91,6 +92,11 @@ class Choices:
     def name(self) -> str:
         """Return the plot's name, apart from the text around it, whatever its script."""
         return texts.isolated(self.plot.field.name)
+
+    def file_name(self, of: str, who: str = "") -> str:
+        """Return the name of a file of the day, without its ending: whose it is stands in it."""
+        named = self.plot.field.name if self.season is None else self.season.path.stem
+        return "_".join([of, *(plain_name(one) for one in (named, who) if one), self.day])
 
     @property
     def on(self) -> date:

@@ -56,7 +56,6 @@ def _results(choices: Choices, running: WatchedComparison) -> None:
     seasons = running.seasons()
     ranked = outcomes(seasons)
     if not ranked:
-        st.info(texts.COMPARE_EMPTY)
         return
     for said in (verdicts.sentence(ranked), *map(verdicts.robots_sentence, gains(seasons))):
         st.markdown(said)

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 def show(choices: Choices) -> None:
     """Choose a day, let it be driven or bring its file, and watch it."""
     st.caption(texts.DRIVE_INTRO)
+    shown = f"{choices.key} {choices.revision} {choices.day} {choices.whose_day} {choices.robot}"
+    shown = f"{shown} {choices.sampler} {choices.wishes} {choices.prior}"
     scene = choices.wishes.applied_to(choices.plan().scene)
     field_map.want(drive_play.content(choices, scene, None))
     source = widget_memory.show(
         st.segmented_control, texts.DRIVE_SOURCE, list(texts.DRIVE_SOURCES), key="drive_source",
         default="planned", required=True, format_func=texts.DRIVE_SOURCES.__getitem__,
     )  # fmt: skip
-    shown = f"{choices.key} {choices.revision} {choices.day} {choices.whose_day} {choices.robot}"
-    shown = f"{shown} {choices.sampler} {choices.wishes} {choices.prior}"
     if source == "planned":
         day = driving.run(choices, scene, shown).day
     elif source == "live":

@@ -73,7 +73,7 @@ def show(choices: Choices) -> None:
     choosing_pest.show(choices)
     laying_ground.show(choices)
     with st.expander(texts.MESSAGES, expanded=True):
-        bringing_files.show_messages(choices.messages)
+        bringing_files.show_of_plot(choices)
         bringing_files.show_of_records(choices)
     records_shown.say(choices, said)
     field_map.want(*answering.of_records(choices) or editing_plot.content(choices, records, before))

@@ -28,7 +28,7 @@ def show(choices: Choices) -> None:
         st.selectbox, texts.REPORT_PAPER, [*PAPERS], key="report paper", default="a4",
         format_func=texts.REPORT_PAPERS.__getitem__,
     )  # fmt: skip
-    name, page = f"{about}_{choices.day}", html_text(made)
+    name, page = choices.file_name(about), html_text(made)
     with st.container(horizontal=True):
         # made when it is asked for: fonts are cut and plants are drawn, in a second or two
         st.download_button(

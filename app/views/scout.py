@@ -65,7 +65,10 @@ def _lead(choices: Choices, stop: NextStop) -> None:
 def _say_done(choices: Choices) -> None:
     now = chosen_day.progress(choices)
     with scouting.drawn():
-        st.markdown(texts.SCOUT_DONE.format(inspected=now.inspected_today, found=now.found_today))
+        done = {"inspected": now.inspected_today, "found": now.found_today}
+        day = choices.units.said_day(choices.on, choices.today)
+        said = texts.SCOUT_DONE if choices.is_today else texts.SCOUT_DONE_OF
+        st.markdown(said.format(day=day, **done))
     if scouting.can_be_longer(choices):
         st.caption(texts.SCOUT_LONGER_NOTE)
         with st.container(key="scout_more"):

@@ -31,8 +31,8 @@ def show(choices: Choices) -> None:
     n_days, *_, every = numbers
     seed = st.number_input(texts.SEED, 0, 10_000, 1, help=texts.SEED_HELP, key="seed")
     names = _names(choices)
-    laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
     key = f"{choices.key}{choices.revision}{choices.day}{chosen_pest.key(pest)}"
+    laid = LaidPlot(choices.plot, chosen_day.chance(choices), pest)
     seasons = {
         name: cached_simulations.simulated_season(
             key, name, (*numbers, int(seed)), choices.robot, laid

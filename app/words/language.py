@@ -212,7 +212,11 @@ def in_words(sentence: str) -> str:
     if language == ENGLISH or not sentence or isinstance(sentence, Text):  # the app's own has words
         return together(leading_nowhere(str(sentence)))
     said = _said(sentence, language) or _said_again(str(sentence), language)
-    said = marked_as_english(sentence) if said is None else _from_the_right(said)
+    if said is not None:
+        said = _from_the_right(said)
+    else:  # a bare number is of no language
+        has_words = any(map(str.isalpha, sentence))
+        said = marked_as_english(sentence) if has_words else str(sentence)
     return together(leading_nowhere(said))
 
 

@@ -172,7 +172,13 @@ BOUND_HELP = (
 )
 NO_STOPS = "The working day is too short to reach a plant and come back. Give more working hours."
 MESSAGES = "What the import found"
-MESSAGES_NONE = "The files were read as they are."
+MESSAGES_NONE, MESSAGES_DRAWN = "The files were read as they are.", "The plot is as you drew it."
+FEW_PLANTS = Plural(
+    "There is room for {n} plant only on this plot. Look whether its outline, and how far rows and "
+    "plants are apart, are right.",
+    "There is room for {n} plants only on this plot. Look whether its outline, and how far rows "
+    "and plants are apart, are right.",
+)
 RECORDS_OF_BEGIN = "Of the records, as known on {day}, when the season began:"
 CHOOSE = "The file leaves this open"
 CHOOSE_BUTTON = "Use this"
@@ -976,12 +982,14 @@ UNDO_ASK_DAY = "It is of {days}, and this page is about {day}."
 UNDO_YES, UNDO_NO = "Take it back", "Leave it"
 UNDONE_BEFORE = "This was taken back already, perhaps in another window. Nothing changed."
 RESULT_COUNTED = "{result}, count {n}"
+UNDONE_WHAT, AGAIN_WHAT = "Undone: {what}.", "Counts again: {what}."
+UNDONE_FROM, UNDONE_WITH = "Undone: {what} from {source}.", "Undone: {what} with {product}."
 BATCHES_SAID = {
     "findings": Plural("{n:,} plant, {found:,} found", "{n:,} plants, {found:,} found"),
     "treatment": "treatment {source}",
     "corrections": "corrections: {source}",
 }
-BATCH_OF_DAY = "inspected {days}"
+BATCH_OF_DAY, BATCH_EFFICACY = "inspected {days}", "efficacy {share}"
 # as a season's file names them, in English: another language may be read later
 BATCH_SOURCES = {"typed in": "typed in", "route table": "route table", "scout mode": "scout mode",
                  "phone": "phone"}  # fmt: skip
@@ -998,6 +1006,10 @@ TREATED_PART = "Treatment noted, of {plants}."
 TREAT_UNSAID = (
     "The efficacy of a treatment must be said, but it is empty. Give the percentage of pests that "
     "it kills, as on the label or by experience."
+)
+TREAT_SHARE = (
+    "The efficacy must be said in percent, but {said:g} was given, which is hardly any. Give "
+    "{meant:g} for {meant:g} %, or 0 if it kills none."
 )
 DECIDE_TREATED = "The zones were treated"
 DECIDE_TREATED_NOTE = (
@@ -1115,6 +1127,11 @@ SCOUT_DONE = Plural(
     "### Done for today\n{inspected:,} plant inspected, {found:,} found.",
     "### Done for today\n{inspected:,} plants inspected, {found:,} found.", by="inspected",
 )  # fmt: skip
+SCOUT_DONE_OF = Plural(
+    "### Nothing to inspect on {day}\n{inspected:,} plant inspected, {found:,} found.",
+    "### Nothing to inspect on {day}\n{inspected:,} plants inspected, {found:,} found.",
+    by="inspected",
+)
 SCOUT_START = (
     "Work starts at {start} by the settings of this season; it is {now}. The hours run from the "
     "first plant recorded."

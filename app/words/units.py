@@ -15,7 +15,7 @@ from .signs import together
 
 __all__ = ["AREAS_M2", "DATES", "LENGTHS", "UnitsInLanguage", "hours", "usual"]
 
-_HALF_A_YEAR_DAYS = 182
+_HALF_A_YEAR_DAYS, _TWO_MONTHS_DAYS = 182, 61
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,9 @@ class UnitsInLanguage(library.Units):
         'Mon 16 Nov'
         """
         day = date.fromisoformat(on) if isinstance(on, str) else on
-        far = seen_from is not None and abs((day - seen_from).days) > _HALF_A_YEAR_DAYS
+        apart = 0 if seen_from is None else abs((day - seen_from).days)
+        is_other_year = seen_from is not None and day.year != seen_from.year
+        far = apart > (_TWO_MONTHS_DAYS if is_other_year else _HALF_A_YEAR_DAYS)
         said = f"{weekday(day, short=True)} {self.short_day(day)}"
         return f"{said} {day.year}" if far else said
 

@@ -16,8 +16,11 @@ LENGTHS = {"m": 1.0, "ft": 0.3048}
 AREAS_M2 = {"ha": 10_000.0, "dunam": 1_000.0, "acre": 4_046.8564224}
 DATES = {"2026-11-16": "%Y-%m-%d", "16.11.2026": "%d.%m.%Y", "16/11/2026": "%d/%m/%Y",
          "11/16/2026": "%m/%d/%Y"}  # fmt: skip
+# of a hectare or a dunam: what is smaller is said in square metres
+_SMALL = 0.1
 #: a number with its unit
 IN_UNIT = {"m": "{value} m", "km": "{value} km", "ft": "{value} ft", "mi": "{value} mi",
+           "m2": "{value} m²",
            "ha": "{value} ha", "dunam": "{value} dunam", "acre": "{value} acre"}  # fmt: skip
 
 
@@ -96,11 +99,15 @@ class Units:
     def square(self, value_m2: float) -> str:
         """Return `value_m2` in three digits at least, so that parts add up.
 
+        Below a tenth of a hectare or of a dunam it is in square metres.
+
         >>> import fieldmon as fm
         >>> [fm.Units().square(value_m2) for value_m2 in (150.0, 2884.0, 123456.0)]
-        ['0.015 ha', '0.288 ha', '12.35 ha']
+        ['150 m²', '0.288 ha', '12.35 ha']
         """
         value = value_m2 / AREAS_M2[self.area]
+        if 0 < value < _SMALL and self.length == "m" and self.area != "acre":
+            return in_unit(value_m2, ".0f" if value_m2 >= 99.95 else ".3g", "m2")
         return in_unit(value, ",.2f" if value >= 0.9995 or value <= 0 else ".3g", self.area)
 
     @property

@@ -1105,12 +1105,16 @@ _LID = """() => document.body.append(Object.assign(document.createElement("div")
 def test_in_a_low_window_or_a_zoomed_one_all_tools_of_the_map_can_be_pressed(screen):
     page = screen
     tools = page.locator(f"{MAP} .tools .tool")
-    for width, height in ((960, 600), (720, 450)):  # 1440 x 900 at 150 and 200 %
+    # 1440 x 900 at 150 and 200 %, 1366 x 768 at 200 %, half a window, the smallest
+    for width, height in ((960, 600), (720, 450), (683, 384), (1366, 400), (360, 560), (320, 480)):
         page.set_viewport_size({"width": width, "height": height})
         page.wait_for_function("(wide) => innerWidth === wide", arg=width)
         still(page)
         assert tools.count() >= 7
         assert tools.evaluate_all(_COVERED) == []
+        # nor does the day's bar or the legend lie over another
+        others = page.locator(f"{MAP} :is(.play .tool, .legend .more):visible")
+        assert others.evaluate_all(_COVERED) == []
     page.evaluate(_LID)
     assert len(tools.evaluate_all(_COVERED)) == tools.count(), "what lies over them is noticed"
     page.evaluate("document.getElementById('lid').remove()")

@@ -172,7 +172,7 @@ def test_where_nothing_is_worth_it_nothing_is_treated():
     assert len(zones) == 0
     assert zones.sentence().startswith("Treat nowhere")
     assert (
-        "To treat 0.0072 ha in 1 zone, 100 % of the 0.0072 ha under plants"
+        "To treat 72 m² in 1 zone, 100 % of the 72 m² under plants"
         in best_zones(ROW, np.full(9, 0.9), Sprayer(1), CHEAP).sentence()
     )
 

@@ -1,6 +1,7 @@
 // Drawing on the map: points by clicks, which snap and can be dragged, taken back and finished.
 
 const SNAP_PX = 10, GRAB_PX = 12;
+const WRONG = [200, 40, 30];
 
 export class Drawing {
   // `tell` takes the finished corners; `changed` is called when there is something new to draw
@@ -37,7 +38,12 @@ export class Drawing {
   }
 
   get ready() {
-    return this.points.length >= this.least;
+    return this.points.length >= this.least && !this.crosses;
+  }
+
+  // Whether the edges of a plot's outline meet where they should not: it is none then.
+  get crosses() {
+    return this.outlines && crossing(this.points);
   }
 
   snapped(here, viewport) {
@@ -182,8 +188,9 @@ export class Drawing {
   }
 
   // Return the drawing so far as layers in pydeck's JSON.
-  layers(colour) {
+  layers(usual) {
     if (!this.points.length) return [];
+    const colour = this.crosses ? WRONG : usual;
     const area = ["area", "lasso", "outline"].includes(this.mode.kind) && this.points.length > 2;
     const path = area ? [...this.points, this.points[0]] : this.points;
     // a casing lets it be seen on plants of its own colour
@@ -197,6 +204,14 @@ export class Drawing {
       getLineWidth: 2, lineWidthUnits: "pixels",
     }];
   }
+}
+
+// Return whether two edges of a closed line cross that are not next to each other.
+function crossing(corners) {
+  const n = corners.length, edge = (k) => [corners[k], corners[(k + 1) % n]];
+  const side = ([a, b], [c, d], [e, f]) => Math.sign((c - a) * (f - b) - (d - b) * (e - a));
+  const cross = ([a, b], [c, d]) => side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0;
+  return corners.some((_, k) => corners.some((__, j) => j > k + 1 && j - k < n - 1 && cross(edge(k), edge(j))));
 }
 
 // Return a place to the centimetre, as the server keeps it.

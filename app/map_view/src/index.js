@@ -173,10 +173,13 @@ export class MapPage {
   }
 
   padding() {
-    const { left, right, bottom } = covered(), tools = [30, this.tools.offsetWidth + 24];
+    const { offsetWidth: wide, offsetHeight: tall, offsetTop } = this.tools;
+    const inRow = wide > tall; // in a low window, above the plot
+    const { left, right, bottom } = covered(), tools = [30, inRow ? 30 : wide + 24];
+    const top = Math.max(this.top(), inRow ? offsetTop + tall + MARGIN_PX : 0);
     if (this.data.direction === "rtl") tools.reverse();
     // below the plot, the gate's name has room above the day's bar
-    return this.clearOfBar({ left: left + tools[0], right: right + tools[1], top: this.top(), bottom: bottom + 76 });
+    return this.clearOfBar({ left: left + tools[0], right: right + tools[1], top, bottom: bottom + 76 });
   }
 
   // Return the padding that leaves free what is drawn, too: its bar lies above it, or on a phone below.
@@ -191,7 +194,8 @@ export class MapPage {
   // Return from where the map is free: on a phone the legend lies above the plot.
   top() {
     const legend = this.legend.getBoundingClientRect(), map = this.root.getBoundingClientRect();
-    return legend.height && !this.legendBox() ? Math.max(24, legend.bottom - map.top + MARGIN_PX) : 24;
+    const above = legend.width > map.width / 3 && !this.legendBox(); // folded it is a sign in the corner
+    return above ? Math.max(24, legend.bottom - map.top + MARGIN_PX) : 24;
   }
 
   // Return the boxes of what lies over the map, and from where to where it is seen beside the panel; asked
@@ -208,7 +212,7 @@ export class MapPage {
   // Return where the legend lies on the map; null where it lies above the plot, as on a phone.
   legendBox() {
     const box = this.legend.getBoundingClientRect(), map = this.root.getBoundingClientRect();
-    if (!box.width || box.top - map.top < map.height / 3) return null;
+    if (!box.width || box.bottom - map.top < map.height / 2) return null;
     const [x, y] = [map.left + MARGIN_PX, map.top + MARGIN_PX];
     return { left: box.left - x, right: box.right - map.left + MARGIN_PX, top: box.top - y, bottom: map.height };
   }
@@ -603,7 +607,7 @@ export class MapPage {
     const { mode, points, ready } = this.drawing;
     this.root.classList.toggle("drawing", Boolean(mode));
     const outlines = mode?.kind === "outline", said = outlines ? this.data.draw?.hint : null;
-    const now = JSON.stringify([mode?.id, points.length, this.drawing.canUndo, said, this.data.words]);
+    const now = JSON.stringify([mode?.id, points.length, ready, this.drawing.canUndo, said, this.data.words]);
     if (now === this.barred) return;
     this.barred = now;
     this.bar.hidden = !mode;

@@ -191,6 +191,17 @@ test("the outline of a plot is closed from three corners on", () => {
   assert.deepEqual(path(3), [...SQUARE.slice(0, 3), SQUARE[0]]);
 });
 
+test("an outline that crosses itself is drawn as wrong and cannot be finished until it does not", () => {
+  const told = [], drawing = new Drawing(() => {}, (mode, points) => told.push([mode.id, points]));
+  const box = [[0, 0], [1e-3, 0], [1e-3, 1e-3], [0, 1e-3]], shown = () => drawing.layers([0, 120, 0])[1].getColor;
+  drawing.begin({ kind: "outline", id: "o", points: [box[0], box[2], box[1], box[3]], lengths: [] });
+  drawing.finish();
+  assert.deepEqual([drawing.ready, told.length], [false, 0]);
+  assert.notDeepEqual(shown(), [0, 120, 0]);
+  drawing.begin({ kind: "outline", id: "p", points: box, lengths: [] });
+  assert.deepEqual([drawing.ready, shown()], [true, [0, 120, 0]]);
+});
+
 test("the edges of a plot say how long they are while a corner is dragged", () => {
   const lengths = [[0, 1, "0", "{n} m"], [1000, 1000, "0,00", "{n} km"]];
   const { drawing } = begun({ ...OUTLINE, lengths, points: [[34.9, 31.5], [34.902, 31.5], [34.902, 31.502]] });

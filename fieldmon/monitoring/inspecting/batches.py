@@ -90,6 +90,8 @@ class BatchContents:
         Its plant, by the number in the season's file.
     who
         Everybody who inspected, by name.
+    efficacy
+        Of a treatment: the chance that an infested plant is clean afterwards.
     """
 
     n: int
@@ -104,6 +106,7 @@ class BatchContents:
     note: str = ""
     at: int = -1
     who: str = ""
+    efficacy: float | None = None
 
     @property
     def is_gone(self) -> bool:
@@ -254,7 +257,8 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
     """Return what batches of inspections and treatments say, by their numbers."""
     asked = ", ".join("?" * len(numbers))
     treated = db.execute(
-        "SELECT batch, sum(plants), 0, sum(plants * (undone = 0)), min(date), max(date), 0, 0, '' "  # noqa: S608 - ours
+        "SELECT batch, sum(plants), 0, sum(plants * (undone = 0)), min(date), max(date), 0, 0, '', "  # noqa: S608 - ours
+        "NULL, '', -1, '', max(efficacy) "
         f"FROM treatments WHERE batch IN ({asked}) AND date NOTNULL GROUP BY batch",
         tuple(numbers),
     ).fetchall()

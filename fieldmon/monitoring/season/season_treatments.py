@@ -163,8 +163,8 @@ class SeasonTreatments(OpenSeason):
         if known is None:
             raise SettingError(
                 worded(
-                    "How well a treatment works must be said (efficacy, 0 to 1), for this season "
-                    "has not learnt it: no plant was inspected before and after a treatment with "
+                    "How well a treatment works must be said (its efficacy), for this season has "
+                    "not learnt it: no plant was inspected before and after a treatment with "
                     "{product}.",
                     product=product or worded("a product that nobody named"),
                 )

@@ -174,3 +174,14 @@ def test_the_first_screen_doubts_nothing_of_the_sample_and_its_import_says_it(ap
     assert "lie on no plant" not in texts_of(app)
     assert "there it is always Mon 16 Nov 2026." in texts_of(app)
     assert "lie on no plant" in texts_of(go(app, "plot"))
+
+
+@pytest.mark.parametrize(("n", "warned"), [(3, True), (40, False)])
+def test_a_plot_with_room_for_hardly_a_plant_is_doubted(n, warned, monkeypatch):
+    said = []
+    monkeypatch.setattr(bringing_files.st, "warning", said.append)
+    monkeypatch.setattr(bringing_files, "show_messages", lambda *_: None)
+    grid = SimpleNamespace(vine=np.arange(n))
+    choices = SimpleNamespace(plot=SimpleNamespace(grid=grid), season=object(), messages=())
+    bringing_files.show_of_plot(choices)
+    assert said == ([texts.FEW_PLANTS.format(n=n)] if warned else [])

@@ -55,6 +55,7 @@ def test_four_typed_corners_are_a_plot_with_a_route_and_survive_a_reload(drawing
     assert metric(drawing, "Area") == "4.21 ha"
     assert plot_name(drawing) == texts.OUTLINE_NAME
     assert "named by column" not in texts_of(drawing)
+    assert texts.MESSAGES_DRAWN in texts_of(drawing)
     word = drawing.query_params["files"]
     again = opened(texts.UPLOAD, files=word[0] if isinstance(word, list) else word)
     assert plot_name(again) == texts.OUTLINE_NAME

@@ -3,12 +3,15 @@
 import io
 import zipfile
 from datetime import datetime
+from functools import partial
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from app.actions import handing_out
 from app.actions.handing_out import made
+from app.state.choices import Choices
 from fieldmon.compute.wording import worded
 from fieldmon.io.writers import FORMATS, HandoffPlan
 from fieldmon.io.writers.day_file import RouteNotes
@@ -49,12 +52,15 @@ def test_a_new_format_is_offered_without_a_line_in_the_app(plan, monkeypatch):
     monkeypatch.setattr(handing_out.st, "selectbox", box)
     told = []
     monkeypatch.setattr(
-        handing_out.st, "download_button", lambda label, *_, **_m: told.append(label)
+        handing_out.st, "download_button", lambda *said, **_: told.append((said[0], said[2]))
     )
-    handing_out._files(SimpleNamespace(day="2026-11-16"), plan)
+    team = SimpleNamespace(season=SimpleNamespace(path=Path("כרם 3.gpkg")), day="2026-11-16")
+    team.whose_day, team.file_name = "Ann/Bo", partial(Choices.file_name, team)
+    handing_out._files(team, plan)
     assert next(iter(offered)) == "gpx"  # the commonest first
     assert offered["new"] == "whoever reads new files: new"
-    assert told == ["Download for whoever reads new files"]
+    # each of a team has a file of another name, and each season
+    assert told == [("Download for whoever reads new files", "route_כרם_3_Ann_Bo_2026-11-16.new")]
 
 
 def test_a_sheet_to_print_is_in_the_language_of_the_app(monkeypatch, speaking):

@@ -11,7 +11,7 @@ from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.io.writers.treatment_map import treatment_map_bytes
 from fieldmon.monitoring.estimates.last_days import default_date
 from tests.app.chosen import in_season
-from tests.app.driving import boxed, go, press, texts_of
+from tests.app.driving import apart, boxed, go, press, texts_of
 
 
 def noted(app, **said):
@@ -92,9 +92,14 @@ def test_a_dose_stands_beside_its_unit_on_a_phone_too(season_app):
     assert boxes[began : began + 2] == ["treat began", "treat ended"]
 
 
-def test_a_dose_without_a_unit_is_asked_for(season_app, season):
+def test_a_dose_without_a_unit_is_asked_for_and_an_efficacy_that_is_a_share(season_app, season):
     noted(season_app, dose=0.5)
     assert "must have a number and a unit" in season_app.error[0].value
+    # a command takes a share: here it would be hardly any
+    boxed(season_app.number_input, "efficacy").set_value(0.8)
+    boxed(season_app.text_input, "treat unit").set_value("l/ha")
+    press(season_app, "Note the treatment")
+    assert "Give 80 for 80 %" in apart(season_app.error[0].value)
     assert season().treatments() == ()
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from app.show import advice as shown
+from app.show.map_view import MapContent
 from app.words import texts
 from app.words.units import UnitsInLanguage
 from fieldmon.compute.units import Units
@@ -52,6 +53,16 @@ def test_each_zone_is_outlined_and_numbered_on_the_map(made):
         corners = np.array(zone["p"])
         assert (corners.min(axis=0) <= number["p"]).all()
         assert (corners.max(axis=0) >= number["p"]).all()
+
+
+def test_the_map_has_the_zones_of_its_own_advice_though_results_came_before_it(made, monkeypatch):
+    bare = MapContent("here", [0, 0, 1, 1], "a map", [])
+    monkeypatch.setattr(shown.map_layers, "day_map", lambda *_, **__: bare)
+    # the advice of before, then the one of now, at one revision of the file
+    choices = SimpleNamespace(key="test zones", revision="2", day="2026-11-16", dark=False)
+    assert len(shown.zone_map(choices, made).labels) == 2
+    now = advice(GRID, PairApproximation.of(GRID, np.full(len(GRID), 1e-4)), made.asked)
+    assert shown.zone_map(choices, now).layers == []
 
 
 def test_a_share_and_litres_are_said_as_in_the_sentence_and_on_paper(made, monkeypatch):

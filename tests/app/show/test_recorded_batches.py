@@ -6,12 +6,12 @@ from datetime import date
 import numpy as np
 from shapely import MultiPolygon, box
 
-from app.show.recorded_batches import in_short, last, line, source
+from app.show.recorded_batches import in_short, last, line, source, undone
 from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, SKIPPED, Inspections
 from fieldmon.monitoring import Application, Season
 from fieldmon.plot.grid import plant_numbers
 from tests.app.chosen import in_season
-from tests.app.driving import go
+from tests.app.driving import apart, go
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
 DAY = np.datetime64("2026-11-16")
@@ -47,6 +47,11 @@ def test_a_plant_of_two_faces_is_told_with_the_one_that_was_inspected(tmp_path, 
     (batch,), here = kept.batches(), in_season(kept, BEGINS)
     said = kept.contents([batch.number])[batch.number]
     assert f"plant {said.plant}, face 2: found" in line(here, batch, said)
+    two = Inspections.of(np.array([1, 2]), np.array([0, 0]), np.datetime64(BEGINS))
+    file = kept.record(two, "day.csv").batch
+    # the number of the batch is for commands
+    assert undone(kept.undo(file)) == "Undone: 2 inspections from \u2068day.csv\u2069."
+    assert undone(kept.redo(file)) == "Counts again: 2 inspections."
     speaking("he")
     assert all(f"{said.plant}, צד 2:" in one for one in (line(here, batch, said), last(here, said)))
 
@@ -77,9 +82,10 @@ def test_a_treatment_is_told_by_how_many_plants_were_treated_and_when(season_app
     every, some = (int(one.place.plants.sum()) for one in kept.treatments())
     assert some < every == len(kept.plot.grid)
     go(season_app, "record")
-    said = [one.value.replace(",", "") for one in season_app.markdown if "treatment" in one.value]
-    assert f"treatment \u2068oil\u2069 · {some} plants · Mon 16 Nov" in said[0]
-    assert f"treatment \u2068soap\u2069 · {every} plants · Mon 16 Nov" in said[1]
+    lines = [apart(one.value) for one in season_app.markdown if "treatment" in one.value]
+    said = [one.replace(",", "") for one in lines]
+    assert f"treatment \u2068oil\u2069 · {some} plants · efficacy 80 % · Mon 16 Nov" in said[0]
+    assert f"treatment \u2068soap\u2069 · {every} plants · efficacy 80 % · Mon 16 Nov" in said[1]
 
 
 def test_every_result_has_its_word():

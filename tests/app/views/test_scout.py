@@ -1,10 +1,15 @@
 """The page of scouting."""
 
+from datetime import date
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from app.show.maps import colours
+from app.views import scout
 from app.words import texts
+from app.words.units import UnitsInLanguage
 from tests.app.driving import go, layer, map_of, plants, tap, texts_of
 
 
@@ -46,3 +51,18 @@ def test_without_a_season_it_says_what_it_needs(app):
     go(app, "scout")
     assert texts.SCOUT_NEEDS in texts_of(app)
     assert not app.exception
+
+
+@pytest.mark.parametrize(("is_today", "head"), [(True, "Done for today"), (False, "on Fri 20 Nov")])
+def test_another_day_is_not_called_today_where_nothing_is_left_of_it(is_today, head, monkeypatch):
+    said, done = [], SimpleNamespace(inspected_today=3, found_today=1)
+    monkeypatch.setattr(scout.st, "markdown", said.append)
+    monkeypatch.setattr(scout.chosen_day, "progress", lambda _: done)
+    monkeypatch.setattr(scout.scouting, "can_be_longer", lambda _: False)
+    scout._say_done(
+        SimpleNamespace(
+            is_today=is_today, on=date(2026, 11, 20), today=date(2026, 11, 30),
+            units=UnitsInLanguage(),
+        )
+    )  # fmt: skip
+    assert head in said[0].split("\n")[0]

@@ -41,6 +41,12 @@ def test_a_sheet_that_was_typed_in_as_it_was_printed_is_read(code, speaking):
     assert any(is_gone(word) for word in gone.split())
 
 
+@pytest.mark.parametrize("code", language.LANGUAGES)
+def test_a_plant_by_its_number_alone_is_of_no_language(code, speaking):
+    speaking(code)
+    assert language.plant_in_words(rectangle(2, 5), 0, 6) == "6"
+
+
 def test_a_text_is_read_in_the_language_that_is_spoken(speaking):
     assert texts.MENU["today"] == "Today"
     speaking("he")

@@ -41,6 +41,7 @@ def test_a_day_on_an_axis_has_no_year_and_the_order_of_the_language(speaking):
 def test_a_day_in_a_sentence_has_its_weekday_and_a_year_only_where_that_is_far_off(speaking):
     on = date(2026, 11, 16)
     assert UnitsInLanguage().said_day(on, date(2027, 1, 2)) == "Mon 16 Nov"
+    assert UnitsInLanguage().said_day("2027-03-01", date(2026, 11, 30)) == "Mon 1 Mar 2027"
     assert UnitsInLanguage().said_day(on, date(2028, 1, 2)) == "Mon 16 Nov 2026"
     assert UnitsInLanguage(date_like="11/16/2026").said_day("2026-11-16") == "Mon Nov 16"
     said = {"he": "ב׳ 16 בנוב׳", "ar": "الاثنين 16 نوفمبر", "es": "lun 16 nov"}

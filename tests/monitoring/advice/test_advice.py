@@ -61,7 +61,7 @@ def test_faces_are_counted_by_the_advice_as_by_the_status_and_that_is_said(seaso
     treated = two.advice(BEGINS, AdviceSettings(0.05, costs=CHEAP))
     assert any(one.startswith("6 plants were treated that day") for one in treated.reasons())
     assert two.contents([(last := two.batches()[0]).number])[last.number].n == 6
-    assert two.log()[-1].what["said"].startswith("soap on 0.00")
+    assert two.log()[-1].what["said"].startswith("soap on 72 m²")
     assert ", 6 plants in row" in two.log()[-1].what["said"]
     said = "Each face counts as a plant"
     assert said in advice.said_of_zones()[-1]
@@ -231,7 +231,7 @@ def test_what_was_treated_that_day_is_not_proposed_anew_and_said(tmp_path):
         (990.0, 1, TREAT, " in 1 zone, 99 % of the "),
         (250.0, 1, LEAVE, " of it in 1 zone, 25 % of the 0.1 ha under plants."),
         (0.0, 0, LEAVE, "Do not treat today."),
-        (250.0, 0, LEAVE, "Do not treat by the threshold; by these costs alone 0.025 ha in 1 zone"),
+        (250.0, 0, LEAVE, "Do not treat by the threshold; by these costs alone 250 m² in 1 zone"),
         (0.0, 0, TREAT, "above the threshold, though by these costs it pays nowhere."),
     ],
 )  # fmt: skip
@@ -282,7 +282,7 @@ def test_one_zone_that_is_the_whole_plot_is_compared_with_nothing(season):
 def test_a_small_zone_is_not_nothing(season):
     zones = season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)).zones
     small = replace(zones, m2=12.3)
-    assert small.sentence().startswith("To treat 0.00123 ha in ")
+    assert small.sentence().startswith("To treat 12.3 m² in ")
     advice = replace(season.advice(BEGINS, AdviceSettings(0.01, costs=CHEAP)), zones=small)
     said = " ".join(advice.said_of_zones())
     assert "0.23 % of the 0.526 ha" in said

@@ -115,4 +115,4 @@ def test_the_log_says_what_where_and_how_much():
     )
     single = TreatedPlace(None, np.arange(20) == 3, 0.00025)
     said = treatments.in_words(single, Application("Solo"), "1 plant in row 3")
-    assert said == "Solo on 0.00025 ha, 1 plant in row 3"
+    assert said == "Solo on 2.5 m², 1 plant in row 3"

@@ -26,7 +26,7 @@ def drawn(monkeypatch):
         return overnight(of, night)
 
     monkeypatch.setattr(drawn_nights, "overnight", counted)
-    drawn_nights._drawn.cache_clear()
+    drawn_nights._kept.cache_clear()
     return nights
 
 

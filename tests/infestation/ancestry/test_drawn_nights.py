@@ -10,6 +10,10 @@ from fieldmon.infestation.ancestry.ancestry import Ancestry
 from fieldmon.infestation.ancestry.ancestry_night import ToldNight, overnight
 from fieldmon.infestation.ancestry.drawn_nights import overnight_once
 from fieldmon.infestation.ancestry.kept_ancestry import arrays_of
+from fieldmon.infestation.belief import Learning
+from fieldmon.infestation.insects.pest_in_weather import PestInWeather
+from fieldmon.infestation.insects.spread import Spread
+from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.pests.pest import Pest
 from tests.infestation.ancestry.ancestries import FLAT, GRID, MIDDLE
 
@@ -63,6 +67,19 @@ def test_what_differs_in_anything_is_drawn_anew(drawn, of, night):
     overnight_once(evening(), NIGHT)
     overnight_once(of, night)
     assert len(drawn) == 2
+
+
+@pytest.mark.parametrize("pest", [None, Pest("mite")])
+def test_the_evening_in_hindsight_and_the_morning_after_it_are_told_by_the_same_draws(drawn, pest):
+    first = TracedPairs.of(GRID, FLAT)
+    belief = first if pest is None else first.of_pest(pest)
+    spread = Spread(0.1) if pest is None else PestInWeather(pest).spread(0, GRID.frame)
+    plants = np.array([MIDDLE, 0, 5], np.int32)
+    told = belief.learn(plants, plants == MIDDLE, Learning(0.84))
+    for _ in range(2):
+        told.in_hindsight(spread)
+        told.overnight(spread)
+    assert len(drawn) == 1 + len(told.others)
 
 
 def test_a_night_of_which_nothing_is_to_be_drawn_is_not_kept(drawn):

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import pytest
 from xdist.scheduler import loadscope
 
-from tests.xdist_order import BothEnds, workers
+from tests.paths import ROOT
+from tests.xdist_order import LONG, PLAIN, TOGETHER, BothEnds, in_order, workers
 
 FILES = {"drawn.py": 3, "one.py": 1, "two.py": 2, "long.py": 4}
 TESTS = [f"{file}::{k}" for file, n in FILES.items() for k in range(n)]
@@ -16,6 +17,23 @@ TESTS = [f"{file}::{k}" for file, n in FILES.items() for k in range(n)]
 )
 def test_there_are_more_workers_than_cores_where_memory_allows(cores, free_gb, n):
     assert workers(cores, free_gb * 1e9) == n
+
+
+def test_what_waits_comes_first_and_last_what_compiles_nothing():
+    names = ["docs/test_docs.py", "docs/test_examples.py", "app/words/test_units.py", "plot/a.py"]
+    tests = [item(f"tests/{name}") for name in names]
+    tests.append(item("tests/zones.py", fixturenames=["page", "browser"]))
+    in_order(tests)
+    order = ["zones.py", "plot/a.py", names[1], names[0], names[2]]
+    assert [one.nodeid.split("::")[0] for one in tests] == [f"tests/{name}" for name in order]
+
+
+def item(file, fixturenames=()):
+    return SimpleNamespace(path=file, nodeid=f"{file}::test", fixturenames=fixturenames)
+
+
+def test_what_is_named_there_is_there():
+    assert [one for one in (*PLAIN, *LONG, *TOGETHER) if not (ROOT / one).exists()] == []
 
 
 class Worker:

@@ -6,6 +6,9 @@ from xdist.scheduler import LoadFileScheduling
 PLAIN = ("tests/app/words/", "tests/docs/", "tests/io/parse/", "tests/io/sandbox/",
          "tests/test_floors.py", "tests/test_rooms.py", "tests/test_words.py")  # fmt: skip
 
+#: what plans days in these rooms, for a minute or more: it is begun next
+LONG = ("tests/app/words/test_languages.py", "tests/docs/test_examples.py")
+
 #: whose files share what takes long to make: one worker runs them all
 TOGETHER = ("tests/studies/thesis/chapter4/",)
 
@@ -24,9 +27,15 @@ def workers(cores, free_bytes):
 
 
 def in_order(items):
-    """Sort tests, file by file: first those with a browser, which wait; last those of `PLAIN`."""
+    """Sort tests, file by file: first those with a browser, which wait; last `LONG` and `PLAIN`."""
     drawn = {one.path for one in items if "browser" in getattr(one, "fixturenames", ())}
-    items.sort(key=lambda one: (one.path not in drawn, one.nodeid.startswith(PLAIN)))
+    items.sort(key=lambda one: (one.path not in drawn, _from_back(one.nodeid)))
+
+
+def _from_back(nodeid):
+    if nodeid.startswith(LONG):
+        return 1
+    return 2 if nodeid.startswith(PLAIN) else 0
 
 
 class BothEnds(LoadFileScheduling):

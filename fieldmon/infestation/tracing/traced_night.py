@@ -9,7 +9,8 @@ import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
 from fieldmon.compute.jit import loop
-from fieldmon.infestation.ancestry.ancestry_night import ToldNight, overnight
+from fieldmon.infestation.ancestry.ancestry_night import ToldNight
+from fieldmon.infestation.ancestry.drawn_nights import overnight_once
 from fieldmon.infestation.ancestry.origins import ANYWHERE, BY_ADJACENT, BY_EDGE, JUMPED, N_ORIGINS
 from fieldmon.infestation.chance_bounds import (
     AS_GOOD_AS_CLEAN,
@@ -87,7 +88,7 @@ def with_ancestry(evening: Map, morning: Map, spread: Spread) -> Map:
     night = ToldNight(sends, evening.told_from_outside(spread), wind_m_s=morning.wind_m_s)
     if isinstance(spread, PestSpread):
         night = night._replace(length=(spread.days, *spread.warmth))
-    ancestry, chance = overnight(replace(evening.ancestry, hiding=hiding), night)
+    ancestry, chance = overnight_once(replace(evening.ancestry, hiding=hiding), night)
     if chance is not None:
         # a logarithmic pool of both maps (Genest & Zidek 1986)
         odds = _BOTH * _odds(chance) ** _ANCESTRY * _odds(morning.chance) ** _ORIGINS

@@ -24,9 +24,13 @@ if TYPE_CHECKING:
     Morning = tuple[Ancestry, NDArray[np.float64] | None]
 
 
+#: on larger plots nothing is kept: of a million plants one morning is some 160 MB
+KEPT_PLANTS = 50_000
+
+
 def overnight_once(of: Ancestry, night: ToldNight) -> Morning:
-    """Return what `overnight` does, to the last bit; a night is drawn once."""
-    if not of.waits:  # nothing is drawn
+    """Return what `overnight` does, to the last bit; a night is drawn once if its plot is small."""
+    if not of.waits or len(of.grid) > KEPT_PLANTS:  # nothing is drawn, or it is too much to keep
         return overnight(of, night)
     kept = _kept(_causes(of, night))
     if not kept:

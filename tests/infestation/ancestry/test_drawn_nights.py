@@ -50,6 +50,13 @@ def test_the_same_is_drawn_once_whoever_read_the_plot(drawn):
     assert len(drawn) == 1
 
 
+def test_of_large_plots_nothing_is_kept(drawn, monkeypatch):
+    monkeypatch.setattr(drawn_nights, "KEPT_PLANTS", len(GRID) - 1)
+    for _ in range(2):
+        overnight_once(evening(), NIGHT)
+    assert len(drawn) == 2
+
+
 @pytest.mark.parametrize(
     ("of", "night"),
     [

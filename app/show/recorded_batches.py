@@ -72,9 +72,9 @@ def undone(said: str) -> str:
 
 
 def _unnumbered(one: str) -> str:
-    blanks = one.values if isinstance(one, Worded) else {}
-    if not {"batch", "what"} <= blanks.keys():
+    if not isinstance(one, Worded) or not {"batch", "what"} <= one.values.keys():
         return in_words(one)
+    blanks = one.values
     what = in_words(blanks["what"])
     if "source" in blanks:
         return texts.UNDONE_FROM.format(what=what, source=texts.isolated(source(blanks["source"])))

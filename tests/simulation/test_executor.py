@@ -130,7 +130,7 @@ def test_a_killed_client_costs_only_unfinished_chunks(two_workers, tmp_path):
     command = f"from fieldmon.simulation import design; design._CHUNK_S = {CHUNK_S}; "
     command += "from fieldmon.cli.main import main; main()"
     words = [sys.executable, "-c", command, "study", "run", "plot.geojson", "--seeds", "12"]
-    words += ["--days", "10", "--workers", "2", "--date", "2026-11-02"]
+    words += ["--days", "10", "--workers", "1", "--date", "2026-11-02"]
     command = subprocess.Popen([*words, "-o", "killed"], cwd=tmp_path, stderr=subprocess.DEVNULL)
     until = time.monotonic() + 200
     while not list(tmp_path.glob("killed/*/*.parquet")) and time.monotonic() < until:

@@ -45,8 +45,8 @@ def refuse_mixed(read: DatedColumn, name: str) -> None:
     raise ChoiceNeeded(
         worded(
             "Dates must stand in one order, but those of {name!r} do not: {n_day} {n_day:is|are} "
-            "day first ({day}), {n_month} month first ({month}), and {n} could be either. Write them "
-            "all as 2026-11-18. Or choose one order: what is no date in it counts as unknown.",
+            "day first ({day}), {n_month} month first ({month}), and {n} could be either. Write "
+            "them all as 2026-11-18. Or choose one order: what is no date in it counts as unknown.",
             name=name,
             n_day=n_day,
             day=day,

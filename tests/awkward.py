@@ -984,12 +984,18 @@ def dates_that_could_be_both_and_were_told():
     return dated("03/04/2026")
 
 
+@case("records", asks=("date_order", "dmy", "mdy"), refuses="must stand in one order")
+def dates_in_both_orders():
+    return dated("13/03/2026", "03/13/2026")
+
+
 @case(
     "records",
     check=days("2026-03-13", "NaT"),
+    options=RecordOptions(date_order="dmy"),
     says="doubtful: 1 record has a date that is none (record 2: '03/13/2026')",
 )
-def dates_in_both_orders():
+def dates_in_both_orders_that_were_told():
     return dated("13/03/2026", "03/13/2026")
 
 

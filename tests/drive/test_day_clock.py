@@ -37,7 +37,7 @@ class Live(Vda5050Robot):
         for _ in range(n):
             self.now += timedelta(seconds=each_s)
             assert day.ask() is not None
-            day.tell(found=False, at_s=self._at_s("41.1"))
+            day.tell(found=False, at_s=self._day_clock.result_s("41.1"))
 
 
 @pytest.fixture

@@ -183,6 +183,15 @@ def _plant_of(db: sqlite3.Connection, said: BatchContents | None) -> str:
     return "" if said is None or said.n != 1 else number_of(db, said.at, said.plant)
 
 
+def _rows_of(batch: Batch, n: int) -> str:
+    """Return in words so many rows of a batch."""
+    return {
+        "findings": counted(n, "inspection"),
+        "corrections": counted(n, "correction"),
+        "treatment": counted(n, "treatment"),
+    }[batch.kind]
+
+
 def _counts_again(
     batch: Batch,
     said: BatchContents | None,
@@ -202,10 +211,8 @@ def _counts_again(
             row=signs.get(said.row, said.row), plant=plant, date=date_or_text(said.first),
             result=_RESULTS.get(said.called, said.called),
         )  # fmt: skip
-    noun = {"findings": "inspection", "corrections": "correction", "treatment": "treatment"}[
-        batch.kind
-    ]
-    again = worded("Batch {batch} counts again: {what}.", batch=batch.number, what=counted(n, noun))
+    what = _rows_of(batch, n)
+    again = worded("Batch {batch} counts again: {what}.", batch=batch.number, what=what)
     if not elsewhere:
         return again
     more = worded("{n:,} more {n:counts|count} in another batch already.", n=elsewhere)
@@ -229,11 +236,7 @@ def _undone(
     if batch.kind == "findings" and said is not None and said.n == 1:
         signs, plant = place
         return _undone_one(signs.get(said.row, said.row), plant, said.first, said.called)
-    what = {
-        "findings": counted(batch.rows, "inspection"),
-        "corrections": counted(batch.rows, "correction"),
-        "treatment": counted(batch.rows, "treatment"),
-    }[batch.kind]
+    what = _rows_of(batch, batch.rows)
     if batch.kind == "treatment" and batch.source:
         return worded(
             "Batch {batch} was undone: {what} with {product}.",

@@ -21,10 +21,9 @@ from fieldmon.monitoring.inspecting import batches, inspection_table, undone_bat
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merge import merge_copies
 from fieldmon.monitoring.phones import findings, photos
-from fieldmon.monitoring.phones.findings import _SentFindings
 from fieldmon.monitoring.phones.photos import Photo
 from fieldmon.monitoring.phones.scouts import Scout
-from fieldmon.monitoring.phones.sent_findings import Finding
+from fieldmon.monitoring.phones.sent_findings import Finding, SentFindings
 from fieldmon.monitoring.settings import settings_log
 from fieldmon.monitoring.settings.settings import MonitoringSettings, as_json, from_json
 from fieldmon.monitoring.treating.applications import Application
@@ -112,7 +111,7 @@ def tell(db, rng, told):
     """Record what a phone saved; the other copy may do so too. Sometimes its last is undone."""
     who, finding, photo = rng.choice(told)
     now, undone = Clock.now(UTC), Finding(f"u{finding.id}", finding.at, undoes=finding.id)
-    letter = _SentFindings([finding, undone][: 1 + (rng.random() < 0.2)], (now, now), now,
+    letter = SentFindings([finding, undone][: 1 + (rng.random() < 0.2)], (now, now), now,
                            timedelta())  # fmt: skip
     change = SimpleNamespace(db=db, reaches=lambda _: None)
     findings._take(SEASON, change, Scout(who, None, ""), letter)

@@ -19,7 +19,7 @@ from fieldmon.monitoring.days.estate_routes import (
     walked,
 )
 from fieldmon.monitoring.merging import other_seasons
-from fieldmon.monitoring.merging.other_seasons import Ground
+from fieldmon.monitoring.merging.other_seasons import SeasonGround
 from fieldmon.monitoring.treating.closures import closed_plants
 from fieldmon.planning.members import TeamMember
 from fieldmon.planning.plan import PlanSettings, plan_from
@@ -163,8 +163,8 @@ def of_one_plot(names: Iterable[str]) -> tuple[Worded, ...]:
             season = cached.season(seasons_folder.path_of(name))
             seasons.append(season)
             own += [season] if name in wanted else []
-    grounds = [Ground.of(one) for one in own]
-    among = [one for one in seasons if any(map(Ground.of(one).is_that_of, grounds))]
+    grounds = [SeasonGround.of(one) for one in own]
+    among = [one for one in seasons if any(map(SeasonGround.of(one).is_that_of, grounds))]
     return other_seasons.of_one_plot(among, texts.isolated)
 
 

@@ -13,7 +13,7 @@ from fieldmon.monitoring.changes import logged_days
 from fieldmon.monitoring.days import kept_routes
 from fieldmon.monitoring.phones.photos_asked import photos_asked_in
 from fieldmon.monitoring.phones.scouts import inside, scouts_in
-from fieldmon.monitoring.settings.shift_work import BEGINS_OTHERWISE_S, Crew
+from fieldmon.monitoring.settings.shift_work import BEGINS_OTHERWISE_S, ScoutCrew
 from fieldmon.monitoring.treating.closures import closed_plants
 from fieldmon.planning.members import person_key
 from fieldmon.planning.plan import DayPlan
@@ -358,7 +358,7 @@ def planned_again(
             for one in {*crew} - {*said}
         }
         named = (ahead.kept_as(part),) if len(crew) == 1 else None
-        days = season.plan_each(on, wishes=wishes, crew=Crew(crew, told, named))
+        days = season.plan_each(on, wishes=wishes, crew=ScoutCrew(crew, told, named))
         return days[crew.index(me)].route
     who, hours = None if member is None else member.name, work_hours(season, on, part)
     left_s = hours.left_s if seconds_left is None else min(seconds_left, hours.left_s)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 # of the smaller of two boundaries, in the other: they are of one plot
 _MOST_OF_PLOT = 0.5
 # of the seasons that are open
-_KNOWN: WeakKeyDictionary[OpenSeason, Ground] = WeakKeyDictionary()
+_KNOWN: WeakKeyDictionary[OpenSeason, SeasonGround] = WeakKeyDictionary()
 
 
 def is_another_now(season: OpenSeason) -> bool:
@@ -84,7 +84,7 @@ def treatments_alone_in(season: OpenSeason, file: Path) -> list[tuple[str, str]]
         return treatments.counting_alone(db, theirs)
 
 
-class Ground(NamedTuple):
+class SeasonGround(NamedTuple):
     """The ground of a season's plot.
 
     Parameters
@@ -99,7 +99,7 @@ class Ground(NamedTuple):
     boundary: MultiPolygon
 
     @classmethod
-    def of(cls, season: OpenSeason) -> Ground:
+    def of(cls, season: OpenSeason) -> SeasonGround:
         """Return that of a season; it never changes, and takes long to read."""
         if (known := _KNOWN.get(season)) is None:
             with season.store.reading() as db:
@@ -107,7 +107,7 @@ class Ground(NamedTuple):
             _KNOWN[season] = known
         return known
 
-    def is_that_of(self, other: Ground) -> bool:
+    def is_that_of(self, other: SeasonGround) -> bool:
         """Return whether another season has the same plants, or stands on the same ground.
 
         Then more than half of the smaller boundary lies in the other, however rows were laid.
@@ -141,9 +141,9 @@ def of_one_plot(
     seasons: Iterable[OpenSeason], named: Callable[[str], str] = str
 ) -> tuple[Worded, ...]:
     """Return a sentence on each plot of which there are several seasons; `named` writes a name."""
-    plots: list[list[tuple[OpenSeason, Ground]]] = []
+    plots: list[list[tuple[OpenSeason, SeasonGround]]] = []
     for season in seasons:
-        here = Ground.of(season)
+        here = SeasonGround.of(season)
         same = [plot for plot in plots if any(here.is_that_of(ground) for _, ground in plot)]
         plots = [plot for plot in plots if plot not in same]
         plots.append([*chain.from_iterable(same), (season, here)])

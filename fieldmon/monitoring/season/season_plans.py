@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.days.kept_routes import KeptPlans, KeptRoute
     from fieldmon.monitoring.estimates.season_contents import SeasonContents
     from fieldmon.monitoring.settings.settings import MonitoringSettings
-    from fieldmon.monitoring.settings.shift_work import Crew
+    from fieldmon.monitoring.settings.shift_work import ScoutCrew
     from fieldmon.planning.wishes import Wishes
     from fieldmon.samplers.base import Scene
 
@@ -87,7 +87,7 @@ class SeasonPlans(SeasonDays):
 
     def plan_each(
         self, on: Day, now: TimeOfDay | None = None, *, keep: bool = True,
-        wishes: Wishes | None = None, crew: Crew | None = None,
+        wishes: Wishes | None = None, crew: ScoutCrew | None = None,
     ) -> tuple[DayPlan, ...]:  # fmt: skip
         """Plan what is left of a day for each of the team, or for the one who works.
 
@@ -126,7 +126,7 @@ class SeasonPlans(SeasonDays):
 
     def _crew_days(
         self, contents: SeasonContents, on: date, asked: tuple[time | None, Wishes | None],
-        crew: Crew,
+        crew: ScoutCrew,
     ) -> tuple[DayPlan, ...]:  # fmt: skip
         """Return the days of scouts who are no team's, by the time and the wishes asked for."""
         now, wishes = asked

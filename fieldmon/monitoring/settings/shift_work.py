@@ -55,7 +55,7 @@ class Besides(NamedTuple):
     others: tuple[str, ...]
 
 
-class Crew(NamedTuple):
+class ScoutCrew(NamedTuple):
     """Scouts who are no team's, and share the same plants on a day.
 
     Parameters

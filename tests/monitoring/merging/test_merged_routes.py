@@ -9,7 +9,7 @@ import numpy as np
 from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.days.day_ahead import WHOLE, DayAhead
-from fieldmon.monitoring.settings.shift_work import Crew
+from fieldmon.monitoring.settings.shift_work import ScoutCrew
 from tests.monitoring.seasons import BEGINS
 
 
@@ -40,7 +40,7 @@ def test_a_copy_that_brings_nothing_leaves_the_routes_of_a_day_as_they_are(path,
         before = season.settings
         season.change(replace(first, robot=first.robot.with_hours(hours)), before)
         season.plan(on)
-    season.plan_each(BEGINS, crew=Crew(("Ann",)))  # after routes of a later day
+    season.plan_each(BEGINS, crew=ScoutCrew(("Ann",)))  # after routes of a later day
     wanted = "SELECT fid, day, who, revision, digest FROM routes ORDER BY fid"
     with season.store.reading() as db:
         routes = db.execute(wanted).fetchall()

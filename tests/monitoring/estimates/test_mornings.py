@@ -316,13 +316,11 @@ def test_mornings_are_forgotten_from_the_day_on_that_changed(path):
 
 @pytest.mark.parametrize("days_before", [0, 9])
 def test_figures_that_another_version_kept_are_worked_out_anew(path, monkeypatch, days_before):
-    from fieldmon.monitoring.season import season_estimates
-
     on = BEGINS + timedelta(days=LAST - days_before)
     true = Season(path).status(on).estimate
     change(path, "UPDATE days SET low = 0, expected_left = 1")
     assert figures_of_day.day_figures(Season(path), on).expected == 1.0
-    monkeypatch.setattr(season_estimates, "rules", lambda: "of another version")
+    monkeypatch.setattr(figures_of_day, "rules", lambda: "of another version")
     now = figures_of_day.day_figures(Season(path), on)
     assert (now.expected, now.low, now.high) == (true.expected, true.low, true.high)
 

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
+import rasterio
 import shapely
 
 import fieldmon as fm
@@ -411,9 +412,20 @@ def _of_files(plot: fm.Plot, folder: Path) -> Iterator[Case]:
     labels = folder / "labels.csv"
     labels.write_text("product\nSome oil\n")
     yield Case("read_labels", fm.read_labels, {"source": labels})
+    yield Case("read_risk", fm.read_risk, {"source": _raster(plot, folder / "ndvi.tif"),
+               "plot": plot, "meaning": "rank", "mean_share": 0.03, "how": None})  # fmt: skip
     yield Case("read_plots", fm.read_plots, {"source": ESTATE})
     yield Case("read_plot", fm.read_plot, {"source": ESTATE, "feature": "Gate", "plants": None,
                "planting": None, "gate": None})  # fmt: skip
+
+
+def _raster(plot: fm.Plot, path: Path) -> Path:
+    """Return a raster over a plot."""
+    lies = rasterio.transform.from_bounds(*plot.field.boundary.bounds, 4, 4)
+    shape = {"width": 4, "height": 4, "count": 1, "dtype": "float32"}
+    with rasterio.open(path, "w", crs="EPSG:4326", transform=lies, **shape) as file:
+        file.write(np.linspace(0.2, 0.8, 16, dtype="float32").reshape(1, 4, 4))
+    return path
 
 
 def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:

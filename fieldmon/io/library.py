@@ -442,6 +442,8 @@ def read_risk(
     must_be_plot(plot)
     must_be_of("'mean_share' of read_risk", "float | None", mean_share)
     must_be_of("'low_is_risky' of read_risk", "bool", low_is_risky)
+    must_be_of("'meaning' of read_risk", "str | None", meaning)
+    must_be_of("'how' of read_risk", "str | None", how)
     from fieldmon.infestation.prior.raster_risk import RiskSettings  # noqa: PLC0415 - with scipy
     from fieldmon.io.rasters.values import RasterOptions  # noqa: PLC0415 - half a second
 

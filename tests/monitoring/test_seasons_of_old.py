@@ -262,7 +262,7 @@ def test_in_a_season_of_format_15_those_walk_who_are_charged_a_scouts_times(tmp_
     """Made before it was said who walks: a scout, and a team of whom one stops for 8 s."""
     season = Season(shutil.copy(FOLDER / "of_format_15.gpkg", tmp_path))
     assert (tmp_path / "of_format_15.gpkg.format-15").is_file()
-    assert season.verify() == season.check_against_log() == ()
+    assert season.verify() == check_against_log(season) == ()
     seen = season.settings
     told = {one.name: one.robot for one in seen.team} | {"": seen.robot}
     assert [name for name, robot in told.items() if robot.on_foot] == ["Ada", ""]

@@ -78,7 +78,8 @@ class OpenSeason:
             self.plot: Plot = tables.read_plot(db)
             #: all records that it was given; see `records_known`
             self.records: Records = tables.read_records(db)
-            self._risk: Floats | None = tables.read_arrays(db, "risk").get("risk")
+            #: ``(n,)`` one more chance of being infested at the start; None: none was given
+            self.risk: Floats | None = tables.read_arrays(db, "risk").get("risk")
             self._first_entry = season_log.first(db)
 
     @property
@@ -223,7 +224,7 @@ class OpenSeason:
             if chance is None:
                 begins, plot = np.datetime64(settings.begins, "D"), self.plot
                 chance = prior_chance(
-                    plot.grid, plot.field, self.records, begins, settings.prior, self._risk
+                    plot.grid, plot.field, self.records, begins, settings.prior, self.risk
                 )
             self._prior = _Prior(key, causes, chance)
         return self._prior.chance

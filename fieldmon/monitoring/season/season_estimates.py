@@ -141,7 +141,7 @@ class SeasonEstimates(SeasonDays):
         if treated or (done.result == FOUND).any():
             return None
         background = contents.settings.prior.background_chance
-        told = records or self._risk is not None or history.belief.earlier is not None
+        told = records or self.risk is not None or history.belief.earlier is not None
         assumed = not told and background == PriorSettings().background_chance
         plants = len(np.unique(history.inspected(day))), len(history.grid)
         detects = history.mean_detection(day)

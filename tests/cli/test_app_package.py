@@ -17,6 +17,6 @@ def test_its_words_are_found_where_another_folder_is_called_app(tmp_path, monkey
     (tmp_path / "app" / "__init__.py").write_text("raise RuntimeError('another app')")
     monkeypatch.syspath_prepend(tmp_path)
     words = app_words("language")
-    assert words.FOLDER.is_relative_to(ROOT)
+    assert app_words("translations").FOLDER.is_relative_to(ROOT)
     assert {"en", "he", "ar", "es"} == {*words.LANGUAGES}
     assert sys.modules[words.__name__] is words

@@ -73,6 +73,15 @@ def test_whoever_watches_is_told_of_each_stop_once_it_is_recorded(monitor, plot,
     assert any(stop.visit.found for stop, _, _ in seen)
 
 
+@pytest.fixture
+def heard():
+    """Let Ctrl-C be heard: a program begun in the background passes it by."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heard")
 def test_who_stops_the_drive_waits_until_a_told_plant_is_noted_too(monitor, plot, robot):
     so_far, seen = DrivenDay(), []
     with monitor.day() as day:

@@ -209,7 +209,7 @@ def test_a_day_that_is_past_gets_no_hour_more(season_app, season, monkeypatch):
     monkeypatch.setattr(local_clock, "utc_now", lambda: datetime(2026, 11, 17, 7, tzinfo=UTC))
     app = opened("Gate 2026", day="2026-11-16")
     go(app, "scout")
-    assert "Done for today" in texts_of(app)
+    assert "Nothing to inspect on Mon 16 Nov" in texts_of(app)
     assert not [one for one in app.button if one.key == "scout_hour"]
 
 

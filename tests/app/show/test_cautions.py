@@ -109,7 +109,7 @@ def test_no_day_of_harvest_is_shown_where_the_wait_of_a_later_treatment_was_not_
     cautions.show_treatments(choices(season))
     (_, warned), *others = shown
     assert warned.startswith("- How long to wait from soap on ")
-    assert not [words for _, words in others if "soap" in words]  # said once
+    assert not [words for _, words in others if "wait" in words]  # said once
     assert not [words for _, words in shown if "harvest is allowed from" in words]
 
 

@@ -33,9 +33,9 @@ def shown(monkeypatch):
         monkeypatch.setattr(learnt.chosen_day, "progress", lambda _: progress)
         monkeypatch.setattr(learnt.chosen_day, "other_detections", lambda _: said)
         monkeypatch.setattr(learnt.chosen_day, "records_known", lambda _: RECORDS)
-        season = SimpleNamespace(earlier_season_note=lambda: taught)
+        monkeypatch.setattr(learnt, "earlier_season_note", lambda _: taught)
         units, on = UnitsInLanguage(), date(2026, 11, 16)
-        learnt.show(SimpleNamespace(open_season=season, units=units, on=on))
+        learnt.show(SimpleNamespace(open_season=None, units=units, on=on))
         return apart("\n".join(lines[1:])).splitlines()
 
     return show

@@ -103,7 +103,8 @@ def test_a_prj_and_a_world_file_beside_it_are_used(tmp_path):
 def test_a_picture_without_a_position_is_refused(tmp_path):
     path = write(tmp_path / "r.tif", ramp(dtype="uint8"), transform=False)
     assert "picture without a position" in refused(path)
-    assert "without a position" in refused(Upload("r.png", b"\x89PNG\r\n\x1a\n" + b"\x00" * 40))
+    picture = Upload("r.png", b"\x89PNG\r\n\x1a\n" + b"\x00" * 40)
+    assert "positions in photos are not read" in refused(picture)
 
 
 def test_control_points_alone_are_refused(tmp_path):

@@ -96,7 +96,7 @@ def test_terminals_get_the_version_and_the_grid_that_the_name_says(tmp_path, nam
 def test_it_is_said_what_cells_spray_beside_the_zones_and_miss(name, monkeypatch):
     said = said_of_cells(MAP, name)
     assert re.fullmatch(
-        r"Cells of 1\.00 m spray 0\.00\d+ ha beside the zones and miss 0\.00\d+ ha of their "
+        r"Cells of 1\.00 m spray \d+\.\d m² beside the zones and miss \d+\.\d m² of their "
         r"0\.33 ha\.", said,
     )  # fmt: skip
     monkeypatch.setattr(zone_cells, "MOST_CELLS", 2_000)

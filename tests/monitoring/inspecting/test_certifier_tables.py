@@ -77,7 +77,7 @@ def test_a_treatment_says_where_it_was_in_words_as_do_log_and_the_certifiers_rep
     assert [*made.to_geopandas("treatments")["where"]] == wanted
     logged = [one.sentence() for one in made.log() if one.kind == "treated"]
     assert logged[0].endswith(", 40 plants, rows 1–2, batch 1")
-    assert logged[4].endswith("ha, 4 plants in rows 101 · 5A, 102 · Top, batch 5")
+    assert logged[4].endswith("m², 4 plants in rows 101 · 5A, 102 · Top, batch 5")
     said = " ".join(certification_report([made], Units()).words())
     assert all(one in said for one in wanted)
 

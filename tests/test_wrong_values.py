@@ -7,6 +7,7 @@ import pytest
 
 import fieldmon as fm
 from fieldmon.errors import SettingError
+from tests import wrong_values
 from tests.wrong_values import Case, cases, faults
 
 
@@ -63,3 +64,16 @@ def test_what_crashes_says_nothing_or_names_nothing_is_found():
     ):
         assert said in Case("f", call, {"hours": 1.0}).fault("hours", label)
     assert Case("f", takes, {"hours": 1.0}).fault("hours", "half") == ""
+
+
+@pytest.mark.parametrize(("took", "said"), [([9.0, 0.1], ""), ([9.0, 9.0], "it took 9 s")])
+def test_what_takes_long_is_found_and_what_is_compiled_once_is_not(took, said, monkeypatch):
+    now, left = [0.0], list(took)
+    monkeypatch.setattr(wrong_values.time, "process_time", lambda: now[0])
+
+    def slow(hours: "float") -> "float":  # noqa: ARG001 - refused all the same
+        now[0] += left.pop(0)
+        raise SettingError("hours must be fewer.")
+
+    fault = Case("f", slow, {"hours": 1.0}).fault("hours", "text")
+    assert said in fault if said else fault == ""

@@ -188,9 +188,10 @@ class Case:
 
     def fault(self, parameter: str, label: str) -> str:
         """Return what is wrong with the answer to a value for one parameter; empty: nothing."""
-        began, held_kb = time.process_time(), _held_kb()
-        said, how = self._answer({**self.right, parameter: VALUES[label]})
-        took_s = time.process_time() - began
+        held_kb, given = _held_kb(), {**self.right, parameter: VALUES[label]}
+        (said, how), took_s = self._timed(given)
+        if took_s > _MOST_S:  # its loops were compiled, perhaps: that comes once
+            _, took_s = self._timed(given)
         if took_s > _MOST_S or _held_kb() - held_kb > _MOST_KB:
             how = f"it took {took_s:.0f} s and {(_held_kb() - held_kb) / 1000:.0f} MB"
         elif said is None and not how and label not in self._allowed(parameter):
@@ -200,6 +201,11 @@ class Case:
         elif said is not None and not how and not self._names(said, parameter, label):
             how = f"the sentence does not name it: {said}"
         return f"{self.name}({parameter}={label}): {how}" if how else ""
+
+    def _timed(self, arguments: dict[str, Any]) -> tuple[tuple[str | None, str], float]:
+        """Return the answer, and the seconds of the processor that it took."""
+        began = time.process_time()
+        return self._answer(arguments), time.process_time() - began
 
     def _answer(self, arguments: dict[str, Any]) -> tuple[str | None, str]:
         """Return the sentence that refuses, if one does, and what else went wrong."""

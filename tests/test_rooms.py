@@ -1,6 +1,8 @@
 """What each room of the library keeps to: its tests, and how its values say themselves."""
 
 import ast
+import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -64,6 +66,16 @@ def test_what_has_no_tests_declares_and_does_nothing(name):
     tree = ast.parse((LIBRARY / name).read_text(encoding="utf-8"))
     deciding = (ast.For, ast.While, ast.Try, ast.IfExp, ast.comprehension)
     assert not [node for node in ast.walk(tree) if isinstance(node, deciding)]
+
+
+def test_no_file_of_a_try_is_kept_at_the_top():
+    """What examples and tests write where they run is no part of the project."""
+    try:
+        listed = subprocess.check_output(["git", "ls-files"], cwd=ROOT, text=True)
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("no checkout of git")
+    top = {Path(name).suffix for name in listed.split("\n") if "/" not in name}
+    assert top <= {"", ".md", ".toml", ".cff"}
 
 
 def test_the_front_of_a_package_has_no_logic():

@@ -117,10 +117,9 @@ def longer(choices: Choices) -> str:
     """
     settings = choices.open_season.settings
     who = choices.whose_day
-    second = choices.open_season.work(choices.on, who or "").inspections.second
+    work = choices.open_season.work(choices.on, who or "")
     # who worked on is hours beyond the end
-    begun_s = choices.open_season.work(choices.on, who or "").begun_s
-    gone_s = np.nanmax(np.append(second, 0.0)) - begun_s
+    gone_s = np.nanmax(np.append(work.inspections.second, 0.0)) - work.begun_s
     robot = settings.robot if who is None else settings.member(who).robot
     hours = max(robot.hours, np.ceil(gone_s / 1800.0) / 2) + 1.0
     robot = replace(robot, hours=float(min(hours, 24.0)))

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
@@ -38,7 +38,6 @@ from fieldmon.samplers.own import label_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from concurrent.futures import Future
-    from contextlib import AbstractContextManager
     from datetime import datetime
     from pathlib import Path
 
@@ -61,6 +60,8 @@ _NAMED = 3
 
 Row = dict[str, Any]
 Work = Callable[[str, "Task"], Row]
+# within which tasks are handed over
+Handing = Callable[[], AbstractContextManager[None]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,11 +104,10 @@ def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None 
     refuse_unrecorded(None, (day.folder / name for name in left))
     if len(left) < len(tasks):
         typer.echo(f"{len(tasks) - len(left)} of {len(tasks)} plots were planned already.")
-    plots_of = {name: task.plot.name for name, task in tasks.items()}
-    write = partial(_write, day.folder, plots_of, rows)
+    write = partial(_write, day.folder, tasks, rows)
     write()  # from now on routes of an earlier run are not those of its summary
     try:
-        _plan(left, rows, digests, day, (workers or cores(), write))
+        _plan(left, rows, digests, day, workers or cores(), write)
     except KeyboardInterrupt as end:
         _tell_stopped(rows, tasks, day.folder)
         raise SystemExit(STOPPED_CODE) from end  # what was written is said already
@@ -169,17 +169,15 @@ def _plan(
     rows: dict[str, Row],
     digests: dict[str, str],
     day: EstateDay,
-    how: tuple[int, Callable[[], None]],
+    workers: int,
+    write: Callable[[], None],
 ) -> None:
     """Plan tasks in worker processes, a few ahead of them, and keep `rows` and the disk current.
 
-    `how`: in so many processes, and what writes the summary.
+    `write` writes the summary.
     """
     if not tasks:
         return
-    from fieldmon.simulation.executor import ctrl_c_waits
-
-    workers, write = how
 
     def keep(one: Future[Row]) -> None:
         # also those that end while a stop is on its way
@@ -187,9 +185,8 @@ def _plan(
             row = one.result()
             rows[row["file"]] = row | {"digest": digests[row["file"]]}
 
-    pool, work = _pool(min(workers, len(tasks)), day) if len(tasks) > _FEW else _here(day)
-    # a process may be started for each, and hears Ctrl-C before it is told to pass it by
-    handing = ctrl_c_waits if isinstance(pool, ProcessPoolExecutor) else nullcontext
+    planning = _pool(min(workers, len(tasks)), day) if len(tasks) > _FEW else _here(day)
+    pool, work, handing = planning
 
     def submit(name: str, task: Task) -> Future[Row]:
         return pool.submit(work, name, task)
@@ -212,23 +209,27 @@ def _plan(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _pool(workers: int, day: EstateDay) -> tuple[Executor, Work]:
+def _pool(workers: int, day: EstateDay) -> tuple[Executor, Work, Handing]:
     """Return worker processes that know the day, and what each does."""
-    return ProcessPoolExecutor(workers, get_context("spawn"), _prepare, (day,)), _work_as_begun
+    from fieldmon.simulation.executor import ctrl_c_waits
+
+    pool = ProcessPoolExecutor(workers, get_context("spawn"), _prepare, (day,))
+    # a process may be started for each task, and hears Ctrl-C before it is told to pass it by
+    return pool, _work_as_begun, ctrl_c_waits
 
 
-def _here(day: EstateDay) -> tuple[Executor, Work]:
+def _here(day: EstateDay) -> tuple[Executor, Work, Handing]:
     """Return this process: a few plots are planned before others have started."""
     from fieldmon.simulation.executor import here
 
-    return here().pool, partial(_work, day)
+    return here().pool, partial(_work, day), nullcontext
 
 
 def _ended(
     submit: Callable[[str, Task], Future[Row]],
     tasks: Iterable[tuple[str, Task]],
     keep: Callable[[Future[Row]], None],
-    handing: Callable[[], AbstractContextManager[None]],
+    handing: Handing,
 ) -> Iterator[Future[Row]]:
     """Hand over tasks, some ahead; yield each as it ends, `keep` hears of it before.
 
@@ -293,13 +294,13 @@ def _work(day: EstateDay, name: str, task: Task) -> Row:
     }
 
 
-def _write(folder: Path, plots: dict[str, str], rows: dict[str, Row]) -> None:
-    """Write the summary: a line for each of the plots named, by the names of their files."""
+def _write(folder: Path, tasks: dict[str, Task], rows: dict[str, Row]) -> None:
+    """Write the summary: a line for the plot of each task, by the names of their files."""
     text = io.StringIO()
     table = csv.DictWriter(text, _COLUMNS)
     table.writeheader()
-    for name, plot in plots.items():
-        row = rows.get(name) or {"plot": plot, "state": "not planned"}
+    for name, task in tasks.items():
+        row = rows.get(name) or {"plot": task.plot.name, "state": "not planned"}
         # no file is written for a plot that was refused
         table.writerow(_safe(row | ({} if row["state"] == "planned" else {"file": ""})))
     # the mark at the beginning tells a spreadsheet that names may be in any script

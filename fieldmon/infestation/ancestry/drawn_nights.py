@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from fieldmon.compute.arrays import read_only
 from fieldmon.compute.digest import digest
 from fieldmon.infestation.ancestry.ancestry_night import ToldNight, overnight
 from fieldmon.infestation.ancestry.kept_ancestry import arrays_of
@@ -36,7 +37,7 @@ def overnight_once(of: Ancestry, night: ToldNight) -> Morning:
     if not kept:
         ancestry, chance = overnight(of, night)
         if chance is not None:
-            chance.flags.writeable = False  # others get it, too
+            read_only(chance)  # others get it, too
         nowhere: Any = None  # the plot may be read again, and this one be let go
         kept.append((replace(ancestry, grid=nowhere), chance))
     ancestry, chance = kept[0]

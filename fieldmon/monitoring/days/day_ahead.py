@@ -297,10 +297,10 @@ def _given_last(season: Season, on: date, ahead: DayAhead, wishes: Wishes) -> Da
         return None
     if not len(left) or closed[left].any() or np.isin(wishes.unwanted, left).any():
         return None
-    begins = ahead.last[""].begins
-    if len(season.work(on).inspections):  # a second more or less is no stop less
+    begins, work = ahead.last[""].begins, season.work(on)
+    if len(work.inspections):  # a second more or less is no stop less
         given = _fitting(scene, left, scene.seconds_left + 1.0)
-        begins = kept_routes.begins(season.planned_by(on), given, season.work(on).begun_s)
+        begins = kept_routes.begins(season.planned_by(on), given, work.begun_s)
     else:
         given = through(scene, left)
     notes = RouteNotes(season.plot.field.name, ahead.settings.sampler, begins)

@@ -15,21 +15,23 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.plot_estimate import PlotEstimate
     from fieldmon.monitoring.estimates.found_again import FoundAgain
+    from fieldmon.monitoring.estimates.season_contents import SeasonContents
     from fieldmon.monitoring.season.open_season import OpenSeason
 
 
 def believed(season: OpenSeason, on: date) -> MorningAsked:
     """Return from what the figures of a day are worked out."""
+    return MorningAsked.of(_contents(season), on)
+
+
+def _contents(season: OpenSeason) -> SeasonContents:
     with season.reading() as now:
-        contents = now.contents
-    day = contents.settings.day(on)
-    return MorningAsked(contents, contents.morning(day), day)
+        return now.contents
 
 
 def progress(season: OpenSeason, on: date) -> Progress:
     """Return how far the inspections are after the work of `on`; nothing is estimated."""
-    with season.reading() as now:
-        contents = now.contents
+    contents = _contents(season)
     return Progress.of(contents.history, contents.settings.day(on))
 
 
@@ -70,6 +72,5 @@ def found_again(season: OpenSeason, on: date) -> FoundAgain | None:
 
     None: none, or no more than may be chance.
     """
-    with season.reading() as now:
-        contents = now.contents
+    contents = _contents(season)
     return found_again_by(contents.history, contents.settings.day(on))

@@ -67,6 +67,12 @@ class MorningAsked(NamedTuple):
     morning: Belief
     day: int
 
+    @classmethod
+    def of(cls, contents: SeasonContents, on: date) -> MorningAsked:
+        """Return those of the day `on`."""
+        day = contents.settings.day(on)
+        return cls(contents, contents.morning(day), day)
+
 
 class SeasonReading:
     """A season's file at one moment; what it says is read once it is asked for.

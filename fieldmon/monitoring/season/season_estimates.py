@@ -221,9 +221,7 @@ class SeasonEstimates(SeasonDays):
     def _asked(self, on: date) -> Iterator[MorningAsked]:
         """Give what a question about a day is answered from; others wait, or would do it again."""
         with self._lock:
-            contents = self._now()
-            day = contents.settings.day(on)
-            yield MorningAsked(contents, contents.morning(day), day)
+            yield MorningAsked.of(self._now(), on)
 
 
 def _development(now: SeasonContents, on: date) -> Development | None:

@@ -110,7 +110,7 @@ class SeasonPlans(SeasonDays):
         with self._lock:
             contents = self._now()
             if crew is not None:
-                days = self._crew_days(contents, on, (now, wishes), crew)
+                days = self._crew_days(contents, on, now, wishes, crew)
                 return self._given(contents, on, days, crew.names, crew.kept_as, keep=keep)
             settings = self._planned_by(contents, on)
             scenes = [self._scene(contents, on, now, who) for who in _names(settings)]
@@ -125,11 +125,10 @@ class SeasonPlans(SeasonDays):
             return self._given(contents, on, days, _names(settings), keep=keep)
 
     def _crew_days(
-        self, contents: SeasonContents, on: date, asked: tuple[time | None, Wishes | None],
+        self, contents: SeasonContents, on: date, now: time | None, wishes: Wishes | None,
         crew: ScoutCrew,
     ) -> tuple[DayPlan, ...]:  # fmt: skip
         """Return the days of scouts who are no team's, by the time and the wishes asked for."""
-        now, wishes = asked
         settings, told_s = self._planned_by(contents, on), crew.left_s or {}
         scenes = [self._scene_of_all(contents, on, now, who) for who in crew.names]
         scenes = [

@@ -315,6 +315,7 @@ def _work(work: Work) -> tuple[Robot, str]:
             default=USUAL_SAMPLER, **changing_strategy.named(),
         )  # fmt: skip
         st.caption(sampler_does(sampler))
+        st.caption(texts.TEAM_IN_SEASON)
     return replace(base, hours=float(day_h), look_s=float(inspection_s)), sampler
 
 

@@ -17,7 +17,7 @@ from fieldmon.plot.robot import Robot, scout
 from ..state import notices, told_team
 from ..state.told_team import TeamChoice
 from ..words import texts
-from ..words.language import in_words
+from ..words.language import in_words, listed
 from ..words.strategies import sampler_does, sampler_name, strategy_name
 from . import acting, robot_boxes, telling_team
 
@@ -104,9 +104,11 @@ def is_unused() -> bool:
 def _offer_as_now(choices: Choices) -> None:
     """Offer to plan a day that was missed by what counts now."""
     now = choices.open_season.settings
-    if _is_recorded(choices) or now.team:
+    if _is_recorded(choices):
         return
     strategy = strategy_name(now.sampler, now.robot.hours, now.robot.look_s)
+    if now.team:
+        strategy = listed(texts.isolated(one.name) for one in now.team)
     acting.at_press(texts.PLAN_AS_NOW.format(strategy=strategy), _as_now, choices,
                     key="plan_as_now")  # fmt: skip
 
@@ -240,6 +242,9 @@ def use(choices: Choices, box: str) -> str:
     sampler, hours, inspection_s = strategy.sampler, strategy.hours, strategy.inspection_s
     if choices.season is not None:
         settings = choices.season.settings
+        if settings.team:  # each has hours of its own
+            choices.season.change(settings.with_sampler(sampler), settings)
+            return texts.NOW_USED.format(name=sampler_name(sampler))
         robot = replace(settings.robot, hours=hours, look_s=inspection_s)
         wanted = replace(settings.with_sampler(sampler), robot=robot)
         choices.season.change(wanted, settings)

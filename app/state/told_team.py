@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import datetime, time, timedelta
 from itertools import count
@@ -71,17 +72,17 @@ class TeamRow:
         unsaid = start == self.first("start")
         return self.starts_s if unsaid else 3600.0 * start.hour + _MIN_S * start.minute
 
-    def robot(self) -> Robot:
-        """Return what it is, but for the hours and the seconds at a plant that its boxes say."""
-        who = self.said("who")
-        was = self.member.robot
-        return was if was.on_foot == (who == SCOUT) else usual_kind(who)
+    def worker(self) -> Robot:
+        """Return the robot or scout that the row says; raise `SettingError` for no such one."""
+        was, who = self.member.robot, self.said("who")
+        kind = was if was.on_foot == (who == SCOUT) else usual_kind(who)
+        return replace(kind, hours=self.said("hours"), look_s=self.said("look"))
 
     def told(self) -> TeamMember:
         """Return who the row says; they start as it began. Raise `SettingError` for no such one."""
         name = self.said("name").strip()
         try:
-            robot = replace(self.robot(), hours=self.said("hours"), look_s=self.said("look"))
+            robot = self.worker()
         except SettingError as error:
             if not name:
                 raise
@@ -185,8 +186,10 @@ def take(place: str, team: Iterable[TeamMember], starts: time) -> None:
 def add(place: str, who: str) -> None:
     """Add a robot or a scout: like the last of that kind, if there is one (for callbacks)."""
     before = _kept(place)
-    like = [robot for row in before.rows if (robot := row.robot()).on_foot == (who == SCOUT)]
-    robot = like[-1] if like else usual_kind(who)
+    robot = usual_kind(who)
+    for row in before.rows:
+        with suppress(SettingError):  # what is wrong with it is said below all rows
+            robot = row.worker() if row.said("who") == who else robot
     names = {person_key(row.said("name")) for row in before.rows}
     called = texts.SCOUT_NAMED if who == SCOUT else texts.ROBOT_NAMED
     name = next(name for k in count(1) if person_key(name := called.format(n=k)) not in names)

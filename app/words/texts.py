@@ -397,7 +397,7 @@ TEAM = "Team"
 TEAM_NAME, TEAM_HOURS, TEAM_SECONDS, TEAM_START = "Name", "Hours", "Seconds", "Starts"
 TEAM_ADD_ROBOT, TEAM_ADD_SCOUT = "Add a robot", "Add a scout"
 TEAM_TAKE_OUT = "Take {name} out"
-TEAM_MORE = "Finds, passing, and the team as a table"
+TEAM_MORE = "Contact, passing, and the team as a table"
 TEAM_TOGETHER = {
     "contact": "Minutes between contacts", "least_gain": "Least gain, in finds",
     "passing": "Headland that two need to pass ({unit})",

@@ -20,7 +20,7 @@ from . import widget_memory
 from .chosen_units import units
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from fieldmon.plot.robot import Robot
 
@@ -146,12 +146,12 @@ class TeamDraft:
         shown = {box: self.first(box) for box in ("contact", "least_gain", "passing")}
         said = {box: widget_memory.value(self.key(box), one) for box, one in shown.items()}
         # what is shown is rounded: what nobody changed stays as it was
-        in_units = {
+        in_units: dict[str, tuple[str, Callable[[float], float]]] = {
             "contact": ("contact_s", lambda shown: _MIN_S * shown),
             "least_gain": ("least_gain", float),
             "passing": ("passing_m", units().in_metres),
         }
-        changed = {in_units[box][0]: in_units[box][1](one)
+        changed: dict[str, Any] = {in_units[box][0]: in_units[box][1](one)
                    for box, one in said.items() if one not in (None, shown[box])}  # fmt: skip
         return replace(self.begun.teamwork, **changed)
 

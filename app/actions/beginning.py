@@ -22,11 +22,13 @@ from ..state import (
     plot_source,
     seasons_folder,
     shared_plots,
+    told_team,
     widget_memory,
     work_day,
 )
+from ..state.told_team import TeamChoice
 from ..words import language, texts
-from . import acting, assuming, editing_plot
+from . import acting, assuming, editing_plot, telling_team
 
 if TYPE_CHECKING:
     from fieldmon.infestation.earlier_season import EarlierSeason
@@ -36,6 +38,8 @@ if TYPE_CHECKING:
 #: the box for what happens with a find
 _FINDS = "begin_finds"
 _FROM = "season begun from"
+#: who works where nobody says that several do
+_ALONE = TeamChoice(starts=chosen_day.STARTS)
 
 
 def show(choices: Choices) -> None:
@@ -78,8 +82,9 @@ def begin_or_ask(choices: Choices, place: str) -> None:
 
 @notices.reporting
 def _ask_if_named(choices: Choices, place: str) -> str:
-    """Ask whether the rows are right, unless the season cannot be called so anyway."""
+    """Ask whether the rows are right, unless the season cannot be called, or worked, so anyway."""
     seasons_folder.new_path(_named(choices))
+    _who_works(choices)
     assumptions.ask(choices, place)
     return ""
 
@@ -92,6 +97,9 @@ def _form(choices: Choices) -> None:
             texts.EARLIER, [None, *kept], key="season_earlier", help=texts.EARLIER_HELP,
             format_func=lambda name: texts.NO_EARLIER if name is None else name,
         )  # fmt: skip
+    if widget_memory.show(st.checkbox, texts.TEAM_BEGIN, key=_team_box(choices), default=False):
+        st.caption(texts.TEAM_BEGIN_NOTE)
+        telling_team.show(_team_box(choices), _ALONE, choices.robot)
     acting.at_press(texts.BEGIN, begin_or_ask, choices, "form", key="begin_form", at_once=False)
 
 
@@ -110,6 +118,18 @@ def _name_box(choices: Choices) -> str:
     return f"season_name {_proposed(choices)}"
 
 
+def _team_box(choices: Choices) -> str:
+    """Return the key of the box whether several work: another plot has its own."""
+    return f"begin_team {choices.plot_key}"
+
+
+def _who_works(choices: Choices) -> TeamChoice:
+    """Return who is to work; raise `SettingError` where the team that is told cannot be so."""
+    box = _team_box(choices)
+    several = widget_memory.value(box, False)
+    return told_team.draft(box, _ALONE, choices.robot).told() if several else _ALONE
+
+
 def _earlier() -> EarlierSeason | None:
     """Return what the season chosen for it learnt; None: none was."""
     chosen = st.session_state.get("season_earlier")
@@ -119,12 +139,12 @@ def _earlier() -> EarlierSeason | None:
 @notices.reporting
 def begin(choices: Choices) -> str:
     """Keep what is chosen as a season from now on."""
-    name = _named(choices)
+    name, work = _named(choices), _who_works(choices)
     settings = MonitoringSettings(
-        choices.on, chosen_day.STARTS, choices.robot, choices.sampler, prior=choices.prior,
+        choices.on, work.starts, choices.robot, choices.sampler, prior=choices.prior,
         belief=BeliefSettings(treated=widget_memory.value(_FINDS, True), earlier=_earlier()),
         pest=chosen_pest.pest(), weather=chosen_pest.met(choices) if chosen_pest.pest() else None,
-        language=language.for_seasons(),
+        language=language.for_seasons(), team=work.team, teamwork=work.teamwork,
     )  # fmt: skip
     said = [one.message for one in choices.messages]
     messages = [KeptMessage("import", str(m.severity), m.feature, m.sentence) for m in said]
@@ -134,6 +154,7 @@ def begin(choices: Choices) -> str:
     plot = replace(choices.plot, assumed=()) if sure else choices.plot
     Season.create(path, plot, choices.records, settings, messages, choices.risk)
     assumptions.ask(choices, "")
+    told_team.drop(_team_box(choices))
     st.session_state[f"{_FROM} {path}"] = plot_source.chosen()
     plot_source.open_season(name)
     if choices.on != choices.clock.today():

@@ -14,11 +14,12 @@ from fieldmon.monitoring.estimates.told_anew import telling_anew
 from fieldmon.monitoring.settings.settings_words import changed, taken_back
 from fieldmon.plot.robot import Robot, scout
 
-from ..state import chosen_day, notices
+from ..state import notices, told_team
+from ..state.told_team import TeamChoice
 from ..words import texts
-from ..words.language import in_words
+from ..words.language import in_words, listed
 from ..words.strategies import sampler_does, sampler_name, strategy_name
-from . import acting, robot_boxes
+from . import acting, robot_boxes, telling_team
 
 if TYPE_CHECKING:
     from contextlib import AbstractContextManager
@@ -32,14 +33,14 @@ if TYPE_CHECKING:
     from ..state.comparison import Strategy
 
 _UNUSED = "settings not in use yet"
-#: who may inspect, whatever they are called in a language
-ROBOT, SCOUT = "Robot", "Scout on foot"
+#: who may inspect, whatever they are called in a language; a team only in a season
+ROBOT, SCOUT, TEAM = "Robot", "Scout on foot", "Team"
 WHO = (ROBOT, SCOUT)
 
 
 def who_name(who: str) -> str:
     """Return what one who inspects is called."""
-    return texts.SCOUT if who == SCOUT else texts.ROBOT
+    return {SCOUT: texts.SCOUT, TEAM: texts.TEAM}.get(who, texts.ROBOT)
 
 
 def named() -> dict[str, Any]:
@@ -69,8 +70,7 @@ def in_hours() -> str:
 def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> None:
     """Show who works in the season of this name, and change it on demand.
 
-    A day that goes `by` what counted then says so instead: a change is for days to come. So does
-    one of a team, whose table says how each works.
+    A day that goes `by` what counted then says so instead: a change is for days to come.
     """
     season = choices.open_season
     st.session_state[_UNUSED] = False
@@ -80,11 +80,10 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
             st.caption(_earlier(by, choices.on))
             _offer_as_now(choices)
             return
-        wanted, hours = (
-            _wanted(name, settings, work)
-            if choices.whose_day is None
-            else _wanted_of_team(name, choices, choices.whose_day)
-        )
+        wanted, hours = _wanted(name, choices, work)
+        if wanted is None:  # what is said of a team cannot be used, and says why
+            st.session_state[_UNUSED] = True
+            wanted = settings
         others = replace(wanted, robot=wanted.robot.with_hours(settings.robot.hours))
         # what was changed with the day is used there
         with hours if others == settings else nullcontext():
@@ -105,9 +104,11 @@ def is_unused() -> bool:
 def _offer_as_now(choices: Choices) -> None:
     """Offer to plan a day that was missed by what counts now."""
     now = choices.open_season.settings
-    if _is_recorded(choices) or now.team:
+    if _is_recorded(choices):
         return
     strategy = strategy_name(now.sampler, now.robot.hours, now.robot.look_s)
+    if now.team:
+        strategy = listed(texts.isolated(one.name) for one in now.team)
     acting.at_press(texts.PLAN_AS_NOW.format(strategy=strategy), _as_now, choices,
                     key="plan_as_now")  # fmt: skip
 
@@ -146,16 +147,13 @@ def _earlier(by: MonitoringSettings, on: date) -> str:
     return "\n- ".join([f"{texts.EARLIER_TEAM}\n", *each])
 
 
-def _wanted_of_team(
-    name: str, choices: Choices, who: str
-) -> tuple[MonitoringSettings, AbstractContextManager[object]]:
-    """Say how the one works whose day is shown; return settings with the sampler that is chosen."""
-    settings, starts = choices.open_season.settings, chosen_day.work_begins(choices)
-    robot = settings.member(who).robot
-    does = strategy_name(settings.sampler, robot.hours, robot.look_s)
-    said = {"name": texts.isolated(who), "strategy": does, "starts": f"{starts:%H:%M}"}
-    st.caption(texts.TEAM_SETTINGS.format(**said))
-    return _with_sampler(settings, f"{name} {settings.sampler}"), nullcontext()
+def _with_team(name: str, choices: Choices) -> MonitoringSettings | None:
+    """Show the boxes of a team; return the settings that they say, if they can be so."""
+    settings = choices.open_season.settings
+    now = TeamChoice(settings.team, settings.starts, settings.teamwork)
+    told = telling_team.show(choices.key, now, settings.robot)
+    wanted = _with_sampler(settings, f"{name} {settings.sampler}")
+    return None if told is None else replace(wanted, **told._asdict())
 
 
 def _with_sampler(settings: MonitoringSettings, key: str) -> MonitoringSettings:
@@ -170,16 +168,24 @@ def _with_sampler(settings: MonitoringSettings, key: str) -> MonitoringSettings:
 
 
 def _wanted(
-    name: str, settings: MonitoringSettings, work: Work
-) -> tuple[MonitoringSettings, DeltaGenerator]:
-    """Show the boxes; return the settings that they say, and where the hours stand."""
+    name: str, choices: Choices, work: Work
+) -> tuple[MonitoringSettings | None, AbstractContextManager[object]]:
+    """Show the boxes; return the settings that they say, and where the hours stand.
+
+    No settings: a team that is told cannot be so.
+    """
+    settings = choices.open_season.settings
     robot = settings.robot
     key = f"{name} {robot.hours} {robot.look_s} {settings.sampler} {robot.speed_m_s}"
-    was = SCOUT if robot.on_foot else ROBOT
-    who = st.segmented_control(texts.WHO, list(WHO), default=was, required=True,
-                               format_func=who_name, key=f"who {key}",
+    alone = SCOUT if robot.on_foot else ROBOT
+    was = TEAM if settings.team else alone
+    who = st.segmented_control(texts.WHO, [*WHO, TEAM], default=was, required=True,
+                               format_func=who_name, key=f"who {key} {was}",
                                label_visibility="collapsed")  # fmt: skip
-    if who != was:
+    if who == TEAM:
+        return _with_team(name, choices), nullcontext()
+    settings = replace(settings, team=())
+    if who != alone:
         robot = (scout() if who == SCOUT else Robot()).with_hours(robot.hours)
         key = f"{key} {who}"
     # a command, or "one hour more", may have set what is beyond the usual; a program whole numbers
@@ -210,6 +216,7 @@ def _offer_undo(choices: Choices) -> None:
 def _change(choices: Choices, wanted: MonitoringSettings, settings: MonitoringSettings) -> str:
     season = choices.open_season
     season.change(wanted, settings)
+    told_team.drop(choices.key)
     if season.planned_by(choices.on) == season.settings:
         return ""
     if not _is_recorded(choices):
@@ -224,6 +231,7 @@ def _undo(choices: Choices) -> str:
     settings = season.settings
     with telling_anew(season, settings, before_change(season) or settings, said.append):
         said.append(taken_back(settings, season.undo_change()))
+    told_team.drop(choices.key)
     return " ".join(map(in_words, said))
 
 
@@ -234,6 +242,9 @@ def use(choices: Choices, box: str) -> str:
     sampler, hours, inspection_s = strategy.sampler, strategy.hours, strategy.inspection_s
     if choices.season is not None:
         settings = choices.season.settings
+        if settings.team:  # each has hours of its own
+            choices.season.change(settings.with_sampler(sampler), settings)
+            return texts.NOW_USED.format(name=sampler_name(sampler))
         robot = replace(settings.robot, hours=hours, look_s=inspection_s)
         wanted = replace(settings.with_sampler(sampler), robot=robot)
         choices.season.change(wanted, settings)

@@ -243,6 +243,8 @@ def _choose_day(source: str, key: str, calendar: Calendar) -> None:
 def whose_day(choices: Choices) -> None:
     """Let one of the day's team be chosen, whose day is shown and who signs where it is worked."""
     if len(team := choices.team_that_day) > 1:
+        if widget_memory.value(WHOSE_DAY, team[0]) not in team:  # taken out, or of another season
+            widget_memory.put(WHOSE_DAY, team[0])
         widget_memory.show(
             st.segmented_control, texts.WHOSE_DAY, list(team), key=WHOSE_DAY,
             default=team[0], required=True,
@@ -315,6 +317,7 @@ def _work(work: Work) -> tuple[Robot, str]:
             default=USUAL_SAMPLER, **changing_strategy.named(),
         )  # fmt: skip
         st.caption(sampler_does(sampler))
+        st.caption(texts.TEAM_IN_SEASON)
     return replace(base, hours=float(day_h), look_s=float(inspection_s)), sampler
 
 

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 #: what is asked of a decision: boxes of lengths, and of what an area costs or is given
 DECIDE_LENGTHS, DECIDE_BY_AREA = ("decide on", "decide off"), ("decide rate", "decide per_ha")
-_LENGTHS = (*LENGTHS, *BLOCK_LENGTHS, "robot_width", "robot_turns", *DECIDE_LENGTHS)
+_LENGTHS = (*LENGTHS, *BLOCK_LENGTHS, "robot_width", "robot_turns", "team_passing",
+            *DECIDE_LENGTHS)  # fmt: skip
 
 
 def carry_over(before: UnitsInLanguage) -> None:

@@ -393,9 +393,39 @@ EARLIER_TEAM = (
     "on a later day."
 )
 EARLIER_MEMBER = "{name}: {strategy}, from {starts}"
-TEAM_SETTINGS = (
-    "{name}: {strategy}, from {starts}. How each of a team works stands in its table, which is "
-    "changed with `fieldmon change --robots`."
+TEAM = "Team"
+TEAM_NAME, TEAM_HOURS, TEAM_SECONDS, TEAM_START = "Name", "Hours", "Seconds", "Starts"
+TEAM_ADD_ROBOT, TEAM_ADD_SCOUT = "Add a robot", "Add a scout"
+TEAM_TAKE_OUT = "Take {name} out"
+TEAM_MORE = "Contact, passing, and the team as a table"
+TEAM_TOGETHER = {
+    "contact": "Minutes between contacts", "least_gain": "Least gain, in finds",
+    "passing": "Headland that two need to pass ({unit})",
+}  # fmt: skip
+TEAM_TOGETHER_HELP = {
+    "contact": "A find of one is known to the others at the next contact; with 0, at once.",
+    "least_gain": "Rows are given out anew during a day if that brings so many more finds.",
+    "passing": "Where it is narrower nobody meets another head-on. With 0 they pass anywhere.",
+}
+TEAM_TABLE_NOTE = (
+    "Speed, width, gate and more are columns of the table. Download it, fill them in, and bring it "
+    "back. Commands take the same table."
+)
+TEAM_TABLE_OUT, TEAM_TABLE_IN = "Download the table (CSV)", "Bring a table"
+TEAM_MANY = "{n} work here. So many are changed as a table, below."
+TEAM_LATE = (
+    "Another window changed who works since these boxes were filled. They hold what you said; it "
+    "is not in use."
+)
+TEAM_NOW, TEAM_GO_ON = "Show who works now", "Go on with these"
+TEAM_IN_SEASON = (
+    "Several robots or scouts work in a season, where each has a day of its own: say so where you "
+    "begin it, under Today."
+)
+TEAM_BEGIN = "Several robots or scouts will work"
+TEAM_BEGIN_NOTE = (
+    "The day above is that of one, as under Who inspects. It is planned for all of these once the "
+    "season begins."
 )
 CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as they were planned."
 CHANGED_LATE = "{day} goes by this too: nothing is recorded of it yet."

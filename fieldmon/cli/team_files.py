@@ -4,26 +4,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import typer
 
 from fieldmon.cli.outputs import ROUTE, write_route
-from fieldmon.cli.times import clock
 from fieldmon.compute.wording import estimate
 from fieldmon.errors import SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
     from datetime import datetime, time
 
     from fieldmon.cli.worker_options import WorkerOptions
-    from fieldmon.io.readers.team import StatedMember
     from fieldmon.planning.members import TeamMember
     from fieldmon.planning.route import Route
     from fieldmon.plot.robot import Robot
-
-_Made = TypeVar("_Made")
 
 
 def members_of(
@@ -35,58 +31,23 @@ def members_of(
     """
     usual_robot = worker.robot() if robot is None else robot
     from fieldmon.io.readers.team import read_team
-    from fieldmon.planning.members import TeamMember, team_of
+    from fieldmon.planning.members import team_of
+    from fieldmon.planning.stated_team import team_stated
 
     if robots.isdecimal():
         return team_of(int(robots), usual_robot), usual
-    stated = read_team(Path(robots))
-    _must_differ(stated)
-    starts = [
-        usual if one.start is None else _told_at(one, clock, one.start, "start") for one in stated
-    ]
-    first = min(starts)
 
-    def member(one: StatedMember, start: time) -> TeamMember:
-        kind = usual_robot
-        if one.who == "scout" or (one.who == "robot" and (worker.scout or kind.on_foot)):
-            kind = replace(worker, scout=one.who == "scout").robot()
-        late_s = 60.0 * (60 * (start.hour - first.hour) + start.minute - first.minute)
-        own = replace(kind, **one.settings)  # type: ignore[arg-type]
-        return TeamMember(one.name, own, one.gate, late_s)
+    def kind(who: str) -> Robot:
+        if who == "scout" or (who == "robot" and (worker.scout or usual_robot.on_foot)):
+            return replace(worker, scout=who == "scout").robot()
+        return usual_robot
 
-    members = [_told_at(one, member, one, start) for one, start in zip(stated, starts, strict=True)]
+    members, first = team_stated(read_team(Path(robots)), usual, kind)
     _tell_team(members)
-    return tuple(members), first
+    return members, first
 
 
-def _told_at(one: StatedMember, make: Callable[..., _Made], *told: object) -> _Made:
-    """Return what is made of a line of a table; what is wrong with it is said with file and line.
-
-    Raises
-    ------
-    SettingError
-        If it cannot be made.
-    """
-    try:
-        return make(*told)
-    except SettingError as error:
-        raise SettingError(f"{one.where}: {error}") from error
-
-
-def _must_differ(stated: Sequence[StatedMember]) -> None:
-    from fieldmon.planning.members import person_key
-
-    known: dict[str, StatedMember] = {}
-    for one in stated:
-        first = known.setdefault(person_key(one.name), one)
-        if first is not one:
-            raise SettingError(
-                f"{one.where}: members of a team must have names of their own, but {one.name} is "
-                f"that of {first.where} too. Change one."
-            )
-
-
-def _tell_team(members: list[TeamMember]) -> None:
+def _tell_team(members: Sequence[TeamMember]) -> None:
     """Say what a table was taken for: lines may leave out what the options say."""
     said = "; ".join(
         f"{one.name}, {'scout' if one.robot.on_foot else 'robot'}, {one.robot.hours:g} h"

@@ -149,6 +149,12 @@ def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
                 n=n,
             )
         )
+    refuse_too_many(n)
+    return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
+
+
+def refuse_too_many(n: int) -> None:
+    """Raise `SettingError` where a team has more than 1000 members."""
     if n > _MOST_MEMBERS:
         raise SettingError(
             worded(
@@ -157,7 +163,6 @@ def team_of(n: int, robot: Robot | None = None) -> tuple[TeamMember, ...]:
                 n=n,
             )
         )
-    return tuple(TeamMember(f"robot-{k}", robot or Robot()) for k in range(1, n + 1))
 
 
 def person_key(name: str) -> str:

@@ -27,6 +27,12 @@ def test_every_part_of_streamlit_that_a_style_names_is_there(style):
     assert not gone
 
 
+def test_days_and_times_are_read_from_the_left_in_every_language():
+    (style,) = (one for one in STYLES if one.stem == "right_to_left")
+    (parts,) = re.findall(r"(.*)>div:last-child\{direction:ltr\}", style.read_text())
+    assert {*re.findall(r"data-testid=(\w+)", parts)} == {"stDateInput", "stTimeInput"}
+
+
 def test_found_and_clean_have_the_colours_that_they_have_on_the_phone():
     app = Path(__file__).parents[2] / "app"
     phone = (app / "scout_page" / "src" / "style.css").read_text().splitlines()

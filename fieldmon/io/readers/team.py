@@ -8,6 +8,7 @@ from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem, SettingError
 from fieldmon.io.parse.own_table import own_table
 from fieldmon.io.parse.values import told_number
+from fieldmon.io.writers.csv import said_cell
 from fieldmon.plot.robot import SAID_IN, broken_rule
 
 if TYPE_CHECKING:
@@ -48,34 +49,55 @@ class StatedMember(NamedTuple):
 
 
 def read_team(path: Path) -> tuple[StatedMember, ...]:
-    """Return the members of a table (CSV with a header, `COLUMNS`; only ``name`` is needed).
+    """Return the members of a table in a file, see `team_of_table`.
 
     Raises
     ------
     FileProblem
-        If the file cannot be read, has other columns, or a value that is none.
+        If the file cannot be read, or as `team_of_table` does.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        content = path.read_bytes()
     except FileNotFoundError:
         raise FileProblem(
             worded("{path} must be a table (CSV), but there is none. Check the name.", path=path)
         ) from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileProblem(
-            worded(
-                "{path} must be a readable table (CSV), but it is not.",
-                path=path,
-            )
-        ) from error
-    table = own_table(text, str(path), comments=False)  # a robot may be #2
-    columns = [name.casefold() for name in table.columns]
-    unknown = [name for name in columns if name not in COLUMNS]
+    except OSError as error:
+        raise _unreadable(str(path)) from error
+    return team_of_table(content, str(path))
+
+
+def team_of_table(content: bytes, name: str) -> tuple[StatedMember, ...]:
+    r"""Return the members of a table (CSV with a header, `COLUMNS`; only ``name`` is needed).
+
+    Parameters
+    ----------
+    content, name
+        What the file holds, and its name for sentences.
+
+    Raises
+    ------
+    FileProblem
+        If it is no text, has other columns, or a value that is none.
+
+    Examples
+    --------
+    >>> ann, robot = team_of_table(b"name,who,hours\nAnn,scout,2\nrobot,,\n", "team.csv")
+    >>> ann.who, ann.settings, robot.settings
+    ('scout', {'hours': 2.0}, {})
+    """
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise _unreadable(name) from error
+    table = own_table(text, name, comments=False)  # a robot may be #2
+    columns = [column.casefold() for column in table.columns]
+    unknown = [column for column in columns if column not in COLUMNS]
     if "name" not in columns or unknown:
         raise FileProblem(
             worded(
                 "{path} must have a column name, and of others only {names}, but it has {names_2}.",
-                path=path,
+                path=name,
                 names=", ".join(COLUMNS[1:]),
                 names_2=", ".join(columns) or "none",
             )
@@ -88,10 +110,14 @@ def read_team(path: Path) -> tuple[StatedMember, ...]:
         raise FileProblem(
             worded(
                 "{path} must name a member of the team, but it names none.",
-                path=path,
+                path=name,
             )
         )
     return tuple(members)
+
+
+def _unreadable(name: str) -> FileProblem:
+    return FileProblem(worded("{path} must be a readable table (CSV), but it is not.", path=name))
 
 
 def _member(values: dict[str, str], where: str) -> StatedMember:
@@ -104,7 +130,8 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
                 who=values["who"],
             )
         )
-    if not values["name"]:
+    name = said_cell(values["name"])
+    if not name:
         raise FileProblem(
             worded(
                 "{where}: every member must have a name, but this has none.",
@@ -112,13 +139,13 @@ def _member(values: dict[str, str], where: str) -> StatedMember:
             )
         )
     numbers = {
-        name: _number(values[name], name, where)
-        for name in (*SETTINGS, "lon", "lat")
-        if values.get(name)
+        column: _number(values[column], column, where)
+        for column in (*SETTINGS, "lon", "lat")
+        if values.get(column)
     }
     gate, settings = _gate(numbers, where), _settings(numbers, where)
     start = values.get("start") or None
-    return StatedMember(values["name"], who, settings, start, gate, where)
+    return StatedMember(name, who, settings, start, gate, where)
 
 
 def _gate(numbers: dict[str, float], where: str) -> tuple[float, float] | None:

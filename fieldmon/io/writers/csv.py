@@ -58,3 +58,15 @@ def safe_cell(text: str) -> str:
     """Return a text that no spreadsheet runs as a formula."""
     plain = plain_text(text)
     return f"'{plain}" if plain.lstrip().startswith(_FORMULA) else plain
+
+
+def said_cell(text: str) -> str:
+    """Return a text that `safe_cell` wrote, as it was said.
+
+    Examples
+    --------
+    >>> said_cell(safe_cell("=Ann")), said_cell("'Ann'")
+    ('=Ann', "'Ann'")
+    """
+    bare = text.removeprefix("'")
+    return bare if bare.lstrip().startswith(_FORMULA) else text

@@ -207,22 +207,41 @@ def _each_of_worker(robot: Robot) -> dict[str, str]:
 def worker_in_words(member: TeamMember) -> Worded:
     """Return one of a team in words: the usual of everybody, and what else is not usual."""
     robot = member.robot
-    usual = _each_of_worker(scout() if robot.on_foot else Robot())
-    if robot.on_foot != robot.on_foot_by_times:
-        del usual["on foot"]  # its times do not tell
     first = worded(
         "{name} {hours:g} h, {look:g} s a plant, {speed:.3g} km/h, finds {detects}",
         name=member.name, hours=robot.hours, look=robot.look_s, speed=KM_H * robot.speed_m_s,
         detects=chance_figure(robot.detects),
     )  # fmt: skip
-    said = [
+    said = [first, *_unusual(robot)]
+    if member.starts_s:
+        said.append(worded("begins {n:g} min later", n=member.starts_s / 60))
+    return joined(", ", [*said, *_gate(member)])
+
+
+def besides_in_words(member: TeamMember) -> Worded:
+    """Return the same of one of a team but for what its boxes say: name, hours, look and start."""
+    robot = member.robot
+    first = worded(
+        "{speed:.3g} km/h, finds {detects}",
+        speed=KM_H * robot.speed_m_s, detects=chance_figure(robot.detects),
+    )  # fmt: skip
+    return joined(", ", [first, *_unusual(robot), *_gate(member)])
+
+
+def _unusual(robot: Robot) -> list[Worded]:
+    """Return what is not usual of one who works, beside hours, look, speed and detection."""
+    usual = _each_of_worker(scout() if robot.on_foot else Robot())
+    if robot.on_foot != robot.on_foot_by_times:
+        del usual["on foot"]  # its times do not tell
+    return [
         worded("{name} {now}", name=_NAMES[name], now=now)
         for name, now in _each_of_worker(robot).items()
         if name not in {"hours", "look", "speed", "detection"} and now != usual.get(name)
     ]
-    if member.starts_s:
-        said.append(worded("begins {n:g} min later", n=member.starts_s / 60))
-    if member.gate is not None:
-        lon, lat = member.gate
-        said.append(worded("gate {lon:.6f}, {lat:.6f}", lon=lon, lat=lat))
-    return joined(", ", [first, *said])
+
+
+def _gate(member: TeamMember) -> list[Worded]:
+    if member.gate is None:
+        return []
+    lon, lat = member.gate
+    return [worded("gate {lon:.6f}, {lat:.6f}", lon=lon, lat=lat)]

@@ -91,12 +91,16 @@ def test_a_season_begins_with_what_an_earlier_one_learnt(season_app, season):
 
 
 @pytest.mark.parametrize("button", ["Begin the season", "Begin a season"])
-def test_a_season_begins_with_finds_that_are_only_flagged(season, button):
+def test_a_season_begins_with_finds_that_are_only_flagged_and_a_team(season, button):
     app = opened()
-    app.radio(key="begin_finds").set_value(False).run()
+    app.radio(key="begin_finds").set_value(False)
+    boxed(app.checkbox, "begin_team").set_value(True).run()
+    boxed(app.text_input, "team_name").set_value("Ann")
     press(app, button)
     assert not app.exception
     assert not season().settings.belief.treated
+    assert [one.name for one in season().settings.team] == ["Ann", "robot 2"]
+    assert app.segmented_control(key="whose_day").options == ["Ann", "robot 2"]
 
 
 @pytest.mark.parametrize("button", ["Begin the season", "Begin a season"])

@@ -6,7 +6,6 @@ from datetime import date, timedelta
 import numpy as np
 import pytest
 
-from app.state.choices import WHOSE_DAY
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.planning.members import TeamMember
@@ -212,21 +211,26 @@ def test_an_earlier_day_of_a_team_says_how_each_worked(season):
     assert f"Dan\u2069: Adaptive · 3 h · {walks.look_s:g} s, from 08:00" in said
 
 
-def test_of_a_team_the_one_chosen_is_said_and_what_the_app_cannot_change_is_not_offered(
+def test_of_a_team_each_has_a_row_another_sampler_leaves_all_as_they_are_and_one_works_again(
     season_app, season
 ):
     before = season().settings
     team = (TeamMember("Ann", before.robot), TeamMember("Dan", scout().with_hours(3), None, 7200.0))
     season().change(replace(before, team=team), before)
     go(season_app, "today")
-    season_app.segmented_control(key=WHOSE_DAY).set_value("Dan").run()
-    assert f"3 h · {scout().look_s:g} s, from 08:00" in texts_of(season_app)
-    assert "fieldmon change --robots" in texts_of(season_app)
-    shown = [one.key or "" for one in (*season_app.slider, *season_app.segmented_control)]
-    assert not [key for key in shown if key.startswith(("hours ", "inspection_s ", "who "))]
+    starts = [str(one.value) for one in season_app.time_input]
+    assert starts == ["06:00:00", "08:00:00"]
+    assert not [one for one in season_app.button if one.key == "change_setup"]
+    assert not [one for one in season_app.slider if one.key.startswith("hours ")]
     next(one for one in season_app.selectbox if one.label == texts.SAMPLER).set_value("naive").run()
     press(season_app, "Use from now on")
     assert (season().settings.sampler, season().settings.team) == ("naive", team)
+    who = next(one for one in season_app.segmented_control if (one.key or "").startswith("who "))
+    who.set_value("Robot").run()
+    press(season_app, "Use from now on")
+    assert season().settings == before.with_sampler("naive")
+    press(season_app, next(one.label for one in season_app.button if one.key == "undo_change"))
+    assert season().settings.team == team
 
 
 def test_another_n_than_usual_is_said_beside_what_the_sampler_does(season_app, season):

@@ -15,6 +15,7 @@ from fieldmon.io.formats.layer import Layer, text
 from fieldmon.io.parse.columns import find, is_confidence, is_id, is_of_rows, plain, recognised
 from fieldmon.io.parse.result_words import tells_infestation
 from fieldmon.io.parse.values import is_missing, presence, told_number
+from fieldmon.io.writers.csv import said_cell
 from fieldmon.plot.plant_columns import PLANT_WORDS
 from fieldmon.plot.plant_names import faces_called
 
@@ -48,8 +49,6 @@ PLANNED = re.compile(
     r"^plant \d+; (?:arrive (?P<arrive>[^;]*)|after [^;]* s); stay [^;]* s; "
     r"chance [\d.]+ ?%(?:; detects (?P<detects>[\d.]+(?<!\.)))?[\s.,;]*"
 )
-# what `writers.csv` puts before what a spreadsheet would run as a formula
-_APOSTROPHE = re.compile(r"^'(?=\s*[=+@-])")
 # so many cells tell whether a column numbers its records
 _LOOKED_AT = 200
 _BLANK = frozenset({"", "nan", "nat", "none", "null", "<na>"})
@@ -294,7 +293,7 @@ def notes_in(layer: Layer) -> NDArray[np.str_]:
 
 def _written_in(layer: Layer, name: str | None) -> NDArray[np.str_]:
     """Return a column as `texts_in` does, as it was written before it came to a table."""
-    return np.array([_APOSTROPHE.sub("", cell) for cell in texts_in(layer, name).tolist()], np.str_)
+    return np.array([said_cell(cell) for cell in texts_in(layer, name).tolist()], np.str_)
 
 
 def detects_in(layer: Layer, columns: InspectionColumns, file: str) -> NDArray[np.float64]:

@@ -232,6 +232,8 @@ class Case:
     def _allowed(self, parameter: str) -> set[str]:
         kinds = _annotations(self.call).get(parameter, "").split(" | ")
         own = _FINE.get(self.name, {}).get(parameter, set())
+        if self._takes_functions(parameter):
+            own = own | {"class", "function"}
         return own.union(*(_RIGHT.get(kind, set()) for kind in kinds))
 
 

@@ -312,16 +312,34 @@ class Canvas:
         """Return the pixels within a shape given in estate metres."""
         return rasterize([to_grid(shape)], self.shape, transform=self.transform).astype(bool)
 
-    def paint(self, where: Float, colour: tuple[int, int, int] | Float) -> None:
-        """Mix a colour in, by weights ``(h, w)`` from 0 to 1."""
-        touched = where > 0
+    def about(self, shape: shapely.Geometry) -> tuple[slice, slice]:
+        """Return the rows and columns of all pixels about a shape given in estate metres."""
+        west, south, east, north = to_grid(shape).bounds
+        (top, low), (left, right) = (
+            np.clip([first / PIXEL_M - 1, last / PIXEL_M + 2], 0, most).astype(int)
+            for first, last, most in (
+                (self.north - north, self.north - south, self.shape[0]),
+                (west - self.west, east - self.west, self.shape[1]),
+            )
+        )
+        return slice(top, low), slice(left, right)
+
+    def paint(
+        self,
+        where: Float,
+        colour: tuple[int, int, int] | Float,
+        at: tuple[slice, slice] = (slice(None), slice(None)),
+    ) -> None:
+        """Mix a colour in, by weights ``(h, w)`` from 0 to 1; `at` are rows and columns of them."""
+        image, touched = self.image[at], where > 0
         weight = where[touched][:, None]
-        own = np.broadcast_to(np.asarray(colour, dtype=np.float64), self.image.shape)[touched]
-        self.image[touched] += weight * (own - self.image[touched])
+        own = np.broadcast_to(np.asarray(colour, dtype=np.float64), image.shape)[touched]
+        image[touched] += weight * (own - image[touched])
 
     def fill(self, shape: shapely.Geometry, colour: tuple[int, int, int], much: float = 1) -> None:
         """Paint a shape given in estate metres."""
-        self.paint(much * self.inside(shape), colour)
+        at = self.about(shape)
+        self.paint(much * self.inside(shape)[at], colour, at)
 
     def clouds(self, cell: int) -> Float:
         """Return smooth noise of mean 0 and spread about 1, with features `cell` pixels wide."""
@@ -376,15 +394,17 @@ def paint_plots(canvas: Canvas) -> None:
     shade = 7 * canvas.clouds(30)[..., None] + 5 * canvas.clouds(3)[..., None]
     for plot in PLOTS:
         canvas.fill(plot.shape, (172, 148, 112), 0.85)
-        along, across = plot.along_across(canvas.x, canvas.y)
+        at = canvas.about(plot.shape)
+        x, y = canvas.x[at], canvas.y[at]
+        along, across = plot.along_across(x, y)
         wave = np.cos(2 * np.pi * (across / plot.row_spacing_m - 0.5))
         beads = np.cos(2 * np.pi * along / plot.plant_spacing_m) * (plot.crop == "pepper")
-        cover = np.clip(0.55 + 0.9 * wave + 0.15 * beads + 0.12 * vigour, 0, 1)
-        cover *= canvas.inside(plot.shape.buffer(-2.5)) & ~gap
+        cover = np.clip(0.55 + 0.9 * wave + 0.15 * beads + 0.12 * vigour[at], 0, 1)
+        cover *= canvas.inside(plot.shape.buffer(-2.5))[at] & ~gap[at]
         green = np.array((92, 128, 62) if plot.crop == "pepper" else (84, 108, 74))
-        canvas.paint(0.9 * cover, green + shade)
-        eaten = np.clip(mites_due(plot, canvas.x, canvas.y, WEEKS - 1) / 24.0, 0, 1)
-        canvas.paint(0.4 * cover * eaten, (168, 146, 82))
+        canvas.paint(0.9 * cover, green + shade[at], at)
+        eaten = np.clip(mites_due(plot, x, y, WEEKS - 1) / 24.0, 0, 1)
+        canvas.paint(0.4 * cover * eaten, (168, 146, 82), at)
 
 
 def paint_tracks(canvas: Canvas) -> None:

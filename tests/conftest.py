@@ -13,6 +13,7 @@ import pytest
 from hypothesis import HealthCheck, is_hypothesis_test, settings
 
 from fieldmon.compute.cores import cores
+from tests.thorough import EXAMPLES
 from tests.xdist_order import BothEnds, in_order, workers
 
 # a season waits for the disk before a record counts, several times for each: tests keep their files
@@ -32,9 +33,6 @@ if has_plenty():
 
 # a million objects come while tests are collected, and stay: see `pytest_collection_finish`
 gc.disable()
-
-# each property is tried on so many examples instead of its own number: see `thorough` below
-EXAMPLES = int(os.environ.get("FIELDMON_EXAMPLES", "0"))
 
 # the first example of a property pays for compiling; a landing must not depend on luck
 settings.register_profile(

@@ -431,15 +431,16 @@ def scratch() -> Iterator[Path]:
             tempfile.tempdir = before[2]
 
 
-def fuzz(n_inputs: int, first: int = 0, seconds: float = np.inf) -> Tally:
+def fuzz(n_inputs: int, first: int = 0, seconds: float = np.inf, step: int = 1) -> Tally:
     """Read so many damaged files, or as many as fit into the seconds; return what became of them.
 
-    Input i is the same on every run: ``first=i, n_inputs=1`` repeats it.
+    Input i is the same on every run: ``first=i, n_inputs=1`` repeats it. Few inputs come of files
+    of more kinds where each is a `step` after the one before.
     """
     tally, began = Tally(), time.perf_counter()
     with scratch() as world:
         corpus = seeds(world / "seeds")
-        for number in range(first, first + n_inputs):
+        for number in range(first, first + step * n_inputs, step):
             if time.perf_counter() - began > seconds:
                 break
             rng = np.random.default_rng(number)

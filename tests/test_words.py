@@ -6,11 +6,13 @@ from collections import defaultdict
 import pytest
 
 from tests.paths import ROOT
+from tests.syntax import no_garbage, statements
 
 
 def nodes(sources: dict[str, str]) -> dict[str, list[ast.AST]]:
-    """Return all that each module says, itself first."""
-    return {path: [*ast.walk(ast.parse(source))] for path, source in sources.items()}
+    """Return the statements of each module, itself first."""
+    with no_garbage():
+        return {path: [*statements(ast.parse(source))] for path, source in sources.items()}
 
 
 def defined_twice(modules: dict[str, list[ast.AST]]) -> dict[str, list[str]]:

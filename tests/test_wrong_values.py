@@ -8,6 +8,7 @@ import pytest
 import fieldmon as fm
 from fieldmon.errors import SettingError
 from tests import wrong_values
+from tests.thorough import times
 from tests.wrong_values import Case, cases, faults
 
 
@@ -20,7 +21,7 @@ def test_wrong_values_for_every_parameter_are_refused_by_name_and_nothing_crashe
     made, tmp_path, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
-    assert faults(made, calls=1000) == []
+    assert faults(made, each=times(2, 6)) == []
 
 
 def test_every_public_name_is_tried(made):

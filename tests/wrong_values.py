@@ -232,6 +232,8 @@ class Case:
     def _allowed(self, parameter: str) -> set[str]:
         kinds = _annotations(self.call).get(parameter, "").split(" | ")
         own = _FINE.get(self.name, {}).get(parameter, set())
+        if self._takes_functions(parameter):
+            own = own | {"class", "function"}
         return own.union(*(_RIGHT.get(kind, set()) for kind in kinds))
 
 
@@ -250,7 +252,7 @@ def _fields_of(made: object) -> dict[str, Any]:
 
 def cases(folder: Path) -> Iterator[Case]:
     """Yield every public call, with what is right for each of its parameters."""
-    plot = fm.read_plot(ESTATE, feature="Gate")
+    plot = fm.read_plot(ESTATE, feature="Nursery")
     robot, n = fm.Robot(hours=0.5), len(plot.grid)
     day = fm.plan_day(plot, on=TODAY, robot=robot)
     yield from _of_plots(plot)
@@ -421,7 +423,7 @@ def _of_files(plot: fm.Plot, folder: Path) -> Iterator[Case]:
     yield Case("read_risk", fm.read_risk, {"source": _raster(plot, folder / "ndvi.tif"),
                "plot": plot, "meaning": "rank", "mean_share": 0.03, "how": None})  # fmt: skip
     yield Case("read_plots", fm.read_plots, {"source": ESTATE})
-    yield Case("read_plot", fm.read_plot, {"source": ESTATE, "feature": "Gate", "plants": None,
+    yield Case("read_plot", fm.read_plot, {"source": ESTATE, "feature": "Nursery", "plants": None,
                "planting": None, "gate": None})  # fmt: skip
 
 
@@ -489,12 +491,17 @@ def _of_seasons(season: fm.Season, folder: Path) -> Iterator[Case]:
 _NEW = "a new file"
 
 
-def faults(made: Sequence[Case], calls: int | None = None, seed: int = 0) -> list[str]:
-    """Return what is wrong with the answers to so many calls drawn from a seed; None: to all."""
-    pairs = [(case, name, label) for case in made for name in case.right for label in VALUES]
-    if calls is not None:
-        drawn = np.random.default_rng(seed).choice(len(pairs), calls, replace=False)
-        pairs = [pairs[k] for k in drawn]
+def faults(made: Sequence[Case], each: int | None = None, seed: int = 0) -> list[str]:
+    """Return what is wrong with the answers to so many values for each parameter, drawn; None: all.
+
+    Each is tried with other values than the next.
+    """
+    draws, labels = np.random.default_rng(seed), [*VALUES]
+
+    def tried() -> list[str]:
+        return labels if each is None else draws.choice(labels, each, replace=False).tolist()
+
+    pairs = [(case, name, label) for case in made for name in case.right for label in tried()]
     return [said for case, name, label in pairs if (said := case.fault(name, label))]
 
 

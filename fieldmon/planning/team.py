@@ -168,7 +168,8 @@ def plan_team(
     >>> import fieldmon as fm
     >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Nursery")
     >>> chance = fm.plan_day(plot, on="2026-11-18").chance
-    >>> members = fm.TeamMember("Ann", fm.scout().with_hours(1)), fm.TeamMember("robot")
+    >>> robot = fm.TeamMember("robot", fm.Robot(hours=1))
+    >>> members = fm.TeamMember("Ann", fm.scout().with_hours(1)), robot
     >>> team = fm.plan_team(plot, chance, members, on="2026-11-18 05:30")
     >>> len(team.routes), team.meetings(), team.expected_finds <= team.bound
     (2, [], True)

@@ -86,10 +86,12 @@ def test_the_numbers_that_are_listed_are_those_that_feature_takes(run, tmp_path)
     listed = [line.split() for line in out.splitlines()]
     assert [(row[0], row[-1]) for row in listed] == [("1", "Big"), ("2", "Small")]
     for number, *_, name in listed:
-        code, out, err, _ = run("plan", "p.gpkg", "--feature", number, "--hours", 1, "-o", "r.csv")
+        code, out, err, _ = run(
+            "plan", "--no-bound", "p.gpkg", "--feature", number, "--hours", 1, "-o", "r.csv"
+        )
         assert code == 0, err
         assert f"{name}:" in out
-    code, _, err, _ = run("plan", "p.gpkg", "--feature", 3)
+    code, _, err, _ = run("plan", "--no-bound", "p.gpkg", "--feature", 3)
     assert code == 2
     assert "There are 2 plots, but none is called '3'" in err
 
@@ -97,10 +99,10 @@ def test_the_numbers_that_are_listed_are_those_that_feature_takes(run, tmp_path)
 def test_points_where_a_plot_should_be_are_sent_to_the_option_that_takes_them(run, tmp_path):
     rows = [Point(35.15 + i * 4e-5, 30.36 + j * 4e-5) for i in range(4) for j in range(4)]
     gpd.GeoDataFrame(geometry=rows, crs=4326).to_file(tmp_path / "trees.geojson")
-    code, _, err, _ = run("plan", "trees.geojson")
+    code, _, err, _ = run("plan", "--no-bound", "trees.geojson")
     assert code == 2
     assert "Give points with --plants FILE and lines with --paths FILE" in err
-    code, out, err, _ = run("plan", "--plants", "trees.geojson", "-o", "r.csv")
+    code, out, err, _ = run("plan", "--no-bound", "--plants", "trees.geojson", "-o", "r.csv")
     assert code == 0, err
     assert "16 plants" in out
 
@@ -109,11 +111,13 @@ def test_doubles_are_left_out_as_the_question_offers(run, tmp_path):
     rows = [Point(35.15 + i * 4e-5, 30.36 + j * 4e-5) for i in range(4) for j in range(4)]
     again = [Point(p.x, p.y + 2e-7) for p in rows[:3]]
     gpd.GeoDataFrame(geometry=[*rows, *again], crs=4326).to_file(tmp_path / "trees.geojson")
-    code, _, err, _ = run("plan", "--plants", "trees.geojson")
+    code, _, err, _ = run("plan", "--no-bound", "--plants", "trees.geojson")
     assert code == 2
     assert "3 of 19 are within 5 cm of an earlier one" in err
     answer = shlex.split(ANSWER.search(err)[1])
-    code, out, err, _ = run("plan", "--plants", "trees.geojson", *answer, "-o", "r.csv")
+    code, out, err, _ = run(
+        "plan", "--no-bound", "--plants", "trees.geojson", *answer, "-o", "r.csv"
+    )
     assert code == 0, err
     assert "16 plants" in out
     assert "dropped: 3 of 19 plants stood within 5 cm of another one" in err
@@ -138,7 +142,17 @@ def test_what_the_files_of_findings_leave_open_is_answered_as_they_say(run, seas
 def test_records_that_say_nothing_of_what_was_found_are_all_finds_if_one_says_so(run, tmp_path):
     (tmp_path / "m.csv").write_text("lon,lat,date\n35.1505,30.3605,2026-03-01\n")
     square(geometry=box(35.15, 30.36, 35.151, 30.361)).to_file(tmp_path / "p.gpkg")
-    words = ("plan", "p.gpkg", "--records", "m.csv", "-o", "r.csv", "--date", "2026-03-02")
+    words = (
+        "plan",
+        "p.gpkg",
+        "--no-bound",
+        "--records",
+        "m.csv",
+        "-o",
+        "r.csv",
+        "--date",
+        "2026-03-02",
+    )
     code, _, err, _ = run(*words)
     assert code == 2
     assert "must have a column that says what was found" in err
@@ -148,9 +162,11 @@ def test_records_that_say_nothing_of_what_was_found_are_all_finds_if_one_says_so
 
 
 def test_the_sample_estate_asks_which_plot_and_takes_the_answer(run):
-    code, _, err, _ = run("plan", ZIP)
+    code, _, err, _ = run("plan", "--no-bound", ZIP)
     assert code == 2
     answer = re.search(r'(--feature "[^"]+") or (--feature \d+)', err)
     for words in answer.groups():
-        code, _, err, _ = run("plan", ZIP, *shlex.split(words), "--hours", 1, "-o", "r.csv")
+        code, _, err, _ = run(
+            "plan", "--no-bound", ZIP, *shlex.split(words), "--hours", 1, "-o", "r.csv"
+        )
         assert code == 0, err

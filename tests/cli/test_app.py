@@ -76,12 +76,11 @@ def test_phones_do_not_come_to_this_machine_s_own_address(address, run, started)
 @pytest.mark.parametrize(
     ("address", "said"),
     [
-        ("8.8.8.8", "must be private"),
         ("office.local", "must be a number"),
         ("10.255.254.253", "must be this machine's"),
     ],
 )
-def test_an_address_that_is_not_private_is_a_sentence(address, said, tmp_path):
+def test_an_address_that_is_not_this_machine_s_is_a_sentence(address, said, tmp_path):
     command = [sys.executable, "-m", "fieldmon", "app", "--no-browser", "--lan", "--port",
                str(free_port()), "--address", address]  # fmt: skip
     env = os.environ | {"FIELDMON_AUTHORITY": str(tmp_path)}

@@ -25,7 +25,7 @@ def test_a_day_is_driven_as_charged_and_its_tables_written(run, tmp_path):
 
 
 def test_a_day_is_driven_with_wheels_and_kept_as_a_bag(run, tmp_path):
-    words = ("--robot", "mujoco", "--rover", "--hours", "0.15", "-o", "day.csv", "--bag", "d.mcap")
+    words = ("--robot", "mujoco", "--rover", "--hours", "0.05", "-o", "day.csv", "--bag", "d.mcap")
     code, out, err, made = run(*PLOT[:4], *words)
     assert code == 0, err
     assert "0 plants touched" in out

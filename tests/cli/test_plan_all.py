@@ -175,7 +175,7 @@ def test_a_scout_is_no_robot_on_any_plot(run, parcels, words):
 def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(
     run, tmp_path, summary, monkeypatch
 ):
-    shapes = many(SHAPES, 24)
+    shapes = many(SHAPES, 12)
     write_geojson(tmp_path / "parcels.geojson", shapes)
     # whoever runs the tests in the background has children that do not hear Ctrl-C
     hears = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
@@ -192,15 +192,15 @@ def test_a_run_that_is_stopped_keeps_what_is_finished_and_goes_on(
     assert command.returncode == 130, complaint
     assert "Traceback" not in complaint
     half = [name for name, row in summary("r").items() if row["state"] == "planned"]
-    assert 0 < len(half) < 24 == len(summary("r"))
-    said = f"{len(half)} of 24 plots planned; the same command goes on from there.\n"
+    assert 0 < len(half) < 12 == len(summary("r"))
+    said = f"{len(half)} of 12 plots planned; the same command goes on from there.\n"
     assert complaint.endswith(said)
     # as the stopped run did, but here: starting workers again takes longer than the plots do
-    monkeypatch.setattr(plan_all, "_FEW", 24)
+    monkeypatch.setattr(plan_all, "_FEW", 12)
     code, said, err, _ = run("plan", "parcels.geojson", "--all", "-o", "r")
     assert code == 0, err
-    assert f"{len(half)} of 24 plots were planned already" in said
-    assert len(summary("r")) == 24
+    assert f"{len(half)} of 12 plots were planned already" in said
+    assert len(summary("r")) == 12
     assert all(row["state"] == "planned" for row in summary("r").values())
 
 

@@ -40,7 +40,9 @@ def area(path, low=-50.0, high=50.0):
 
 
 def test_bent_rows_and_blocks_are_said_and_stops_carry_their_block(run, tmp_path, two_blocks):
-    code, out, err, _ = run("plan", "--plants", two_blocks, "--hours", 3, "-o", "day.csv")
+    code, out, err, _ = run(
+        "plan", "--no-bound", "--plants", two_blocks, "--hours", 3, "-o", "day.csv"
+    )
     assert code == 0, err
     assert "640 plants in 18 rows of 2 blocks, as they bend" in err
     assert "640 plants in 18 rows, which run as they bend, in 2 blocks" in out
@@ -52,7 +54,10 @@ def test_bent_rows_and_blocks_are_said_and_stops_carry_their_block(run, tmp_path
 
 @pytest.mark.parametrize("ending", ["geojson", "gpkg", "kml"])
 def test_other_route_files_carry_the_block_too(run, tmp_path, two_blocks, ending):
-    assert run("plan", "--plants", two_blocks, "--hours", 1, "-o", f"day.{ending}")[0] == 0
+    assert (
+        run("plan", "--no-bound", "--plants", two_blocks, "--hours", 1, "-o", f"day.{ending}")[0]
+        == 0
+    )
     if ending == "geojson":
         stops = json.loads((tmp_path / "day.geojson").read_text())["features"][1:]
         assert {stop["properties"]["block"] for stop in stops} <= {1, 2}
@@ -69,14 +74,14 @@ def test_a_season_on_bent_rows_comes_back_as_it_was(run, tmp_path, two_blocks):
     assert plot.grid.aisles_m is not None
     lines = gpd.read_file(tmp_path / "vines.gpkg", layer="rows").geometry
     assert max(len(line.coords) for line in lines) > 4
-    assert run("plan", "vines.gpkg", "-o", "again.geojson")[0] == 0
+    assert run("plan", "--no-bound", "vines.gpkg", "-o", "again.geojson")[0] == 0
 
 
 def test_trees_in_no_rows_are_said_and_not_called_rows(run, tmp_path):
     xy_m = np.random.default_rng(0).uniform(0, 120, (60, 2))
     rows = [f"{lon:.9f},{lat:.9f}" for lon, lat in FRAME.lonlat(xy_m)]
     (tmp_path / "trees.csv").write_text("\n".join(["lon,lat", *rows]))
-    code, out, err, _ = run("plan", "--plants", "trees.csv", "--hours", 1)
+    code, out, err, _ = run("plan", "--no-bound", "--plants", "trees.csv", "--hours", 1)
     assert code == 0
     assert "doubtful: No rows were found: the plants stand anyhow." in err
     assert "trees: 60 plants in no rows." in out
@@ -87,7 +92,9 @@ def test_trees_are_visited_by_nearness_where_it_is_said_that_they_stand_in_no_ro
     rows = [f"{lon:.9f},{lat:.9f}" for lon, lat in FRAME.lonlat(xy_m)]
     (tmp_path / "trees.csv").write_text("\n".join(["lon,lat", *rows]))
     words = ["--plants", "trees.csv", "--no-rows", "--hours", 1]
-    code, out, err, _ = run("plan", *words, "-o", "a.csv", "-o", "a.geojson", "-o", "a.html")
+    code, out, err, _ = run(
+        "plan", "--no-bound", *words, "-o", "a.csv", "-o", "a.geojson", "-o", "a.html"
+    )
     assert code == 0, err
     assert "trees: 60 plants in no rows, visited by nearness." in out
     table = list(csv.DictReader((tmp_path / "a.csv").read_text("utf-8-sig").splitlines()))
@@ -99,8 +106,8 @@ def test_trees_are_visited_by_nearness_where_it_is_said_that_they_stand_in_no_ro
     assert run("init", "trees.gpkg", *words[:3])[0] == 0
     again = Season(tmp_path / "trees.gpkg").plot.grid
     assert not again.in_rows
-    assert run("plan", "trees.gpkg", "-o", "b.csv")[0] == 0
-    assert run("plan", "trees.csv", "--all", "--no-rows")[0] != 0
+    assert run("plan", "--no-bound", "trees.gpkg", "-o", "b.csv")[0] == 0
+    assert run("plan", "--no-bound", "trees.csv", "--all", "--no-rows")[0] != 0
 
 
 def test_plants_stand_between_end_posts(run, tmp_path):
@@ -110,7 +117,7 @@ def test_plants_stand_between_end_posts(run, tmp_path):
     posts = gpd.GeoDataFrame(geometry=gpd.points_from_xy(*lonlat.T), crs=4326)
     posts.to_file(tmp_path / "posts.geojson")
     home = area(tmp_path / "home.geojson")
-    code, out, err, _ = run("plan", home, "--rows", "posts.geojson", "--hours", 1)
+    code, out, err, _ = run("plan", "--no-bound", home, "--rows", "posts.geojson", "--hours", 1)
     assert code == 0, err
     assert "28 points are the end posts of rows, paired as they lie in line." in err
     assert "Plants stand along the 14 rows that were drawn." in err
@@ -119,7 +126,7 @@ def test_plants_stand_between_end_posts(run, tmp_path):
     assert "guessed: row spacing" not in err
     odd = posts.iloc[:27]
     odd.to_file(tmp_path / "odd.geojson")
-    code, _, err, _ = run("plan", home, "--rows", "odd.geojson")
+    code, _, err, _ = run("plan", "--no-bound", home, "--rows", "odd.geojson")
     assert code != 0
     assert "two a row" in err
 
@@ -141,7 +148,7 @@ def test_rows_run_along_the_contours_of_a_raster(run, tmp_path):
     write_hill(tmp_path / "dem.tif")
     home = area(tmp_path / "home.geojson")
     words = ["--contours", "dem.tif", "--row-spacing", 3, "--plant-spacing", 1.5, "--hours", 1]
-    code, out, err, _ = run("plan", home, *words)
+    code, out, err, _ = run("plan", "--no-bound", home, *words)
     assert code == 0, err
     assert "Rows run along the contour through the middle of the plot" in err
     assert "which run as they bend" in out
@@ -150,7 +157,7 @@ def test_rows_run_along_the_contours_of_a_raster(run, tmp_path):
 
 def test_measured_plants_and_drawn_rows_are_not_given_together(run, tmp_path, two_blocks):
     home = area(tmp_path / "home.geojson")
-    code, _, err, _ = run("plan", home, "--plants", two_blocks, "--rows", home)
+    code, _, err, _ = run("plan", "--no-bound", home, "--plants", two_blocks, "--rows", home)
     assert code != 0
     assert "not both" in err
 
@@ -166,7 +173,7 @@ def test_an_estate_is_planned_with_the_rows_and_blocks_of_its_plots(run, tmp_pat
     rows.to_file(tmp_path / "rows.geojson")
     gpd.GeoDataFrame(geometry=[cut], crs=4326).to_file(tmp_path / "cut.geojson")
     words = ["--rows", "rows.geojson", "--blocks", "cut.geojson", "--hours", 1, "--no-bound"]
-    code, out, err, _ = run("plan", "estate.geojson", "--all", *words, "-o", "routes")
+    code, out, err, _ = run("plan", "--no-bound", "estate.geojson", "--all", *words, "-o", "routes")
     assert code == 0, err
     assert "2 of 2 plots planned" in out
     assert "On 1 of 2 plots no rows were drawn; straight ones are laid." in err
@@ -209,7 +216,7 @@ def test_a_plot_is_only_its_rows(run, tmp_path):
     bows = [shapely.LineString([(-40, y), (0, y + 4), (40, y)]) for y in range(-12, 13, 3)]
     rows = gpd.GeoDataFrame(geometry=[FRAME.geometry_lonlat(bow) for bow in bows], crs=4326)
     rows.to_file(tmp_path / "rows.geojson")
-    code, out, err, _ = run("plan", "--rows", "rows.geojson", "--hours", 1)
+    code, out, err, _ = run("plan", "--no-bound", "--rows", "rows.geojson", "--hours", 1)
     assert code == 0, err
     assert "rows: 477 plants in 9 rows" in out or "in 9 rows, which run as they bend" in out
     assert "guessed: No boundary was given" in err

@@ -32,7 +32,8 @@ def test_a_table_says_who_works_from_when_and_where(run, tmp_path):
         "Rover 1;robot;0,5;3;20;06:30;;\n"
         "Ann;scout;1;;;07:00;35.1529;30.3525\n"
     )
-    code, out, err, made = run(*NURSERY, "--robots", "team.csv", "-o", "a.geojson", "-o", "a.csv")
+    words = ("--robots", "team.csv", "--no-bound", "-o", "a.geojson", "-o", "a.csv")
+    code, out, err, made = run(*NURSERY, *words)
     assert code == 0, err
     names = {f"a-{name}.{ending}" for name in ("Rover_1", "Ann") for ending in ("geojson", "csv")}
     assert {path.name for path in made} == names

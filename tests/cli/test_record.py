@@ -19,7 +19,7 @@ def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
     season,
     tmp_path,
 ):
-    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    run("plan", season, "--no-bound", "--date", BEGINS, "-o", "r.csv")
     filled_in(tmp_path / "r.csv", finds={0}, n=5)
     run("record", season, "r.csv", "--date", BEGINS)
     copy = shutil.copy(season, tmp_path / "copy.gpkg")
@@ -42,7 +42,7 @@ def test_what_qfield_adds_to_a_copy_comes_back_and_what_was_undone_does_not(
 def test_a_file_that_contradicts_what_is_recorded_is_listed_and_taken_only_when_told(
     run, season, tmp_path
 ):
-    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    run("plan", season, "--no-bound", "--date", BEGINS, "-o", "r.csv")
     filled_in(tmp_path / "r.csv", finds={0, 2}, n=5)
     run("record", season, "r.csv", "--date", BEGINS)
     filled_in(tmp_path / "r.csv", finds=set(), n=5)
@@ -69,7 +69,7 @@ def test_finds_that_are_found_again_are_said_wherever_the_season_is_told(run, se
     assert said not in run("record", season, f"{days[0]}.csv")[2]
     told = (["record", season, f"{days[1]}.csv"], ["status", season, "--date", days[1]],
             ["decide", season, "--threshold", "5%", "--date", days[1]],
-            ["plan", season, "--date", days[1], "-o", "r.csv"])  # fmt: skip
+            ["plan", season, "--no-bound", "--date", days[1], "-o", "r.csv"])  # fmt: skip
     for words in told:
         assert said in run(*words)[2].splitlines(), words
     run("report", season, "--until", days[1], "-o", "r.html")
@@ -84,7 +84,7 @@ def test_finds_that_are_found_again_are_said_wherever_the_season_is_told(run, se
 def test_who_is_told_by_the_option_and_rows_that_say_otherwise_are_counted(run, season, tmp_path):
     """Ann's sheet, walked by Dan: files given out say who was to go."""
     run("change", season, "--robots", "2")
-    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    run("plan", season, "--no-bound", "--date", BEGINS, "-o", "r.csv")
     filled_in(tmp_path / "r-robot-1.csv", finds={0}, n=3)
     code, _, err, _ = run("record", season, "r-robot-1.csv", "--date", BEGINS, "--who", "Dan")
     assert code == 0, err
@@ -111,7 +111,7 @@ def test_who_is_told_by_the_option_of_a_season_begun_apart_but_not_of_a_copy(run
 def test_two_files_that_contradict_each_other_are_refused_before_either_is_recorded(
     run, season, tmp_path
 ):
-    run("plan", season, "--date", BEGINS, "-o", "a.csv")
+    run("plan", season, "--no-bound", "--date", BEGINS, "-o", "a.csv")
     shutil.copy(tmp_path / "a.csv", tmp_path / "b.csv")
     filled_in(tmp_path / "a.csv", finds={0}, n=3)
     filled_in(tmp_path / "b.csv", finds=set(), n=3)
@@ -149,7 +149,7 @@ def test_a_file_all_of_which_names_another_plot_is_refused_before_others_are_rec
 
 
 def test_corrections_of_a_copy_are_taken_with_its_findings_or_not_at_all(run, season, tmp_path):
-    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    run("plan", season, "--no-bound", "--date", BEGINS, "-o", "r.csv")
     filled_in(tmp_path / "r.csv", finds={0}, n=5)
     run("record", season, "r.csv", "--date", BEGINS)
     copy = shutil.copy(season, tmp_path / "copy.gpkg")

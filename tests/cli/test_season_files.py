@@ -83,7 +83,7 @@ def test_seasons_of_their_own_go_into_one_table(run, season, tmp_path):
 
 
 def test_a_day_that_was_filled_in_is_not_written_over_before_it_is_recorded(run, season, tmp_path):
-    words = ("plan", season, "--date", BEGINS)
+    words = ("plan", season, "--date", BEGINS, "--no-bound")
     words += ("-o", "day.csv", "-o", "day.gpkg", "-o", "day.geojson")
     for _ in range(2):  # not filled in, it may be
         code, _, err, _ = run(*words)
@@ -123,7 +123,7 @@ def test_what_was_filled_in_for_another_plot_is_kept_and_nobody_is_told_to_recor
     run, season, tmp_path
 ):
     (tmp_path / "day.csv").write_text(OTHERS)
-    words = "plan", season, "--date", BEGINS, "-o", "day.csv"
+    words = "plan", season, "--date", BEGINS, "--no-bound", "-o", "day.csv"
     code, _, err, _ = run(*words)
     assert (code, "holds 1 result that" in err) == (2, True)
     code, _, err, _ = run("record", season, "day.csv")

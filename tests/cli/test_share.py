@@ -3,11 +3,14 @@
 import csv
 import json
 import shutil
+from contextlib import redirect_stdout
 from datetime import date
+from io import StringIO
 
 import numpy as np
 import pytest
 
+from fieldmon.cli.main import app
 from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.monitoring import Season
 from tests.cli.estate import BEGINS, MITES, ZIP, filled_in
@@ -21,14 +24,21 @@ def table(path):
         return list(csv.DictReader(file))
 
 
+@pytest.fixture(scope="module")
+def bend(tmp_path_factory):
+    """Begin a season on another plot by its command, once; return its file."""
+    file = tmp_path_factory.mktemp("begun") / "bend.gpkg"
+    words = ["init", file, ZIP, "--feature", "Bend", "--records", MITES, "--begins", BEGINS]
+    with redirect_stdout(StringIO()):
+        app([str(word) for word in words], standalone_mode=False)
+    return file
+
+
 @pytest.fixture
-def seasons(run, begun, tmp_path):
-    """Return the files of two seasons."""
+def seasons(begun, bend, tmp_path):
+    """Return the files of two seasons, copies for each test."""
     shutil.copy(begun, tmp_path / "nursery.gpkg")
-    code, _, err, _ = run(
-        "init", "bend.gpkg", ZIP, "--feature", "Bend", "--records", MITES, "--begins", BEGINS
-    )
-    assert code == 0, err
+    shutil.copy(bend, tmp_path / "bend.gpkg")
     return "nursery.gpkg", "bend.gpkg"
 
 

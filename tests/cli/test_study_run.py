@@ -1,5 +1,6 @@
 """`fieldmon study run`: a study of one's own plots."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 from datetime import date
 
@@ -12,7 +13,7 @@ from shapely import box
 from fieldmon.cli.pest_options import PestOptions
 from fieldmon.cli.study_run import StudyOptions, _tell, _tell_charged
 from fieldmon.errors import FileProblem
-from fieldmon.simulation import results
+from fieldmon.simulation import executor, results
 from fieldmon.simulation.design import study_of
 from fieldmon.simulation.worker import simulate_chunk
 from tests.cli.estate import MITES, ZIP, square
@@ -21,11 +22,20 @@ from tests.paths import ROOT
 FEW = ["--seeds", 3, "--days", 2, "--workers", 1, "--date", "2026-11-02"]
 
 
-def test_samplers_are_compared_on_a_plot_and_the_seasons_kept(run, tmp_path):
+@pytest.fixture
+def here(monkeypatch):
+    """Return what lets all be simulated in this process from now on.
+
+    Others are started by the test of a sampler of one's own, which they must find.
+    """
+    return lambda: monkeypatch.setattr(executor, "cluster", lambda *_: nullcontext(executor.here()))
+
+
+def test_samplers_are_compared_on_a_plot_and_the_seasons_kept(run, tmp_path, here):
+    here()
     words = ["study", "run", ZIP, "--feature", "Nursery", "--hours", 2, "--hours", 4, *FEW]
     code, out, err, _ = run(*words, "--sampler", "naive", "--sampler", "dynamic", "-o", "mine")
     assert code == 0, err
-    assert "http://127.0.0.1:" in err
     assert sum(line.startswith(("naive", "dynamic")) for line in out.splitlines()) == 4
     assert sum("(best)" in line for line in out.splitlines()) == 2
     assert "one that holds 0 is no sure difference" in out
@@ -170,7 +180,7 @@ def test_seasons_of_a_pest_have_no_spread(tmp_path):
         assert season["spread"] == spread
 
 
-def test_a_sampler_of_ones_own_is_compared_under_its_name(run, tmp_path):
+def test_a_sampler_of_ones_own_is_compared_under_its_name(run, tmp_path, here):
     page = (ROOT / "docs" / "own_sampler.md").read_text(encoding="utf-8")
     text = page.split("```python\n")[1].split("```")[0]
     (tmp_path / "my_sampler.py").write_text(text, encoding="utf-8")
@@ -178,9 +188,11 @@ def test_a_sampler_of_ones_own_is_compared_under_its_name(run, tmp_path):
     own = ["--sampler", "my_sampler.py:Mine", "--sampler", "naive", "-o", "mine"]
     code, out, err, _ = run(*words, *own)
     assert code == 0, err
+    assert "http://127.0.0.1:" in err
     assert {line.split()[0] for line in out.splitlines()} >= {"Mine", "naive"}
     assert set(results.seasons(tmp_path / "mine")["sampler"].to_pylist()) == {"Mine", "naive"}
     refused = text.replace("plants.append(at)", "plants.append(-1)")
     (tmp_path / "my_sampler.py").write_text(refused, encoding="utf-8")
+    here()
     code, _, err, _ = run(*words, *own)
     assert (code, "Mine must answer plants from 0 on" in err) == (2, True)

@@ -44,7 +44,7 @@ class Mine(Naive):
 
 
 def test_a_sampler_that_is_added_completes_the_table_of_before(run, tmp_path):
-    words = ["study", "samplers", "--scenario", "A", "--seeds", 2]
+    words = ["study", "samplers", "--scenario", "A", "--seeds", 2, "--visit-every", 7]
     file, csv, html = (tmp_path / name for name in ("my.py", "samplers.csv", "samplers.html"))
     assert run(*words)[0] == 0
     usual, report = csv.read_bytes(), html.read_bytes()
@@ -73,7 +73,7 @@ def test_a_sampler_that_is_added_completes_the_table_of_before(run, tmp_path):
 
 
 def test_with_a_pest_every_sampler_believes_the_one_map_that_follows_it(run, tmp_path):
-    words = ["--pest", "whitefly", "--scenario", "A, whitefly", "--seeds", 2]
+    words = ["--pest", "whitefly", "--scenario", "A, whitefly", "--seeds", 2, "--visit-every", 9]
     code, out, err, made = run("study", "samplers", *words)
     assert code == 0, err
     assert "pest: Tobacco whitefly" in err

@@ -47,7 +47,9 @@ def test_each_has_a_route_file_and_the_findings_of_both_are_recorded_at_once(run
     done = Season(season).history.inspections
     assert [list(done.who).count(f"robot-{k}") for k in (1, 2)] == [5, 5]
     assert done.result[done.who == "robot-2"].sum() == 2
-    code, out, err, files = run("plan", season, "--date", BEGINS, "-o", "rest.geojson")
+    code, out, err, files = run(
+        "plan", season, "--no-bound", "--date", BEGINS, "-o", "rest.geojson"
+    )
     assert code == 0, err
     assert f"{BEGINS}: 10 done" in out
     assert "robot-1: from 06:0" in out
@@ -85,7 +87,7 @@ def test_who_is_too_wide_for_a_plot_is_named_where_a_season_has_them_already(run
     wide = TeamMember("Ben", replace(first.robot, width_m=9.0))
     with kept.store.writing() as db:  # as a season of an earlier version may
         settings_log.change(db, replace(first, team=(first.team[0], wide)))
-    code, _, err, made = run("plan", season, "--date", BEGINS)
+    code, _, err, made = run("plan", season, "--no-bound", "--date", BEGINS)
     assert (code, made) == (2, set())
     assert "Ben: A robot's aisles must be as wide as it is" in err
     assert f"Give the team anew with: fieldmon change {season} --robots TEAM.csv" in err
@@ -108,7 +110,7 @@ def test_a_season_goes_on_with_another_team(run, season, tmp_path):
 
 
 def test_a_team_without_time_to_reach_a_plant_is_told_so(run, season):
-    code, _, err, files = run("plan", season, "--date", BEGINS, "--now", "23:00")
+    code, _, err, files = run("plan", season, "--no-bound", "--date", BEGINS, "--now", "23:00")
     assert code == 2
     assert "nobody has" in err
     assert not files

@@ -12,7 +12,7 @@ ON = date.fromisoformat(BEGINS)
 
 
 def test_what_was_recorded_last_is_as_if_it_had_not_been(run, season, tmp_path):
-    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    run("plan", season, "--no-bound", "--date", BEGINS, "-o", "r.csv")
     filled_in(tmp_path / "r.csv", finds={0}, n=5)
     before = Season(season).evening(ON)
     run("record", season, "r.csv", "--date", BEGINS)
@@ -29,7 +29,7 @@ def test_what_was_recorded_last_is_as_if_it_had_not_been(run, season, tmp_path):
 
 
 def test_one_inspection_alone_is_taken_back(run, season, tmp_path):
-    run("plan", season, "--date", BEGINS, "-o", "r.csv")
+    run("plan", season, "--no-bound", "--date", BEGINS, "-o", "r.csv")
     plants = filled_in(tmp_path / "r.csv", finds={0}, n=3)
     run("record", season, "r.csv", "--date", BEGINS)
     code, out, err, _ = run("undo", season, "--inspection", 2)

@@ -114,7 +114,7 @@ def test_every_answer_that_is_suggested_is_taken_and_is_not_asked_for_again(case
         told[case.name] = told_of(case, tmp_path / "made")
     for k, (said, option, choices) in enumerate(suggested(told[case.name])):
         # of many systems, whose answers are all taken in one way, the first and the last
-        few = {0, 1, len(choices) - 1} if option == "crs" else range(10)
+        few = {0, len(choices) - 1} if option == "crs" else range(10)
         for i, choice in enumerate(choices[:10]):
             if i not in few:
                 continue

@@ -72,8 +72,8 @@ def reports(worked, last, of_day, of_season):
 
 @pytest.mark.parametrize("code", LANGUAGES)
 def test_every_run_of_glyphs_is_shown_in_the_font_that_chose_them(reports, monkeypatch, code):
-    # a season's maps take long, and are the same in each language
-    for report in reports if code == "ar" else reports[1:]:
+    # the plot's name is Arabic in each; all are set as one of them is, which has all scripts
+    for report in reports if code == "ar" else reports[1:2]:
         data, chosen = written(monkeypatch, report.said_in(for_reports(code)))
         assert list(shown(data)) == chosen
 

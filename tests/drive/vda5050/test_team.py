@@ -122,8 +122,8 @@ def test_scouts_do_not_drive_and_a_robot_that_never_comes_takes_nothing(
 ):
     monkeypatch.setattr(Vda5050Robot.__init__, "__kwdefaults__",
                         {**Vda5050Robot.__init__.__kwdefaults__, "patience_s": 3.0})  # fmt: skip
-    robot = Robot(hours=0.2)
-    team = (TeamMember("Ann", scout().with_hours(0.2)), *team_of(2, robot))
+    robot = Robot(hours=0.1)
+    team = (TeamMember("Ann", scout().with_hours(0.1)), *team_of(2, robot))
     settings = MonitoringSettings(ON, robot=robot, team=team)
     season = Season.create(tmp_path / "mixed.gpkg", plot, None, settings)
     other = StandIn(broker, RobotName(ROBOT.manufacturer, "robot-1"), seen, 0.7, 1e6)

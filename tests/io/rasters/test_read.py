@@ -22,6 +22,7 @@ from tests.io.rasters.raster_files import (
     shown,
     write,
 )
+from tests.thorough import times
 
 
 def test_only_the_ground_about_the_plot_is_read(tmp_path):
@@ -61,7 +62,7 @@ def test_a_tiny_raster_serves(tmp_path):
 
 
 def test_damaged_rasters_leave_nothing_but_sentences():
-    tally = fuzz_rasters.fuzz(66)
+    tally = fuzz_rasters.fuzz(times(22, 2000))
     assert tally.failures == []
     assert tally.outcomes["came in"] > 0
     assert tally.outcomes["refused"] > 0

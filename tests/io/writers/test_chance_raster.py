@@ -18,6 +18,7 @@ from fieldmon.plot.planting import Planting
 from fieldmon.plot.projection import Frame
 from tests.crooked import crooked_grids
 from tests.io.rasters.raster_files import PLOT
+from tests.thorough import seeds
 
 
 def chances(grid, seed=1):
@@ -50,7 +51,7 @@ def directories(data):
 
 
 def test_the_chance_map_is_a_cloud_optimised_geotiff(tmp_path):
-    grid = rectangle(300, 500)
+    grid = rectangle(60, 300)
     path = tmp_path / "chance.tif"
     write_chance_raster(grid, chances(grid), path)
     assert [p.name for p in tmp_path.iterdir()] == ["chance.tif"]
@@ -73,8 +74,7 @@ def test_the_chance_map_is_a_cloud_optimised_geotiff(tmp_path):
         )  # fmt: skip
 
 
-@pytest.mark.parametrize("bearing", [0.0, 33.0, 90.0])
-@pytest.mark.parametrize("faces", [1, 2])
+@pytest.mark.parametrize(("bearing", "faces"), [(0.0, 1), (33.0, 2), (90.0, 1)])
 def test_every_plant_finds_its_chance_where_it_stands(tmp_path, bearing, faces):
     grid = lay(PLOT, Planting(bearing, 3.0, 1.5, faces=faces))
     chance = chances(grid)
@@ -96,7 +96,7 @@ def test_every_plant_finds_its_chance_where_it_stands(tmp_path, bearing, faces):
     np.testing.assert_array_equal(again, shown)
 
 
-@settings(max_examples=25)
+@settings(max_examples=8)
 @given(crooked_grids(40.0, faces=(1,), max_plants=3000), st.integers(0, 99))
 def test_on_any_plot_every_plant_fills_its_own_ground_and_no_more(grid, seed):
     chance = chances(grid, seed)
@@ -148,7 +148,7 @@ def test_a_map_of_other_plants_or_without_end_is_refused(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", seeds(2, 4))
 def test_each_pixel_is_the_nearest_plants_on_whose_ground_it_lies_by_trying_all(seed):
     rng = np.random.default_rng(seed)
     turn, shape, halves = rng.uniform(0.0, np.pi), (14, 17), np.array([1.4, 2.3])
@@ -184,7 +184,7 @@ def test_the_zone_is_that_of_the_longitude_and_the_last_one_ends_the_world(lon, 
             assert picture.crs.to_epsg() == 32_000 + 100 * north + zone
 
 
-@pytest.mark.parametrize("bearing", [0.0, 33.0, 71.0])
+@pytest.mark.parametrize("bearing", [0.0, 33.0])
 def test_a_pixel_is_filled_where_its_middle_lies_on_a_plants_ground(bearing):
     grid = lay(PLOT, Planting(bearing, 4.0, 1.5))
     made = chance_raster(grid, chances(grid))

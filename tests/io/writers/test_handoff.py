@@ -23,13 +23,8 @@ from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.writers import FORMATS, write_handoff
 from fieldmon.io.writers.handoff import HandoffFormat
 from fieldmon.plot.layout import rectangle
-from tests.io.writers.handed import DAYS, crooked, day, usual
+from tests.io.writers.handed import crooked, day, empty, long, usual
 from tests.pages import Page
-
-
-@pytest.fixture(params=DAYS)
-def plan(request):
-    return DAYS[request.param]()
 
 
 def by_gdal(layer, column="plant"):
@@ -81,7 +76,15 @@ def test_every_format_is_read_back_by_another_program(tmp_path, name, make):
     assert name in READERS, f"Add a reader of {name} to READERS: see CONTRIBUTING, Add a format."
     plan = make()
     paths = write_handoff(plan, tmp_path / f"day{FORMATS[name].endings[0]}")
+    assert_all_is_written(name, paths)
     assert [int(plant) for plant in READERS[name](paths)] == plan.route.plant.tolist()
+
+
+def assert_all_is_written(name, paths):
+    """Check that a folder holds these files of a format, each with something in it."""
+    assert sorted(paths[0].parent.iterdir()) == sorted(paths)
+    assert all(path.stat().st_size for path in paths)
+    assert FORMATS[name].several == (len(paths) > 1)
 
 
 @pytest.mark.parametrize("name", ["geojson", "gpkg", "shapefile", "kml", "gpx", "sheet"])
@@ -168,17 +171,16 @@ def test_a_place_that_cannot_be_written_to_is_a_sentence(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", FORMATS)
-def test_every_format_is_written_for_every_day(tmp_path, name, plan):
+@pytest.mark.parametrize("make", [long, empty])
+def test_every_format_is_written_for_every_day(tmp_path, name, make):
+    plan = make()
     to = tmp_path / f"a{FORMATS[name].endings[0]}"
     if name in {"nav2", "nav2-pauses", "waypoints"} and not len(plan.route):
         with pytest.raises(SettingError, match="drives nowhere"):
             write_handoff(plan, to)
         assert list(tmp_path.iterdir()) == []
         return
-    paths = write_handoff(plan, to)
-    assert sorted(tmp_path.iterdir()) == sorted(paths)
-    assert all(path.stat().st_size for path in paths)
-    assert FORMATS[name].several == (len(paths) > 1)
+    assert_all_is_written(name, write_handoff(plan, to))
 
 
 def _filled_in(path, said):

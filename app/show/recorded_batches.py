@@ -45,7 +45,8 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     if batch.kind == "findings" and said is not None:
         parts += [from_, _what(choices, said)]
     else:
-        parts.append(texts.BATCHES_SAID[batch.kind].format(source=from_, n=batch.rows))
+        of = _what(choices, said) if batch.kind == "corrections" and said is not None else ""
+        parts.append(texts.BATCHES_SAID[batch.kind].format(source=from_ or of))
     if batch.kind == "treatment" and said is not None:
         parts.append(texts.PLANTS_COUNTED.format(n=said.n))
         if said.efficacy is not None:

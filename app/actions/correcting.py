@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import streamlit as st
 
@@ -24,6 +24,13 @@ if TYPE_CHECKING:
 _WHEN = "when"
 
 
+class _Inspection(NamedTuple):
+    """One that may be corrected. What is said of it is part of it: corrected, it is shown anew."""
+
+    number: int
+    said: str
+
+
 def show(choices: Choices, plant: int | None) -> None:
     """Offer to correct the day or time of an inspection of a plant, if it has any.
 
@@ -37,9 +44,11 @@ def show(choices: Choices, plant: int | None) -> None:
     boxes = FreshBoxes(_WHEN, choices)
     with st.expander(texts.CORRECT_WHEN):
         st.caption(texts.CORRECT_WHEN_NOTE)
-        said = {one.number: _said(choices, one) for one in made}
-        st.selectbox(texts.CORRECT_WHICH, list(said), len(said) - 1, said.__getitem__,
-                     key=_which(choices, plant))  # fmt: skip
+        which = [_Inspection(one.number, _said(choices, one)) for one in made]
+        numbers, key = [one.number for one in which], _which(choices, plant)
+        before: _Inspection = st.session_state.get(key, which[-1])
+        at_first = numbers.index(before.number) if before.number in numbers else len(which) - 1
+        st.selectbox(texts.CORRECT_WHICH, which, at_first, lambda one: one.said, key=key)
         day, at = st.columns(2)
         boxes.show(day.date_input, texts.CORRECT_DAY, box="when_day")
         boxes.show(at.time_input, texts.CORRECT_TIME, box="when_time")
@@ -53,8 +62,8 @@ def show(choices: Choices, plant: int | None) -> None:
 def _told(choices: Choices, plant: int) -> tuple[str, int, date | None, time | None]:
     """Return of which season and inspection what is to be corrected to."""
     said = FreshBoxes(_WHEN, choices).said
-    which: int = st.session_state[_which(choices, plant)]
-    return choices.key, which, said("when_day"), said("when_time")
+    which: _Inspection = st.session_state[_which(choices, plant)]
+    return choices.key, which.number, said("when_day"), said("when_time")
 
 
 def _which(choices: Choices, plant: int) -> str:

@@ -94,4 +94,4 @@ def redo(choices: Choices, batch: int) -> str:
     """Let a batch that was undone count again, unless somebody did so in another window."""
     if batch not in {one.number for one in choices.open_season.batches() if one.undone}:
         raise SettingError(texts.REDONE_BEFORE)
-    return recorded_batches.undone(choices.open_season.redo(batch))
+    return recorded_batches.counts_again(choices.open_season.redo(batch))

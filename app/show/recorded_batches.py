@@ -45,7 +45,8 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     if batch.kind == "findings" and said is not None:
         parts += [from_, _what(choices, said)]
     else:
-        parts.append(texts.BATCHES_SAID[batch.kind].format(source=from_, n=batch.rows))
+        of = _what(choices, said) if batch.kind == "corrections" and said is not None else ""
+        parts.append(texts.BATCHES_SAID[batch.kind].format(source=from_ or of))
     if batch.kind == "treatment" and said is not None:
         parts.append(texts.PLANTS_COUNTED.format(n=said.n))
         if said.efficacy is not None:
@@ -63,15 +64,24 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
 
 
 def undone(said: str) -> str:
-    """Return what the season says it took back, or counts again, in the current language.
+    """Return what the season says it took back, in the current language.
 
     Without the number of the batch, which only commands need.
     """
+    return _unnumbered(said, texts.UNDONE_WHAT)
+
+
+def counts_again(said: str) -> str:
+    """Return what the season says counts again, in the current language, without the number."""
+    return _unnumbered(said, texts.AGAIN_WHAT)
+
+
+def _unnumbered(said: str, words: str) -> str:
     parts = said.parts if isinstance(said, Worded) and said.parts else (said,)
-    return " ".join(_unnumbered(one) for one in parts)
+    return " ".join(_one_unnumbered(one, words) for one in parts)
 
 
-def _unnumbered(one: str) -> str:
+def _one_unnumbered(one: str, words: str) -> str:
     if not isinstance(one, Worded) or not {"batch", "what"} <= one.values.keys():
         return in_words(one)
     blanks = one.values
@@ -80,8 +90,7 @@ def _unnumbered(one: str) -> str:
         return texts.UNDONE_FROM.format(what=what, source=texts.isolated(source(blanks["source"])))
     if "product" in blanks:
         return texts.UNDONE_WITH.format(what=what, product=texts.isolated(blanks["product"]))
-    again = one.words.startswith("Batch {batch} counts again")
-    return (texts.AGAIN_WHAT if again else texts.UNDONE_WHAT).format(what=what)
+    return words.format(what=what)
 
 
 def why_to_ask(choices: Choices, batch: Batch, said: BatchContents | None) -> list[str]:

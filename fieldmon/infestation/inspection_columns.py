@@ -87,13 +87,22 @@ _NUMBERS, _TEXTS = ("iufO", "numbers"), ("UO", "texts")
 
 #: in the order of the season's file; what identifies stands in its digest in this order
 COLUMNS = (
-    InspectionColumn(
-        "plant", "int32", ("iuf", "whole numbers of int32"), "plant INTEGER", "identifies"
-    ),
+    InspectionColumn("plant", "int32", ("iuf", "whole numbers"), "plant INTEGER", "identifies"),
     InspectionColumn("date", "datetime64[D]", ("M", "dates"), "date DATE", "identifies"),
-    InspectionColumn("second", "float64", _NUMBERS, "time TEXT", "identifies", np.nan),
     InspectionColumn(
-        "result", "int8", ("biuf", "whole numbers of int8"), "result TEXT", "identifies"
+        "second",
+        "float64",
+        ("iufO", "seconds since local midnight"),
+        "time TEXT",
+        "identifies",
+        np.nan,
+    ),
+    InspectionColumn(
+        "result",
+        "int8",
+        ("biuf", "0 (clean), 1 (found) or 2 (skipped)"),
+        "result TEXT",
+        "identifies",
     ),
     InspectionColumn("count", "float64", _NUMBERS, "count REAL", "identifies", np.nan),
     InspectionColumn("who", object, _TEXTS, "who TEXT", "free", ""),

@@ -57,16 +57,33 @@ def _column(name: str, given: Any) -> NDArray[Any]:  # noqa: ANN401 - held to it
             column: NDArray[Any] = as_kept(values.astype(_TYPES[name], copy=False))
     except (ValueError, TypeError, OverflowError) as error:
         raise _wrong(name, given) from error
-    if words.startswith("whole") and not np.array_equal(column, values):
+    if column.dtype.kind == "i" and not np.array_equal(column, values):
         raise _wrong(name, given)
     return column
 
 
 def _wrong(name: str, given: object) -> ObservationError:
-    return ObservationError(
-        f"The {name} of inspections must be {_GIVEN[name][1]}, "
-        f"but {shown(given)} does not hold them."
-    )
+    """Say what a column must be, and which is the first of its values that is not."""
+    wrong = _first_wrong(name, given)
+    but = f"{shown(given)} does not hold them" if wrong is None else wrong
+    return ObservationError(f"The {name} of inspections must be {_GIVEN[name][1]}, but {but}.")
+
+
+def _first_wrong(name: str, given: Any) -> str | None:  # noqa: ANN401 - it is looked at here
+    """Return which value of a column of numbers is none, or None where that cannot be told."""
+    kind = np.dtype(_TYPES[name])
+    if kind.kind not in "if" or np.ndim(given) != 1:
+        return None
+    limits = np.iinfo(kind) if kind.kind == "i" else None
+    for k, one in enumerate(given):
+        fits = isinstance(one, (int, float, np.number, np.bool_))
+        if limits:
+            fits = fits and one == one // 1 and limits.min <= one <= limits.max
+        elif one is None:
+            continue
+        if not fits:
+            return f"that of inspection {k + 1} of {len(given)} is {shown(one)}"
+    return None
 
 
 def _no_date(given: object) -> ObservationError:

@@ -1,6 +1,6 @@
 """Inspections: columns of one length, unknown where not said, and nobody can change them."""
 
-from datetime import date, datetime, timedelta, timezone
+from datetime import date, datetime, time, timedelta, timezone
 
 import numpy as np
 import pandas as pd
@@ -138,6 +138,25 @@ def test_what_is_no_text_is_refused_by_name(who):
 def test_columns_of_another_length_are_refused_by_name():
     with pytest.raises(ObservationError, match="4 entries, but count has 2"):
         Inspections(**(vars(week()) | {"count": np.zeros(2)}))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (
+            {"result": pd.array([1, None], dtype="Int64")},
+            r"2 \(skipped\), but that of inspection 2 of",
+        ),
+        ({"result": ["found", "clean"]}, "inspection 1 of 2 is 'found'"),
+        ({"result": [1, 300]}, "inspection 2 of 2 is 300"),
+        ({"second": [None, time(7, 0)]}, "seconds since local midnight, but that of inspection 2"),
+        ({"count": [None, "a"]}, "numbers, but that of inspection 2 of 2 is 'a'"),
+    ],
+)
+def test_of_a_column_that_is_refused_the_first_wrong_value_is_named(wrong, said):
+    given = {"plant": [1, 2], "result": [0, 1], "on": MONDAY} | wrong
+    with pytest.raises(ObservationError, match=said):
+        Inspections.of(**given)
 
 
 @pytest.mark.parametrize("plant", [2**40, -(2**31) - 1, 1.5])

@@ -36,6 +36,10 @@ def test_the_day_and_time_of_one_inspection_are_corrected_and_taken_back(season_
     assert "1 correction taken" in season_app.success[0].value
     held = season().history.inspections
     assert (str(held.date[0]), held.second.tolist()) == ("2026-11-16", [5.75 * 3600])
+    # the box shows it as it is now, and the list of recordings which one it was
+    assert boxed(season_app.selectbox, "when_which").value.said.startswith("Mon 16 Nov 05:45")
+    (line,) = [one.value for one in season_app.markdown if "corrections:" in one.value]
+    assert "corrections: row 3, plant 4: found" in line
     press(season_app, "Undo")
     assert season().history.inspections.second.tolist() == [22_000]
     press(season_app, "Redo")

@@ -85,8 +85,7 @@ def _planned_ends(choices: Choices, team: dict[str, Robot], watched: Watched) ->
     known = {}
     for name, who in whose.items():
         with suppress(FieldmonError):  # Today says why there is no plan
-            if (end := chosen_day.ends(choices, who)) is not None:
-                known[name] = f"{end:%H:%M}"
+            known[name] = f"{chosen_day.ends(choices, who):%H:%M}"
     return known
 
 

@@ -72,11 +72,14 @@ def starts(choices: Choices, plan: DayPlan, who: str | None = None) -> datetime:
     return work_begins(choices, who) + gone
 
 
-def ends(choices: Choices, who: str | None) -> datetime | None:
-    """Return the local time at which a robot's planned day ends; None: nothing is left of it."""
+def ends(choices: Choices, who: str | None) -> datetime:
+    """Return the local time at which a robot's planned day ends.
+
+    Where nothing is left of it, as after its hours, that is when these end.
+    """
     plan = choices.plan_of(who)
     if not len(plan.route):
-        return None
+        return work_begins(choices, who) + timedelta(seconds=plan.scene.robot.day_s)
     return DayRoute(plan.route, starts(choices, plan, who)).at(plan.route.end_s)
 
 

@@ -49,7 +49,8 @@ export class Drive {
     if (other) {
       // several are seen together, until one of them is followed
       const following = data.robots.length === 1;
-      Object.assign(this, { second: 0, lead: 0, following, turning: true, bearing: data.robots[0]?.heading[0] ?? 0, ranks: null });
+      // a day that goes on is seen at its end
+      Object.assign(this, { second: data.link ? data.end : 0, lead: 0, following, turning: true, bearing: data.robots[0]?.heading[0] ?? 0, ranks: null });
     }
     this.press = element("button", { type: "button", class: "tool", text: "▶", "aria-label": words.play, onclick: () => this.toggle() });
     this.slider = element("input", { type: "range", min: 0, max: data.end, step: 1, value: this.second, "aria-label": words.time_of_day,

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 #: what is listened to
 HEARS = ("state", "visualization", "connection", "order")
 WAITING, LIVE, PAUSED, FAILED, LOST = "waiting", "live", "paused", "failed", "lost"
-#: no order yet; its way is not free; its order is done; it signed off
+#: no order yet; it waits for more of its order; its order is done; it signed off
 IDLE, HELD, DONE, OFF = "idle", "held", "done", "off"
 #: it drives another plot; two speak under one serial number
 ELSEWHERE, DOUBLE = "elsewhere", "double"
@@ -55,10 +55,10 @@ class Heard(NamedTuple):
     Parameters
     ----------
     standing
-        ``"waiting"`` (not heard yet), ``"idle"`` (no order yet), ``"live"``, ``"held"`` (its way
-        is not free), ``"done"`` (its order), ``"paused"``, ``"failed"``, ``"lost"``, ``"off"`` (it
-        signed off), ``"elsewhere"`` (it drives another plot) or ``"double"`` (two speak under its
-        serial number).
+        ``"waiting"`` (not heard yet), ``"idle"`` (no order yet), ``"live"``, ``"held"`` (it waits
+        for more of its order), ``"done"`` (its order), ``"paused"``, ``"failed"``, ``"lost"``,
+        ``"off"`` (it signed off), ``"elsewhere"`` (it drives another plot) or ``"double"`` (two
+        speak under its serial number).
     lag_s
         Seconds since it was heard; None: it was not.
     said
@@ -173,7 +173,11 @@ class RobotWatcher:
         heading = (90.0 - np.degrees(poses[:, 3])) % 360.0
         traced = np.column_stack([poses[:, 0], self._rows.lonlat(poses[:, 1:3]), heading])
         unseen = np.cumsum([len(part) for part in parts[:-1]], dtype=int)
-        return Trace(traced, tuple(sorted(self._told.values(), key=lambda one: one[:2])), tuple(unseen.tolist()))
+        return Trace(
+            traced,
+            tuple(sorted(self._told.values(), key=lambda one: one[:2])),
+            tuple(unseen.tolist()),
+        )
 
     def _stands(self, lag_s: float | None) -> str:
         if self._link:
@@ -253,8 +257,7 @@ class RobotWatcher:
         self._said = fatal[0].get("errorDescription") or fatal[0]["errorType"] if fatal else ""
         now = FAILED if fatal else _does(state)
         if now != self._standing:
-            was_at_work, self._standing = self._standing == LIVE, now
-            self._settles_at = time.monotonic() + _SETTLES_S if was_at_work else 0.0
+            self._standing, self._settles_at = now, time.monotonic() + _SETTLES_S
         for one in state["actionStates"]:
             name = one["actionId"]
             plant = self._plants.get(name, -1)

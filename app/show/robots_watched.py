@@ -67,7 +67,7 @@ def _figures(one: SeenRobot, end: str) -> list[str]:
 def cautions(seen: Sequence[SeenRobot]) -> list[str]:
     """Return what must be said of robots besides: who was never heard, by name, and why else."""
     said = []
-    if silent := [texts.isolated(one.name) for one in seen if one.heard.lag_s is None]:
+    if silent := [texts.isolated(one.name) for one in seen if one.heard.standing == WAITING]:
         said.append(texts.DRIVE_NOT_HEARD.format(names=listed(silent)))
     for one in seen:
         name = texts.isolated(one.name)

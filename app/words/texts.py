@@ -250,8 +250,9 @@ MAP_WORDS = {
     "failed": "an error, {seconds} s ago", "ended": "not listened to any more",
     "away": "the server is not reached", "unheard": "the broker is not reached",
     "lost_before": "connection lost, not heard since", "idle": "no order yet",
-    "held": "waits until more of its way is released", "done": "its order is done", "off": "signed off",
-    "elsewhere": "drives another plot", "double": "two robots with one serial number",
+    "held": "waits until more of its way is released", "done": "its order is done",
+    "off": "signed off", "elsewhere": "drives another plot",
+    "double": "two robots with one serial number",
     # beside a robot on the map, where there is little room
     "robot_paused": "{name}: stands", "robot_lost": "{name}: lost", "robot_failed": "{name}: error",
     "robot_held": "{name}: waits", "robot_done": "{name}: done", "robot_off": "{name}: off",

@@ -122,9 +122,9 @@ def test_where_no_broker_is_it_is_said(scene):
 
 def test_before_anything_is_heard_nobody_knows_where_a_robot_is(scene):
     data = drive_play.as_live(LiveDrive(None, WATCHED, scene))
-    (robot,) = data["robots"]
-    assert (robot["at"], robot["way"], data["link"]) == ([], [], "ended")
-    assert robot["heard"] == {"standing": "waiting", "lag": None, "said": ""}
+    (alone,) = data["robots"]
+    assert (alone["at"], alone["way"], data["link"]) == ([], [], "ended")
+    assert alone["heard"] == {"standing": "waiting", "lag": None, "said": ""}
 
 
 def test_each_of_a_team_finds_as_it_does_and_what_comes_late_counts(scene):

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 def robots(key: str, choices: Choices, scene: Scene) -> LiveDrive | None:
     """Ask which robots are to be watched; return their day, or None where that is not said."""
     st.caption(texts.DRIVE_LIVE)
+    above = st.container()  # who watches looks at the robots, not at the boxes
     team = _team(choices)
     try:
         broker, watched = _whom(team)
@@ -41,7 +42,8 @@ def robots(key: str, choices: Choices, scene: Scene) -> LiveDrive | None:
     if at_work and live.ends is None:
         live.ends = _planned_ends(choices, team, watched)
     watch = st.fragment(_standing, run_every=1.0 if at_work else None)
-    watch(live, watched, dark=choices.dark, at_work=at_work)
+    with above:
+        watch(live, watched, dark=choices.dark, at_work=at_work)
     return live
 
 

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from fieldmon.drive.trace import Trace
-
-from ..state.driving import DayInTime
 from ..state.map_store import JSON, STORE
 from ..words import texts
 from . import field_map, map_layers
@@ -22,10 +19,13 @@ from .maps.plant_layers import PlantNotes
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.drive.trace import Trace
+    from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Scene
 
     from ..state.choices import Choices
-    from ..state.live_drive import LiveDrive
+    from ..state.driving import DayInTime
+    from ..state.live_drive import LiveDrive, SeenRobot
 
 #: how tall plants are drawn
 _TALL_M = 1.5
@@ -57,44 +57,36 @@ def content(choices: Choices, scene: Scene, day: DayInTime | None) -> MapContent
 
 
 def live_content(choices: Choices, live: LiveDrive, key: str) -> MapContent:
-    """Return the plot, and where the browser asks every second how a robot's day goes."""
+    """Return the plot, and where the browser asks every second how the robots' day goes."""
 
     def now() -> bytes:
         return json.dumps(as_live(live), separators=(",", ":")).encode()
 
-    scene = live.scene
-    nothing = as_data(scene, DayInTime(Trace(np.empty((0, 4)), ()), []))
-    begins = _standing_at_gate(scene) | {"poll": STORE.attach(key, now)}
-    first = STORE.publish(json.dumps(nothing | begins, separators=(",", ":")).encode(), JSON)
+    begins = as_live(live) | {"poll": STORE.attach(key, now)}
+    first = STORE.publish(json.dumps(begins, separators=(",", ":")).encode(), JSON)
     alt = texts.DRIVE_ALT.format(name=choices.plot.field.name)
-    return replace(content(choices, scene, None), drive=first, alt=alt)
+    return replace(content(choices, live.scene, None), drive=first, alt=alt)
 
 
 def as_live(live: LiveDrive) -> dict[str, object]:
-    """Return a day so far as `as_data` does, the way ordered, and how long ago it was heard."""
-    day, (way, released), heard = live.seen()
-    standing = heard.standing if live.running else "ended"
-    scene, data = live.scene, as_data(live.scene, day)
-    if len(day.trace.poses) < 2:  # nothing to move between
-        data |= _standing_at_gate(scene, day.trace)
-    return data | {
-        "way": np.round(way, 7).tolist(),
-        "released": released,
-        "heard": {
-            "standing": standing,
-            "lag": None if heard.lag_s is None else round(heard.lag_s, 1),
-            "said": heard.said,
-        },
-    }
+    """Return the days so far as `as_data` does, and of each robot its way ordered and its standing.
+
+    ``link`` says whether the robots are listened to.
+    """
+    seen, scene = live.seen(), live.scene
+    robots = [
+        _robot(k, one.name, one.trace, live.works_as(one.name)) | _ordered(one)
+        for k, one in enumerate(seen)
+    ]
+    link = "unheard" if live.is_cut_off else "live" if live.running else "ended"
+    return _data(scene, robots, live.believed(seen)) | {"link": link}
 
 
-def _standing_at_gate(scene: Scene, trace: Trace | None = None) -> dict[str, object]:
-    """Return two poses at one place: the one that is known, or the gate."""
-    if trace is not None and len(trace.poses):
-        _, lon, lat, heading = trace.poses[0].tolist()
-    else:
-        (lon, lat), heading = scene.grid.frame.lonlat(scene.aisles.gate_m[None])[0].tolist(), 0.0
-    return {"at": [0, 0.1], "lon": [lon] * 2, "lat": [lat] * 2, "heading": [heading] * 2}
+def _ordered(one: SeenRobot) -> dict[str, object]:
+    (way, released), heard = one.way, one.heard
+    lag = None if heard.lag_s is None else round(heard.lag_s, 1)
+    told = {"standing": heard.standing, "lag": lag, "said": heard.said}
+    return {"way": np.round(way, 7).tolist(), "released": released, "heard": told}
 
 
 def published(scene: Scene, day: DayInTime) -> str:
@@ -105,28 +97,49 @@ def published(scene: Scene, day: DayInTime) -> str:
 
 
 def as_data(scene: Scene, day: DayInTime) -> dict[str, object]:
-    """Return poses, stops and changes of the chance classes, each at its second of the day."""
-    at_s, lon, lat, heading = day.trace.poses.T
-    changes, before = [], _classes(scene.chance)
-    for second, chance in day.believed:
-        now = _classes(chance)
-        plants = np.flatnonzero(now != before)
-        changes.append([round(second, 1), plants.tolist(), now[plants].tolist()])
-        before = now
-    robot, spacing_m = scene.robot, min(scene.grid.plant_spacing_m, scene.grid.row_spacing_m)
+    """Return a day as the browser plays it: of one robot, which needs no name."""
+    return _data(scene, [_robot(0, "", day.trace, scene.robot)], day.believed)
+
+
+def _robot(k: int, name: str, trace: Trace, robot: Robot) -> dict[str, Any]:
+    """Return a robot's poses and stops, each at its second of the day."""
+    at_s, lon, lat, heading = trace.poses.T
     return {
+        "name": texts.isolated(name) if name else "",
+        "colours": colours.of_robot(k),
+        "size": [robot.length_m or 0.8, robot.width_m or 0.6],
         "at": np.round(at_s, 1).tolist(),
         "lon": np.round(lon, 7).tolist(),
         "lat": np.round(lat, 7).tolist(),
         "heading": np.round(heading, 1).tolist(),
-        "stops": [[round(s.done_s, 1), s.plant, s.found] for s in day.trace.stops],
+        "unseen": trace.unseen,
+        "stops": [[round(s.done_s, 1), s.plant, s.found] for s in trace.stops],
+        "end": round(trace.end_s, 1),
+    }
+
+
+def _data(
+    scene: Scene, robots: list[dict[str, Any]], believed: list[tuple[float, NDArray[np.float64]]]
+) -> dict[str, object]:
+    """Return the days of robots by one clock, and the changes of the chance classes."""
+    changes, before = [], _classes(scene.chance)
+    for second, chance in believed:
+        now = _classes(chance)
+        plants = np.flatnonzero(now != before)
+        changes.append([round(second, 1), plants.tolist(), now[plants].tolist()])
+        before = now
+    spacing_m = min(scene.grid.plant_spacing_m, scene.grid.row_spacing_m)
+    stops = [[*stop, k] for k, one in enumerate(robots) for stop in one["stops"]]
+    return {
+        "robots": [{name: one[name] for name in one if name not in {"stops", "end"}}
+                   for one in robots],
+        "stops": sorted(stops, key=lambda one: one[0]),
         "changes": changes,
-        "end": round(day.trace.end_s, 1),
-        "size": [robot.length_m or 0.8, robot.width_m or 0.6],
+        "end": max([0.0, *(one["end"] for one in robots)]),
         "plant": [0.35 * spacing_m, _TALL_M],
         "found": list(colours.FOUND),
         "clean": list(colours.CLEAN),
-    }
+    }  # fmt: skip
 
 
 def _classes(chance: NDArray[np.float64]) -> NDArray[np.int64]:

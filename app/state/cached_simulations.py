@@ -21,7 +21,7 @@ from .live_drive import LiveDrive
 
 if TYPE_CHECKING:
     from fieldmon.drive.simulated_robots import MadeUp
-    from fieldmon.drive.vda5050.mqtt import Broker, RobotName
+    from fieldmon.drive.vda5050.mqtt import Broker, Watched
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Sampler, Scene
@@ -58,9 +58,11 @@ def drive_run(
 
 
 @st.cache_resource(max_entries=8, show_spinner=False)
-def live_drive(key: str, broker: Broker, robot: RobotName, _scene: Scene) -> LiveDrive:
-    """Return a robot's day as it is driven; `key` stands for the plot and the day."""
-    return LiveDrive(broker, robot, _scene)
+def live_drive(
+    key: str, broker: Broker, watched: Watched, _scene: Scene, _robots: dict[str, Robot]
+) -> LiveDrive:
+    """Return robots' day as it is driven; `key` stands for the plot, the day and the team."""
+    return LiveDrive(broker, watched, _scene, _robots)
 
 
 @st.cache_resource(max_entries=8, show_spinner=WORKING)

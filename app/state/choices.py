@@ -178,9 +178,13 @@ class Choices:
 
     def plan(self) -> DayPlan:
         """Return the planned day: what is left of it, once something of it was recorded."""
+        return self.plan_of(self.whose_day)
+
+    def plan_of(self, who: str | None) -> DayPlan:
+        """Return the planned day of one of a season's team; None where one works."""
         if self.season is not None:
-            of = self.day, self.whose_day
-            now = cached.revision_on(self.season, self.on, self.whose_day)
+            of = self.day, who
+            now = cached.revision_on(self.season, self.on, who)
             wished = self.wishes, wishes.were_told(self.place, self.day)
             minute = f"{self.clock.now():%F %H:%M}" if self.is_today else ""
             return cached.season_plan_now(self.key, now, minute, of, self.season, wished)

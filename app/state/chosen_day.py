@@ -61,24 +61,39 @@ class DayRoute:
         return grid_clock(self.route.aisles.grid).after(self.begins, round(seconds))
 
 
-def starts(choices: Choices, plan: DayPlan) -> datetime:
-    """Return the local time at which the planned route, or what is left of it, starts."""
+def starts(choices: Choices, plan: DayPlan, who: str | None = None) -> datetime:
+    """Return the local time at which the planned route, or what is left of it, starts.
+
+    `who` is whose route it is; None: of the one whose day is shown.
+    """
     if (said := _said_start(plan.route)) is not None:
         return said
     gone = timedelta(seconds=plan.scene.robot.day_s - plan.scene.seconds_left)
-    return work_begins(choices) + gone
+    return work_begins(choices, who) + gone
+
+
+def ends(choices: Choices, who: str | None) -> datetime:
+    """Return the local time at which a robot's planned day ends.
+
+    Where nothing is left of it, as after its hours, that is when these end.
+    """
+    plan = choices.plan_of(who)
+    if not len(plan.route):
+        return work_begins(choices, who) + timedelta(seconds=plan.scene.robot.day_s)
+    return DayRoute(plan.route, starts(choices, plan, who)).at(plan.route.end_s)
 
 
 def _said_start(route: Route) -> datetime | None:
     return None if route.notes is None else route.notes.start
 
 
-def work_begins(choices: Choices) -> datetime:
-    """Return the local time at which the day's work starts for the one whose day is shown."""
+def work_begins(choices: Choices, who: str | None = None) -> datetime:
+    """Return the local time at which the day's work starts; None: of the one whose day is shown."""
     if (season := choices.season) is None:
         return datetime.combine(choices.on, STARTS)
     settings = season.planned_by(choices.on)
-    late_s = settings.member(choices.whose_day).starts_s if choices.whose_day else 0.0
+    who = who or choices.whose_day
+    late_s = settings.member(who).starts_s if who else 0.0
     return datetime.combine(choices.on, settings.starts) + timedelta(seconds=late_s)
 
 

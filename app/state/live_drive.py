@@ -1,97 +1,153 @@
-"""A day that a robot drives now, listened to over VDA 5050. No Streamlit in here."""
+"""A day that robots drive now, listened to over VDA 5050. No Streamlit in here."""
 
 from __future__ import annotations
 
 import secrets
 import threading
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from fieldmon.drive.trace import Trace
-from fieldmon.drive.vda5050.mqtt import Wire
-from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard, RobotWatcher
+from fieldmon.drive.vda5050.mqtt import Ear
+from fieldmon.drive.vda5050.team_watcher import TeamWatcher
+from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 
 from .background_work import BackgroundWork
-from .driving import DayInTime
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from fieldmon.drive.errand import Float
-    from fieldmon.drive.vda5050.mqtt import Broker, RobotName
+    from fieldmon.drive.trace import TracedStop
+    from fieldmon.drive.vda5050.mqtt import Broker, Watched
+    from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Scene
 
 _EVERY_S = 0.25
 
 
-class LiveDrive(BackgroundWork):
-    """What a robot does now, for whoever looks; nothing is sent, whether anybody looks or not.
+class SeenRobot(NamedTuple):
+    """A robot's day so far.
 
     Parameters
     ----------
-    broker, robot
-        Where it is heard, and which one.
-    scene
-        The plot, and what was believed before.
+    name
+        Its serial number.
+    trace
+        Its way and its stops.
+    way
+        Lon/lat ``(k, 2)`` of the way ordered, and how many of its corners are released.
+    heard
+        How it stands.
     """
 
-    def __init__(self, broker: Broker, robot: RobotName, scene: Scene) -> None:
+    name: str
+    trace: Trace
+    way: tuple[Float, int]
+    heard: Heard
+
+
+class LiveDrive(BackgroundWork):
+    """What robots do now, for whoever looks; nothing is sent, whether anybody looks or not.
+
+    Parameters
+    ----------
+    broker, watched
+        Where they are heard, and whose.
+    scene
+        The plot, and what was believed before.
+    robots
+        How those of a team work, by name; others as the scene's does.
+    """
+
+    def __init__(
+        self,
+        broker: Broker,
+        watched: Watched,
+        scene: Scene,
+        robots: Mapping[str, Robot] | None = None,
+    ) -> None:
         super().__init__()
-        self._where, self.scene = (broker, robot), scene
-        self._watcher: RobotWatcher | None = None
+        self._where, self.scene, self._robots = (broker, watched), scene, robots or {}
+        self._ear: Ear | None = None
+        self._team: TeamWatcher | None = None
         self._believed: list[tuple[float, Float]] = []
+        self._known = 0
         self._lock = threading.Lock()
+        #: when days are planned to end, by name, as of when it was begun; None: nobody asked yet
+        self.ends: dict[str, str] | None = None
 
     def start(self) -> None:
         """Begin to listen."""
         if not self.running:
-            self.problem, self._believed, self._watcher = None, [], None
+            self.problem, self._believed, self._known = None, [], 0
+            self._ear = self._team = self.ends = None
             self.begin()
 
     def work(self) -> None:
         """Listen until it is stopped, or no tab that looks is open any more."""
-        broker, robot = self._where
+        broker, watched = self._where
         # another name each time: what was missed by one who is gone is of no use
-        wire = Wire(broker, f"fieldmon-seen-{secrets.token_hex(4)}", robot, HEARS)
-        watcher = RobotWatcher(wire, self.scene.grid)
-        self._watcher = watcher
+        ear = Ear(broker, f"fieldmon-seen-{secrets.token_hex(4)}", watched, HEARS)
+        team = TeamWatcher(ear.inboxes, self.scene.grid)
+        self._ear, self._team = ear, team
         try:
             while not self._is_over():  # what is told while no tab is open is heard all the same
                 self._stop.wait(_EVERY_S)
                 with self._lock:
-                    watcher.take()
+                    team.take()
         finally:
-            wire.close()
+            ear.end()
 
-    def heard(self) -> Heard:
-        """Return how the robot stands."""
-        if (watcher := self._watcher) is None:
-            return _NOT_YET
+    @property
+    def is_cut_off(self) -> bool:
+        """Tell whether the broker is not reached any more; it is sought again."""
+        return self.running and self._ear is not None and not self._ear.hears
+
+    def works_as(self, name: str) -> Robot:
+        """Return how a robot works."""
+        return self._robots.get(name, self.scene.robot)
+
+    def seen(self) -> tuple[SeenRobot, ...]:
+        """Return each robot's day so far: those that are named, then those that are heard of."""
+        if (team := self._team) is None:
+            nothing = Trace(np.empty((0, 4)), ())
+            return tuple(
+                SeenRobot(name, nothing, (np.empty((0, 2)), 0), Heard(WAITING, None))
+                for name in self._where[1].serials
+            )
         with self._lock:
-            watcher.take()
-            return watcher.heard()
+            team.take()
+            return tuple(
+                SeenRobot(name, one.trace(), one.way, one.heard())
+                for name, one in team.robots.items()
+            )
 
-    def seen(self) -> tuple[DayInTime, tuple[Float, int], Heard]:
-        """Return the day so far with what is believed, the way ordered, and how it stands."""
-        watcher = self._watcher
-        if watcher is None:
-            return DayInTime(Trace(np.empty((0, 4)), ()), []), (np.empty((0, 2)), 0), _NOT_YET
+    def believed(self, seen: tuple[SeenRobot, ...]) -> list[tuple[float, Float]]:
+        """Return what is believed by what robots have told, as of each time that somebody asked.
+
+        Seconds, and chances ``(n,)``.
+        """
+        told = sorted(
+            (stop, one.name) for one in seen for stop in one.trace.stops if stop.found is not None
+        )
         with self._lock:
-            watcher.take()
-            trace = watcher.trace()
-            self._learn(trace)
-            return DayInTime(trace, [*self._believed]), watcher.way, watcher.heard()
+            if len(told) != self._known:
+                self._learn(told)
+            return [*self._believed]
 
-    def _learn(self, trace: Trace) -> None:
-        """Believe what was told since it was looked at last."""
-        told = [one for one in trace.stops if one.found is not None]
-        if told and (not self._believed or self._believed[-1][0] < told[-1].done_s):
-            scene, settings = self.scene, BeliefSettings()
-            morning = settings.first_morning(scene.grid, scene.chance)
-            plants = np.array([one.plant for one in told], np.int32)
-            found = np.array([one.found for one in told], np.bool_)
-            now = settings.evening(morning, plants, found, scene.robot.detects)
-            self._believed.append((told[-1].done_s, now.chance))
-
-
-_NOT_YET = Heard(WAITING, None)
+    def _learn(self, told: list[tuple[TracedStop, str]]) -> None:
+        """Believe what was told by now."""
+        settings, morning = BeliefSettings(), self.scene
+        before = settings.first_morning(morning.grid, morning.chance)
+        plants = np.array([one.plant for one, _ in told], np.int32)
+        found = np.array([one.found for one, _ in told], np.bool_)
+        detects = np.array([self.works_as(name).detects for _, name in told])
+        now = settings.evening(before, plants, found, detects)
+        self._known = len(told)
+        last_s = max([0.0, *(one.done_s for one, _ in told), *(at_s for at_s, _ in self._believed)])
+        if self._believed and self._believed[-1][0] == last_s:  # what came late counts at once
+            self._believed.pop()
+        self._believed.append((last_s, now.chance))

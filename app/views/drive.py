@@ -32,7 +32,7 @@ def show(choices: Choices) -> None:
         day = driving.run(choices, scene, shown).day
     elif source == "live":
         watched = f"{choices.key} {choices.day}"
-        if (live := watching.robot(watched, scene)) is not None and live.running:
+        if (live := watching.robots(watched, choices, scene)) is not None and live.running:
             field_map.want(drive_play.live_content(choices, live, f"{watched} {id(live)}"))
         return
     elif (brought := st.file_uploader(texts.DRIVE_FILE, type=["mcap", "csv"])) is None:

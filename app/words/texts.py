@@ -243,12 +243,20 @@ MAP_WORDS = {
     "ground": "Ground", "ground_away": "The ground's pictures cannot be reached.",
     "legend": "What the signs mean",
     "scale": "The scale bar is {bar} long; the arrow points north.",
-    "speed": "Speed", "follow": "Follow the robot",
+    "speed": "Speed", "follow": "Follow the robot", "follow_one": "Follow", "whom": "Which robot",
     "driven": "{time} · {stops} stops, {found} found",
     "live": "live, {seconds} s ago", "paused": "paused, {seconds} s ago",
     "lost": "connection lost, last heard {seconds} s ago", "waiting": "not heard yet",
     "failed": "an error, {seconds} s ago", "ended": "not listened to any more",
-    "away": "the server is not reached",
+    "away": "the server is not reached", "unheard": "the broker is not reached",
+    "lost_before": "connection lost, not heard since", "idle": "no order yet",
+    "held": "waits until more of its way is released", "done": "its order is done",
+    "off": "signed off", "elsewhere": "drives another plot",
+    "double": "two robots with one serial number",
+    # beside a robot on the map, where there is little room
+    "robot_paused": "{name}: stands", "robot_lost": "{name}: lost", "robot_failed": "{name}: error",
+    "robot_held": "{name}: waits", "robot_done": "{name}: done", "robot_off": "{name}: off",
+    "robot_double": "{name}: two of them",
     "here": "Where I am", "corner_here": "Corner where I stand",
     "closer": "From so far away a corner is not exact: come closer, then tap again.",
     "standing": "A corner where you stand, to about {off} m.",
@@ -1194,14 +1202,16 @@ DRIVE_INTRO = (
 DRIVE_SOURCE = "Which day"
 DRIVE_SOURCES = {"planned": "The planned day", "recorded": "A driven day", "live": "Live"}
 DRIVE_LIVE = (
-    "A robot that speaks VDA 5050, listened to where its messages are exchanged. Nothing is sent "
+    "Robots that speak VDA 5050, listened to where their messages are exchanged. Nothing is sent "
     "and nothing is recorded here: `fieldmon drive --robot vda5050` does that, and goes on when "
     "you stop watching or close this tab."
 )
-DRIVE_BROKER, DRIVE_MANUFACTURER, DRIVE_SERIAL = "MQTT broker", "Manufacturer", "Serial number"
+DRIVE_BROKER, DRIVE_MANUFACTURER = "MQTT broker", "Manufacturer"
+DRIVE_WHOSE = "Which robots"
+DRIVE_WHOSE_KINDS = {"named": "By serial number", "all": "All of this manufacturer"}
+DRIVE_SERIALS = "Serial numbers, with commas between them"
 DRIVE_VDA = "Version of VDA 5050"
 DRIVE_WATCH, DRIVE_WATCH_STOP = "Watch", "Stop watching"
-DRIVE_LAG = "Heard {seconds} s ago; what the map shows is up to a second older."
 DRIVE_NO_BROKER = (
     "No MQTT broker answers at {where}. Start one there, or say where it is in the box *MQTT "
     "broker*."
@@ -1210,10 +1220,26 @@ DRIVE_NOT_LET_IN = (
     "The MQTT broker at {where} does not let us in. Say it in the box *MQTT broker* as it knows "
     "you: mqtt://USER:PASSWORD@HOST:PORT."
 )
-DRIVE_NOT_HEARD = "The robot was not heard yet. Is it on, and are its names right?"
-DRIVE_LOST = "The robot's connection is lost; it was last heard {seconds} s ago."
-DRIVE_PAUSED = "The robot is paused, or driven by hand."
-DRIVE_FAILED = "The robot reports an error that it cannot mend: {said}"
+DRIVE_CUT_OFF = (
+    "The MQTT broker is not reached any more, and is sought again. What is shown is what was heard "
+    "before."
+)
+DRIVE_NOT_HEARD = (
+    "Not heard yet: {names}. Does it run, and are its manufacturer, its serial number and the "
+    "version of VDA 5050 right?"
+)
+DRIVE_NOBODY = "No robot of {manufacturer} has been heard of at the broker yet."
+DRIVE_DOUBLE = (
+    "Two robots speak as {name}: places and finds of both are taken for those of one. Give each a "
+    "serial number of its own."
+)
+DRIVE_ELSEWHERE = (
+    "{name} drives another plot than this one: it is not on the map, and its finds do not count."
+)
+DRIVE_FAILED = "{name} reports an error that it cannot mend: {said}"
+DRIVE_BATTERY = "battery {share} %"
+DRIVE_INSPECTED = "{n} inspected, {found} found"
+DRIVE_ENDS = "planned until {time}"
 DRIVE_ROBOT = "Robot"
 DRIVE_ROBOTS = {"charged": "Planned times", "mujoco": "Physical simulation"}
 DRIVE_MADE_UP = (

@@ -61,10 +61,13 @@ class Trace:
         (degrees clockwise from north). Between two of them the robot moves evenly.
     stops
         The plants inspected, in order.
+    unseen
+        Numbers of the poses to which nobody knows the way from the one before; ascending.
     """
 
     poses: Float
     stops: tuple[TracedStop, ...]
+    unseen: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
         found = sum(one.found is True for one in self.stops)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,12 @@ _LEAST_S, _FIX_S = 0.1, 1.0
 class Track:
     """Places in time, ten a second at most, and what a receiver of positions said, once a second.
 
+    Parameters
+    ----------
+    far_m
+        What is so far from the place before is noted however soon it comes, as of a robot that is
+        faster than the clock.
+
     Examples
     --------
     >>> from fieldmon.drive.track import Track
@@ -27,7 +34,8 @@ class Track:
     [0.0, 0.1, 0.15]
     """
 
-    def __init__(self) -> None:
+    def __init__(self, far_m: float = math.inf) -> None:
+        self._far_m = far_m
         self._rows: list[tuple[float, float, float, float]] = []
         self._last: tuple[float, float, float, float] | None = None
         #: seconds and metres, where a receiver said another place than the true one
@@ -44,7 +52,8 @@ class Track:
     def add(self, at_s: float, x_m: float, y_m: float, yaw: float) -> None:
         """Note where the robot is, seconds since the day began."""
         row = (at_s, x_m, y_m, yaw)
-        if not self._rows or at_s >= self._rows[-1][0] + _LEAST_S - 1e-9:
+        is_due = not self._rows or at_s >= self._rows[-1][0] + _LEAST_S - 1e-9
+        if is_due or math.dist(self._rows[-1][1:3], (x_m, y_m)) > self._far_m:
             self._rows.append(row)
             self._last = None
         else:

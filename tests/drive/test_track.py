@@ -15,6 +15,13 @@ def test_ten_places_a_second_and_the_last_one():
     assert (np.diff(track.poses[:, 0]) > 0).all()
 
 
+def test_what_is_far_from_the_last_place_is_noted_however_soon_it_comes():
+    track = Track(far_m=0.5)
+    for k in range(4):
+        track.add(k * 0.01, 0.4 * k, 0.0, 0.0)
+    assert track.poses[:, 1].round(1).tolist() == [0.0, 0.8, 1.2]
+
+
 def test_an_empty_track_has_no_places():
     assert Track().poses.shape == (0, 4)
 

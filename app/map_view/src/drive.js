@@ -1,4 +1,5 @@
-// A driven day between the rows: the robot, its way, what it found and what is believed by then.
+// A driven day between the rows: one robot or several by one clock, their ways, what they found and what
+// is believed by then.
 
 import { COORDINATE_SYSTEM, WebMercatorViewport } from "@deck.gl/core";
 import { TripsLayer } from "@deck.gl/geo-layers";
@@ -12,6 +13,7 @@ const SPEEDS = [1, 10, 30, 100, 300], M_PER_DEGREE = 111320;
 // a day that is driven now is asked for so often
 const ASK_MS = 1000;
 export const PITCH = 55;
+const ALONE = [255, 210, 0], LOST = [140, 140, 140], NOSE = [20, 24, 28], NOSE_ON_DARK = [255, 255, 255];
 // nearer than so many metres a pixel plants are columns, the nearest of them, within so many metres
 const NEAR = 0.11, MOST = 1500, FEW = 400, REACH_M = 60, SLOW_MS = 60;
 // the robot is never smaller on the screen; it is followed from so near
@@ -44,7 +46,12 @@ export class Drive {
     this.root.hidden = !data;
     this.ask(data?.poll, other);
     if (!data) return;
-    if (other) Object.assign(this, { second: 0, following: true, turning: true, bearing: data.heading[0] ?? 0, ranks: null });
+    if (other) {
+      // several are seen together, until one of them is followed
+      const following = data.robots.length === 1;
+      // a day that goes on is seen at its end
+      Object.assign(this, { second: data.link ? data.end : 0, lead: 0, following, turning: true, bearing: data.robots[0]?.heading[0] ?? 0, ranks: null });
+    }
     this.press = element("button", { type: "button", class: "tool", text: "▶", "aria-label": words.play, onclick: () => this.toggle() });
     this.slider = element("input", { type: "range", min: 0, max: data.end, step: 1, value: this.second, "aria-label": words.time_of_day,
       oninput: () => this.to(Number(this.slider.value)) });
@@ -52,13 +59,29 @@ export class Drive {
     this.standing = element("span", { class: "standing", dir: "auto", hidden: !data.poll });
     const speed = element("select", { "aria-label": words.speed, onchange: () => { this.speed = Number(speed.value); } },
       SPEEDS.map((by) => element("option", { value: by, text: `${by} ×`, selected: by === this.speed })));
-    this.camera = element("input", { type: "checkbox", checked: this.following, onchange: () => {
-      Object.assign(this, { following: this.camera.checked, turning: true });
-      this.changed();
-    } });
+    this.camera = element("input", { type: "checkbox", checked: this.following, onchange: () => this.lookAt(this.lead, this.camera.checked) });
+    this.whom = element("select", { "aria-label": words.whom, onchange: () => this.lookAt(Number(this.whom.value), true) });
+    this.follow = element("span");
+    this.names = null;
     this.root.replaceChildren(this.press, this.slider, speed,
-      element("label", { class: "follow" }, [this.camera, element("span", { text: words.follow })]), this.clock, this.standing);
+      element("label", { class: "follow" }, [this.camera, this.follow]), this.whom, this.clock, this.standing);
     this.tell();
+  }
+
+  lookAt(lead, following) {
+    Object.assign(this, { lead, following, turning: true });
+    this.camera.checked = following;
+    this.changed();
+  }
+
+  // Offer the robots that can be followed; others may come while the day goes on.
+  offer() {
+    const names = this.data.robots.map((one) => one.name), said = JSON.stringify(names);
+    if (said === this.names) return;
+    this.names = said;
+    this.whom.replaceChildren(...names.map((text, value) => element("option", { value, text, selected: value === this.lead })));
+    this.whom.hidden = names.length < 2;
+    this.follow.textContent = names.length < 2 ? this.words.follow : this.words.follow_one;
   }
 
   // Ask how a day that is driven now goes, again and again; no address: no more.
@@ -67,7 +90,7 @@ export class Drive {
     this.asked = address;
     const again = async () => {
       if (this.asked !== address) return;
-      let got = { heard: { standing: "away" } };
+      let got = { link: "away" };
       try {
         got = await (await fetch(address, { cache: "no-store" })).json();
       } catch { /* asked again */ }
@@ -85,7 +108,7 @@ export class Drive {
     this.slider.max = this.data.end;
     if (atEnd) {
       this.second = this.data.end;
-      if (this.turning) this.bearing = poseAt(this.data, this.second).heading;
+      if (this.turning) this.bearing = this.pose()?.heading ?? this.bearing;
     }
     this.tell();
     this.changed();
@@ -146,17 +169,24 @@ export class Drive {
     if (state?.isPanning) this.following = this.camera.checked = false;
   }
 
+  // Return where the robot is that is followed, or would be; null: nobody knows.
+  pose() {
+    const robot = this.data.robots[this.lead ?? 0];
+    return robot?.at.length ? poseAt(robot, this.second) : null;
+  }
+
   tell() {
-    const { stops } = this.data, made = stops.slice(0, until(stops, this.second)), now = poseAt(this.data, this.second);
+    this.offer();
+    const { stops } = this.data, made = stops.slice(0, until(stops, this.second)), now = this.pose();
     const found = made.filter((one) => one[2]).length, minutes = Math.floor(this.second / 60);
     const time = `${Math.floor(minutes / 60)}:${String(minutes % 60).padStart(2, "0")}`;
     this.slider.value = this.second;
     this.clock.textContent = this.words.driven.replace("{time}", time).replace("{stops}", made.length).replace("{found}", found);
     this.slider.setAttribute("aria-valuetext", this.clock.textContent);
-    const { heard } = this.data;
-    if (heard) {
-      this.standing.textContent = (this.words[heard.standing] ?? "").replace("{seconds}", Math.round(heard.lag ?? 0));
-      this.standing.dataset.standing = heard.standing;
+    if (this.data.link) {
+      const [standing, said] = standingOf(this.data, this.words);
+      this.standing.textContent = said;
+      this.standing.dataset.standing = standing;
     }
     this.root.dataset.now = JSON.stringify({ second: this.second, ...now, stops: made.length, found, playing: Boolean(this.timer) });
   }
@@ -164,17 +194,17 @@ export class Drive {
   // Turn the camera slowly to where the robot heads, unless someone wants little motion.
   turn(gone) {
     if (!this.turning || matchMedia("(prefers-reduced-motion: reduce)").matches) return;
-    const by = ((poseAt(this.data, this.second).heading - this.bearing + 540) % 360) - 180;
+    const by = (((this.pose()?.heading ?? this.bearing) - this.bearing + 540) % 360) - 180;
     this.bearing = (this.bearing + by * Math.min(1, gone / TURN_MS) + 360) % 360;
   }
 
   // Return the view that follows the robot, at a place of the window; null where nobody wants it.
   view(viewport, middle) {
     if (!this.leads()) return null;
-    const { lon, lat } = poseAt(this.data, this.second), { width, height } = viewport;
+    const { lon, lat } = this.pose(), { width, height } = viewport;
     const own = this.turning ? { bearing: this.bearing } : { bearing: viewport.bearing };
-    const near = this.near === this.data ? viewport.zoom : FOLLOW_ZOOM, pitch = viewport.pitch || PITCH;
-    Object.assign(this, { near: this.data, size: `${width} ${height}` });
+    const near = this.near === this.key ? viewport.zoom : FOLLOW_ZOOM, pitch = viewport.pitch || PITCH;
+    Object.assign(this, { near: this.key, size: `${width} ${height}` });
     const port = new WebMercatorViewport({ width, height, longitude: lon, latitude: lat, zoom: near, pitch, ...own });
     return { ...port.panByPosition([lon, lat], middle), zoom: near, pitch, ...own };
   }
@@ -214,27 +244,45 @@ export class Drive {
   // one deck.gl makes everything anew, the whole way too.
   layers(viewport, dark) {
     if (!this.data || !viewport) return [];
-    const { whole, ordered, finds } = this.parts(), metres = metresPerPixel(viewport);
-    const { places } = this.from ?? {}, colour = dark ? [110, 220, 255] : [12, 62, 170];
+    const { pieces, ordered, finds } = this.parts(), metres = metresPerPixel(viewport);
+    const { places } = this.from ?? {}, tone = dark ? 1 : 0;
     return [
-      new TripsLayer({ id: "driven", data: whole, getPath: (d) => d.lon.map((lon, k) => [lon, d.lat[k]]), getTimestamps: (d) => d.at,
-        getColor: colour, widthMinPixels: 3, getWidth: 0.2, currentTime: this.second, trailLength: 1e7, fadeTrail: false, capRounded: true }),
-      ordered && new PathLayer({ id: "ordered", data: ordered, getPath: (one) => one.path, getColor: (one) => [...colour, one.tone],
+      new TripsLayer({ id: "driven", data: pieces, getPath: (d) => d.path, getTimestamps: (d) => d.at, getColor: (d) => d.colours[tone],
+        updateTriggers: { getColor: dark }, widthMinPixels: 3, getWidth: 0.2, currentTime: this.second, trailLength: 1e7, fadeTrail: false, capRounded: true }),
+      new PathLayer({ id: "ordered", data: ordered, getPath: (one) => one.path, getColor: (one) => [...one.colours[tone], one.opacity],
         updateTriggers: { getColor: dark }, getWidth: 0.1, widthMinPixels: 2, capRounded: true }),
       places && new ScatterplotLayer({ id: "glow", data: finds, getPosition: (plant) => [places.lon[plant], places.lat[plant]],
         getRadius: 1.1, radiusMinPixels: 7, getFillColor: [...this.data.found, 70], stroked: true, getLineColor: dark ? [255, 255, 255] : [90, 0, 0],
         getLineWidth: 0.08, lineWidthMinPixels: 1.5 }),
       places && this.isNear(viewport) && this.columns(viewport),
-      ...this.robot(metres),
+      ...this.placed().flatMap(([robot, k]) => this.boxesOf(robot, k, metres, tone)),
     ];
   }
 
-  // Return what layers are made of: the whole way, the way ordered, and the finds up to now.
+  // Return the robots of which somebody knows where they are, with their numbers: who is followed comes last.
+  placed() {
+    const { robots } = this.data, isThere = ({ at }) => at.length && (robots.length === 1 || at[0] <= Math.max(this.second, 0.1));
+    const known = robots.map((one, k) => [one, k]).filter(([one]) => isThere(one));
+    return known.sort(([, a], [, b]) => (a === this.lead) - (b === this.lead));
+  }
+
+  // Return the names of several robots, where they are: with their standing, where that is not as it should be.
+  labels() {
+    if (!this.data || this.data.robots.length < 2) return [];
+    const atEnd = this.second >= this.data.end;
+    return this.placed().reverse().map(([robot]) => {
+      const { lon, lat } = poseAt(robot, this.second), said = atEnd && this.words[`robot_${robot.heard?.standing}`];
+      const t = said ? said.replace("{name}", robot.name) : robot.name;
+      return { p: [lon, lat], t, k: "who", away: [lon, lat + 1e-4], gap: 18, tight: true };
+    });
+  }
+
+  // Return what layers are made of: the ways, in pieces where nobody knows what lies between, the ways
+  // ordered, and the finds up to now.
   parts() {
-    const { stops, way = [], released = 0 } = this.data, done = until(stops, this.second);
+    const { stops, robots } = this.data, done = until(stops, this.second);
     if (this.made?.of !== this.data) {
-      const ordered = way.length > 1 && [{ path: way.slice(0, released), tone: 200 }, { path: way.slice(Math.max(released - 1, 0)), tone: 80 }];
-      this.made = { of: this.data, whole: [this.data], ordered, finds: [] };
+      this.made = { of: this.data, pieces: robots.flatMap(piecesOf), ordered: robots.flatMap(orderedOf), finds: [] };
     }
     if (this.made.done !== done) {
       const finds = stops.slice(0, done).filter((one) => one[2]).map((one) => one[1]);
@@ -248,12 +296,17 @@ export class Drive {
   }
 
   centre(viewport) {
-    return this.following ? poseAt(this.data, this.second) : { lon: viewport.longitude, lat: viewport.latitude };
+    return this.leads() ? this.pose() : { lon: viewport.longitude, lat: viewport.latitude };
   }
 
-  // Tell whether the map follows the robot.
+  // Tell whether the map follows a robot: of one that was never heard nobody knows where it is.
   leads() {
-    return Boolean(this.data && this.following);
+    return Boolean(this.data && this.following && this.pose());
+  }
+
+  // Return how far the map is tilted at first: several robots are seen from above.
+  pitch() {
+    return this.following ? PITCH : 0;
   }
 
   // Tell whether other plants are to be drawn tall since somebody moved the map, or whether the robot is
@@ -284,18 +337,22 @@ export class Drive {
       material: { ambient: 0.55, diffuse: 0.6 } });
   }
 
-  // Return the robot's layers: boxes that are made once, and put where it stands.
-  robot(metres) {
-    const { lon, lat, heading } = poseAt(this.data, this.second), [long, wide] = this.data.size;
-    const grown = Math.max(1, (LEAST_PX * metres) / long);
-    if (this.boxes?.of !== this.data.size) {
+  // Return a robot's layers: boxes that are made once, and put where it stands. One of several has its own
+  // colour, and none while its connection is lost.
+  boxesOf(robot, k, metres, tone) {
+    const { lon, lat, heading } = poseAt(robot, this.second), [long, wide] = robot.size;
+    const grown = Math.max(1, (LEAST_PX * metres) / long), of = robot.size.join(" ");
+    this.boxes ??= [];
+    if (this.boxes[k]?.of !== of) {
       const body = [[-wide / 2, long / 2], [wide / 2, long / 2], [wide / 2, -long / 2], [-wide / 2, -long / 2]];
       const nose = [[0, long / 2], [wide / 3, -long / 4], [-wide / 3, -long / 4]];
-      this.boxes = { of: this.data.size, each: [["robot", [body], 0.5, [255, 210, 0]], ["nose", [nose], 0.62, [20, 24, 28]]] };
+      this.boxes[k] = { of, each: [[`robot-${k}`, [body], 0.5], [`nose-${k}`, [nose], 0.62]] };
     }
-    return this.boxes.each.map(([id, data, tall, colour]) =>
+    const isOne = this.data.robots.length === 1, isLost = this.second >= this.data.end && ["lost", "off"].includes(robot.heard?.standing);
+    const own = isLost ? LOST : isOne ? ALONE : robot.colours[tone], paint = [own, isOne || tone ? NOSE : NOSE_ON_DARK];
+    return this.boxes[k].each.map(([id, data, tall], part) =>
       new PolygonLayer({ id, data, getPolygon: (one) => one, coordinateSystem: COORDINATE_SYSTEM.METER_OFFSETS, coordinateOrigin: [lon, lat, 0],
-        modelMatrix: turned(heading, grown), extruded: true, getElevation: tall, getFillColor: colour, material: { ambient: 0.7, diffuse: 0.5 } }));
+        modelMatrix: turned(heading, grown), extruded: true, getElevation: tall, getFillColor: paint[part], material: { ambient: 0.7, diffuse: 0.5 } }));
   }
 
   end() {
@@ -316,13 +373,39 @@ export function until(list, second) {
   return low;
 }
 
-// Return where the robot is at a second and where it heads, degrees.
-export function poseAt({ at, lon, lat, heading }, second) {
-  const k = Math.min(Math.max(until(at, second), 1), at.length - 1), span = at[k] - at[k - 1];
-  const share = span > 0 ? Math.min(Math.max((second - at[k - 1]) / span, 0), 1) : 1;
+// Return where a robot is at a second and where it heads, degrees: while nobody knows its way, where it was
+// seen last.
+export function poseAt({ at, lon, lat, heading, unseen = [] }, second) {
+  if (at.length === 1) return { lon: lon[0], lat: lat[0], heading: heading[0] };
+  const k = Math.min(Math.max(until(at, second), 1), at.length - 1);
+  const span = unseen.includes(k) && second < at[k] ? Infinity : at[k] - at[k - 1];
+  const share = span === Infinity ? 0 : span > 0 ? Math.min(Math.max((second - at[k - 1]) / span, 0), 1) : 1;
   const turned = ((heading[k] - heading[k - 1] + 540) % 360) - 180;
   return { lon: lon[k - 1] + share * (lon[k] - lon[k - 1]), lat: lat[k - 1] + share * (lat[k] - lat[k - 1]),
     heading: (heading[k - 1] + share * turned + 360) % 360 };
+}
+
+// Return the pieces of a robot's way, each without a gap in what is known of it.
+export function piecesOf({ at, lon, lat, colours, unseen = [] }) {
+  const ends = [0, ...unseen, at.length];
+  return ends.slice(1).map((to, k) => [ends[k], to]).filter(([from, to]) => to - from > 1)
+    .map(([from, to]) => ({ at: at.slice(from, to), path: at.slice(from, to).map((_, k) => [lon[from + k], lat[from + k]]), colours }));
+}
+
+// Return the way that a robot is ordered: what is released of it, and fainter what comes after.
+export function orderedOf({ way = [], released = 0, colours }) {
+  const parts = [{ path: way.slice(0, released), opacity: 200, colours }, { path: way.slice(Math.max(released - 1, 0)), opacity: 80, colours }];
+  return parts.filter(({ path }) => path.length > 1);
+}
+
+// Return how robots stand, as one word for all and in words: of several those that are not as they should be.
+export function standingOf({ link, robots }, words) {
+  if (link !== "live") return [link, words[link] ?? ""];
+  const said = ({ heard: { standing, lag } }) =>
+    (words[standing === "lost" && lag === null ? "lost_before" : standing] ?? "").replace("{seconds}", Math.round(lag ?? 0));
+  const odd = robots.length > 1 ? robots.filter(({ heard }) => !["live", "done", "held", "idle"].includes(heard.standing)) : robots;
+  const all = odd.map((one) => (robots.length > 1 ? `${one.name}: ${said(one)}` : said(one)));
+  return [odd.find(({ heard }) => heard.standing !== "live")?.heard.standing ?? "live", all.join(" · ")];
 }
 
 // Return the matrix, column by column, that turns what heads north by degrees clockwise, so many times as large.

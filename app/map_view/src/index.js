@@ -12,7 +12,7 @@ import { takeDays } from "./days.js";
 import { takeCommas } from "./decimals.js";
 import { Dots, MARKS, dotUnder } from "./dots.js";
 import { Drawing } from "./draw.js";
-import { Drive, PITCH } from "./drive.js";
+import { Drive } from "./drive.js";
 import { Frames } from "./frames.js";
 import { asked, moved } from "./keys.js";
 import { Labels, nameBoxes, rowBoxes, withHot } from "./labels.js";
@@ -164,7 +164,7 @@ export class MapPage {
     const words = (port) => [...rowBoxes(rows, port), ...nameBoxes(new Dots().labels(this.data.labels ?? NONE, this.jsons, port), port)];
     const view = besideBox(this.data.bounds, this.size(), this.padding(), this.legendBox(), this.somePlaces(), words);
     this.whence = JSON.stringify(view);
-    return this.data.drive ? { ...view, pitch: PITCH } : view;
+    return this.data.drive ? { ...view, pitch: this.drive.pitch() } : view;
   }
 
   size() {
@@ -294,7 +294,7 @@ export class MapPage {
     if (!viewport) return;
     this.scale.draw(viewport, { lengths: this.data.lengths, alt: this.data.words.scale });
     const labels = this.drawing.outlines ? this.drawing.labels() : this.dots.labels(withHot(this.data.labels ?? NONE, this.frames.of(this.jsons)), this.jsons, viewport);
-    this.labels.draw(labels, viewport, new Set(this.off()), ...this.around());
+    this.labels.draw(labels, viewport, new Set(this.off()), ...this.around(), this.drive.labels());
     if (!this.cross.hidden) this.pointAtMiddle();
     const { longitude, latitude, zoom, bearing, width, height } = viewport;
     this.root.dataset.view = JSON.stringify({ longitude, latitude, zoom, bearing, width, height });

@@ -123,12 +123,13 @@ export class Labels {
   }
 
   // `over` are the boxes [left, top, right, bottom] of what lies over the map: no word stands below it.
-  // `free` is from where to where the map is seen: a name beside its edge is moved into it.
-  draw(labels, viewport, hidden, over = [], free = [0, viewport.width]) {
+  // `free` is from where to where the map is seen: a name beside its edge is moved into it. What moves
+  // comes `first`.
+  draw(labels, viewport, hidden, over = [], free = [0, viewport.width], first = []) {
     const boxes = [...over];
     this.placed = [];
     const rows = this.rows(labels, viewport);
-    for (const label of labels) {
+    for (const label of [...first, ...labels]) {
       const { p, t, k, from, to, row, at, tight } = label;
       if (hidden.has(SWITCH[k]) || viewport.zoom < (from ?? 0) || viewport.zoom >= (to ?? 99) || (row && !rows.has(row))) continue;
       const size = sizeOf(t, k).map((one) => (tight ? TIGHT * one : one));

@@ -3,26 +3,68 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Drive, nearest, poseAt, turned, until } from "../src/drive.js";
+import { Drive, nearest, orderedOf, piecesOf, poseAt, standingOf, turned, until } from "../src/drive.js";
 
-const DAY = {
-  at: [0, 10, 40, 50], lon: [35, 35.001, 35.001, 35.001], lat: [30, 30, 30, 30.001], heading: [90, 90, 350, 10],
-  stops: [[40, 2, true], [50, 0, false]], changes: [[40, [0, 1, 2], [3, 3, 0]], [50, [1], [2]]], end: 50,
-  clean: [0, 0, 255], found: [255, 0, 0], plant: [0.3, 1.5], size: [0.8, 0.6],
+const ROBOT = {
+  name: "", at: [0, 10, 40, 50], lon: [35, 35.001, 35.001, 35.001], lat: [30, 30, 30, 30.001], heading: [90, 90, 350, 10],
+  unseen: [], size: [0.8, 0.6], colours: [[0, 0, 9], [9, 9, 0]],
 };
+const DAY = {
+  robots: [ROBOT], stops: [[40, 2, true, 0], [50, 0, false, 0]], changes: [[40, [0, 1, 2], [3, 3, 0]], [50, [1], [2]]], end: 50,
+  clean: [0, 0, 255], found: [255, 0, 0], plant: [0.3, 1.5],
+};
+const heard = (standing, lag = 1) => ({ heard: { standing, lag, said: "" } });
 const PLANTS = { id: "plants-chance", places: { n: 3 }, ranks: new Uint8Array([1, 1, 1]), table: [[0], [1], [2], [3]] };
 
 function driving(second) {
   // the page's own parts are not needed for what is drawn
-  return Object.assign(Object.create(Drive.prototype), { data: DAY, second });
+  return Object.assign(Object.create(Drive.prototype), { data: DAY, second, key: "day" });
 }
 
 test("the robot moves evenly, stands at a stop, and turns the short way", () => {
-  assert.deepEqual(poseAt(DAY, 5), { lon: 35.0005, lat: 30, heading: 90 });
-  assert.deepEqual([poseAt(DAY, 11).lon, poseAt(DAY, 39).lon], [35.001, 35.001]);
-  assert.equal(poseAt(DAY, 45).heading, 0);
-  assert.equal(poseAt(DAY, -1).lon, 35);
-  assert.equal(poseAt(DAY, 99).lat, 30.001);
+  assert.deepEqual(poseAt(ROBOT, 5), { lon: 35.0005, lat: 30, heading: 90 });
+  assert.deepEqual([poseAt(ROBOT, 11).lon, poseAt(ROBOT, 39).lon], [35.001, 35.001]);
+  assert.equal(poseAt(ROBOT, 45).heading, 0);
+  assert.equal(poseAt(ROBOT, -1).lon, 35);
+  assert.equal(poseAt(ROBOT, 99).lat, 30.001);
+});
+
+test("where nobody knows the way none is drawn, and the robot stays where it was seen last", () => {
+  const jumped = { ...ROBOT, unseen: [1] };
+  assert.deepEqual([0, 9, 10].map((second) => poseAt(jumped, second).lon), [35, 35, 35.001]);
+  assert.deepEqual(piecesOf(jumped).map(({ at }) => at), [[10, 40, 50]], "one place alone is no way");
+  assert.deepEqual(piecesOf({ ...ROBOT, unseen: [2] }).map(({ path }) => path.length), [2, 2]);
+  assert.deepEqual(piecesOf({ ...ROBOT, at: [], lon: [], lat: [] }), []);
+  assert.equal(poseAt({ at: [7], lon: [35], lat: [30], heading: [4] }, 0).heading, 4);
+});
+
+test("several robots are seen together, each with its colour and name, until one is followed", () => {
+  const late = { ...ROBOT, name: "b", at: [30, 40], lon: [35, 35.002], lat: [30, 30], heading: [0, 0], ...heard("lost", 40) };
+  const never = { ...ROBOT, name: "c", at: [], lon: [], lat: [], heading: [], ...heard("waiting", null) };
+  const data = { ...DAY, robots: [{ ...ROBOT, name: "a", ...heard("live") }, late, never], link: "live" };
+  const drive = Object.assign(driving(50), { data, words: { robot_lost: "{name}: lost" }, lead: 0, following: false });
+  assert.deepEqual(drive.labels().map(({ t }) => t).sort(), ["a", "b: lost"]);
+  drive.second = 20; // what stands wrong now did not then, and one had not been heard yet
+  assert.deepEqual(drive.labels().map(({ t }) => t), ["a"]);
+  const [a, b] = piecesOf(late), tones = drive.parts().pieces.map(({ colours }) => colours);
+  assert.deepEqual([a.path.length, b, tones.length], [2, undefined, 2]);
+  assert.deepEqual([drive.leads(), drive.pitch()], [false, 0]);
+  Object.assign(drive, { following: true, lead: 2 });
+  assert.equal(drive.leads(), false, "nobody knows where it is");
+  drive.lead = 1;
+  assert.deepEqual([drive.leads(), drive.pose().lon], [true, 35]);
+  drive.data = DAY;
+  assert.deepEqual(drive.labels(), [], "one alone needs no name");
+});
+
+test("how robots stand is said of one, and of several of those that do not stand as they should", () => {
+  const words = { live: "live, {seconds} s ago", lost: "lost {seconds}", lost_before: "lost before", held: "waits", ended: "over" };
+  const robots = (...all) => ({ link: "live", robots: all.map((one, k) => ({ name: `r${k}`, ...one })) });
+  assert.deepEqual(standingOf(robots(heard("live", 1.4)), words), ["live", "live, 1 s ago"]);
+  assert.deepEqual(standingOf(robots(heard("lost", null)), words), ["lost", "lost before"]);
+  assert.deepEqual(standingOf(robots(heard("live"), heard("held")), words), ["live", ""]);
+  assert.deepEqual(standingOf(robots(heard("live"), heard("lost", 9)), words), ["lost", "r1: lost 9"]);
+  assert.deepEqual(standingOf({ link: "ended", robots: [] }, words), ["ended", "over"]);
 });
 
 test("what is over is counted by its second", () => {
@@ -51,6 +93,8 @@ test("who follows the robot stays near it in a window of another size, who let g
   const port = (width, zoom) => ({ width, height: 400, longitude: 35, latitude: 30, zoom, pitch: 0, bearing: 0 });
   assert.equal(drive.view(port(400, 16), [200, 100]).zoom, 20.5);
   assert.equal(drive.view(port(400, 19), [200, 100]).zoom, 19, "from then on as near as somebody wants");
+  Object.assign(drive, { changed() {}, tell() {}, slider: {} }).take({ end: 51 });
+  assert.equal(drive.view(port(400, 18), [200, 100]).zoom, 18, "though more of a live day comes every second");
   assert.equal(drive.isStale(port(300, 19)), true);
   drive.view(port(300, 19), [150, 100]);
   drive.following = false;
@@ -79,7 +123,8 @@ test("where pictures take long there are fewer of them", () => {
 
 test("more of a day that is driven now is taken in, and who looked at its end still does", () => {
   const told = [], drive = Object.assign(driving(50), { slider: {}, changed: () => told.push(drive.second), tell() {} });
-  drive.take({ at: [0, 60], lon: [35, 35], lat: [30, 30], heading: [0, 90], stops: [[40, 2, true], [50, 0, false], [60, 1, true]], end: 60 });
+  const robots = [{ ...ROBOT, at: [0, 60], lon: [35, 35], lat: [30, 30], heading: [0, 90] }];
+  drive.take({ robots, stops: [[40, 2, true, 0], [50, 0, false, 0], [60, 1, true, 0]], end: 60 });
   assert.deepEqual([drive.second, drive.slider.max, told], [60, 60, [60]]);
   drive.second = 20; // somebody looks back
   drive.take({ end: 70 });
@@ -100,20 +145,21 @@ test("a day that is driven now is asked for until another one is shown", async (
   drive.ask("/two", true);
   await new Promise((done) => setTimeout(done));
   drive.ask(null, true);
-  assert.deepEqual(asked.at(-1), { heard: { standing: "away" } });
+  assert.deepEqual(asked.at(-1), { link: "away" });
 });
 
 test("from picture to picture layers keep their data, or the whole way would be made anew each time", () => {
-  const drive = driving(10), { whole, finds } = drive.parts();
+  const drive = driving(10), { pieces, finds } = drive.parts();
   drive.second = 39;
-  assert.equal(drive.parts().whole, whole);
+  assert.equal(drive.parts().pieces, pieces);
   assert.equal(drive.parts().finds, finds);
   drive.second = 45;
-  assert.equal(drive.parts().whole, whole);
+  assert.equal(drive.parts().pieces, pieces);
   assert.deepEqual(drive.parts().finds, [2]);
-  drive.data = { ...DAY, way: [[35, 30], [35.001, 30], [35.001, 30.001]], released: 2 };
-  assert.notEqual(drive.parts().whole, whole);
+  drive.data = { ...DAY, robots: [{ ...ROBOT, way: [[35, 30], [35.001, 30], [35.001, 30.001]], released: 2 }] };
+  assert.notEqual(drive.parts().pieces, pieces);
   assert.deepEqual(drive.parts().ordered.map((one) => one.path.length), [2, 2]);
+  assert.deepEqual(orderedOf({ way: [[35, 30]], released: 1 }), []);
 });
 
 test("the robot's boxes are turned clockwise from north and grow", () => {

@@ -31,6 +31,13 @@ TRUTH: Colour = (0, 0, 0)
 TRUTH_IN_DARK: Colour = (255, 255, 255)
 ROUTE: Colour = (12, 62, 170)
 ROUTE_IN_DARK: Colour = (110, 220, 255)
+#: several robots, told apart by the colour-blind of each kind too; their names say it as well
+ROBOTS: tuple[Colour, ...] = (
+    ROUTE, (108, 119, 3), (92, 7, 86), (176, 87, 115), (45, 38, 25), (135, 0, 255),
+)  # fmt: skip
+ROBOTS_IN_DARK: tuple[Colour, ...] = (
+    ROUTE_IN_DARK, (248, 232, 117), (34, 156, 150), (255, 168, 139), (160, 140, 50), (183, 255, 0),
+)  # fmt: skip
 CASING: Colour = (255, 255, 255)
 CASING_IN_DARK: Colour = (10, 20, 26)
 GATE: Colour = (0, 140, 90)
@@ -113,6 +120,11 @@ def by_age(days: NDArray[np.integer], *, dark: bool = False) -> Shade:
     """Return plants shaded by the days since they were inspected; -1 (never): an empty ring."""
     rank = np.searchsorted(AGE_FROM, days, side="right")
     return Shade.of([(*NEVER, _EMPTY), *(AGE_IN_DARK if dark else AGE_COLOURS)], rank)
+
+
+def of_robot(k: int) -> tuple[Colour, Colour]:
+    """Return the colours of the kth of several robots, on light and on dark ground."""
+    return ROBOTS[k % len(ROBOTS)], ROBOTS_IN_DARK[k % len(ROBOTS_IN_DARK)]
 
 
 def plain(n: int) -> Shade:

@@ -6,6 +6,7 @@ import queue
 import socket
 import threading
 import time
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
@@ -111,58 +112,99 @@ class RobotName(NamedTuple):
         return f"{VERSIONS[self.version][1]}/{self.manufacturer}/{self.serial}"
 
 
-class Wire:
-    """One end of a robot's topics; needs ``pip install fieldmon[robot]``.
-
-    Whatever is sent while there is no connection is sent when there is one again (at least once).
-    Once it is made it hears: what others send from then on comes to it, and nothing of before but
-    whether somebody is connected.
+class Watched(NamedTuple):
+    """Which robots of a manufacturer are listened to, and the version of VDA 5050 that they speak.
 
     Parameters
     ----------
-    broker
-        Where.
-    name
-        Of this end, the same after a restart.
-    robot
-        Whose topics.
-    hears
-        Kinds of messages that come to this end.
-    will
-        Kind and content of what the broker says if the connection breaks; None: nothing.
-
-    Raises
-    ------
-    SettingError
-        If no broker answers, or it does not let one in.
+    manufacturer
+        As in their topics.
+    serials
+        Their serial numbers; none: all that are heard of at the broker.
+    version
+        As `RobotName` has it.
     """
 
-    def __init__(
-        self,
-        broker: Broker,
-        name: str,
-        robot: RobotName,
-        hears: Iterable[str],
-        will: tuple[str, bytes] | None = None,
-    ) -> None:
-        mqtt = _paho()
+    manufacturer: str
+    serials: tuple[str, ...] = ()
+    version: str = USUAL_VERSION
+
+    @classmethod
+    def of(cls, manufacturer: str, serials: str | None, version: str = USUAL_VERSION) -> Watched:
+        """Return who is named by serial numbers with commas between them, each once; None: all.
+
+        Raises
+        ------
+        SettingError
+            If a name cannot be one, or none is named.
+
+        Examples
+        --------
+        >>> from fieldmon.drive.vda5050.mqtt import Watched
+        >>> Watched.of("fieldmon", "robot-1, robot-2").serials
+        ('robot-1', 'robot-2')
+        """
+        is_all = serials is None
+        named = [one.strip() for one in (serials or "").split(",") if one.strip()]
+        for serial in named or ["any" if is_all else ""]:
+            RobotName(manufacturer, serial, version).check()
+        return cls(manufacturer, tuple(dict.fromkeys(named)), version)
+
+    def robot(self, serial: str) -> RobotName:
+        """Return one of them."""
+        return RobotName(self.manufacturer, serial, self.version)
+
+
+class Inbox:
+    """What came of a robot, until it is taken.
+
+    Parameters
+    ----------
+    robot
+        Who it is.
+    """
+
+    def __init__(self, robot: RobotName) -> None:
+        self.robot = robot
         self.heard: queue.Queue[tuple[str, bytes]] = queue.Queue()
         #: when a message of each kind came last, by `time.monotonic`
         self.heard_at: dict[str, float] = {}
-        self.robot, self._topic = robot, robot.topic
+
+    def put(self, kind: str, message: Any) -> None:  # noqa: ANN401 - of a library loaded late
+        """Take a message in; of what was said before, only whether somebody is there holds."""
+        if message.retain and kind != "connection":
+            return
+        self.heard_at[kind] = time.monotonic()
+        self.heard.put((kind, message.payload))
+
+
+class _End:
+    """One end of a connection that comes and goes, to a broker; needs ``fieldmon[robot]``."""
+
+    def __init__(self) -> None:
         #: called whenever there is a connection again
         self.connected: Callable[[], None] = lambda: None
-        # what a broker kept for one of this name is of before: it is told to forget it
-        self.client: Any = self._client(mqtt, broker, name, clean=True)
+        self.client: Any = None
+
+    def _open(
+        self, broker: Broker, name: str, topics: list[str], will: tuple[str, bytes] | None = None
+    ) -> None:
+        """Connect under a name, of which the broker forgets what it kept; return once one hears."""
+        self._forget(broker, name)
+        self.client = self._client(broker, name, clean=False)
+        if will is not None:
+            self.client.will_set(*will, qos=1, retain=True)
+        self._join(broker, topics)
+
+    def _forget(self, broker: Broker, name: str) -> None:
+        """Let a broker forget what it kept for one of this name: it is of before."""
+        self.client = self._client(broker, name, clean=True)
         self._join(broker, [])
         self.close()
-        self.client = self._client(mqtt, broker, name, clean=False)
-        if will is not None:
-            self.client.will_set(f"{self._topic}/{will[0]}", will[1], qos=1, retain=True)
-        self._join(broker, [f"{self._topic}/{kind}" for kind in hears])
 
-    def _client(self, mqtt: Any, broker: Broker, name: str, *, clean: bool) -> Any:  # noqa: ANN401 - loaded late
+    def _client(self, broker: Broker, name: str, *, clean: bool) -> Any:  # noqa: ANN401 - loaded late
         """Return an end of this name that is not connected yet."""
+        mqtt = _paho()
         client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2, client_id=name, clean_session=clean)
         client.on_message = self._on_message
         client.on_connect, client.on_subscribe = self._on_connect, self._on_subscribe
@@ -197,10 +239,6 @@ class Wire:
                 where, answers=True,
             )  # fmt: skip
 
-    def send(self, kind: str, data: bytes, *, kept: bool = False) -> None:
-        """Send a message; `kept`: whoever comes later hears the last of its kind."""
-        self.client.publish(f"{self._topic}/{kind}", data, qos=1, retain=kept)
-
     def close(self) -> None:
         """Say farewell to the broker."""
         self.client.disconnect()
@@ -229,12 +267,106 @@ class Wire:
         self._answered.set()
 
     def _on_message(self, _client: object, _data: object, message: Any) -> None:  # noqa: ANN401
-        kind = message.topic.rpartition("/")[2]
-        # of what was said before, only whether somebody is there still holds
-        if message.retain and kind != "connection":
-            return
-        self.heard_at[kind] = time.monotonic()
-        self.heard.put((kind, message.payload))
+        raise NotImplementedError
+
+
+class Wire(_End):
+    """One end of a robot's topics; needs ``pip install fieldmon[robot]``.
+
+    Whatever is sent while there is no connection is sent when there is one again (at least once).
+    Once it is made it hears: what others send from then on comes to it, and nothing of before but
+    whether somebody is connected.
+
+    Parameters
+    ----------
+    broker
+        Where.
+    name
+        Of this end, the same after a restart.
+    robot
+        Whose topics.
+    hears
+        Kinds of messages that come to this end.
+    will
+        Kind and content of what the broker says if the connection breaks; None: nothing.
+
+    Raises
+    ------
+    SettingError
+        If no broker answers, or it does not let one in.
+    """
+
+    def __init__(
+        self,
+        broker: Broker,
+        name: str,
+        robot: RobotName,
+        hears: Iterable[str],
+        will: tuple[str, bytes] | None = None,
+    ) -> None:
+        super().__init__()
+        self._inbox, self.robot, self._topic = Inbox(robot), robot, robot.topic
+        self.heard, self.heard_at = self._inbox.heard, self._inbox.heard_at
+        said = None if will is None else (f"{self._topic}/{will[0]}", will[1])
+        self._open(broker, name, [f"{self._topic}/{kind}" for kind in hears], said)
+
+    def send(self, kind: str, data: bytes, *, kept: bool = False) -> None:
+        """Send a message; `kept`: whoever comes later hears the last of its kind."""
+        self.client.publish(f"{self._topic}/{kind}", data, qos=1, retain=kept)
+
+    def _on_message(self, _client: object, _data: object, message: Any) -> None:  # noqa: ANN401
+        self._inbox.put(message.topic.rpartition("/")[2], message)
+
+
+class Ear(_End):
+    """One end that only listens, to several robots of a manufacturer or to all of them.
+
+    Parameters
+    ----------
+    broker
+        Where.
+    name
+        Of this end; the broker forgets it once it is closed.
+    watched
+        Whom it listens to.
+    hears
+        Kinds of messages that come to it.
+
+    Raises
+    ------
+    SettingError
+        If no broker answers, or it does not let one in.
+    """
+
+    def __init__(self, broker: Broker, name: str, watched: Watched, hears: Iterable[str]) -> None:
+        super().__init__()
+        self._where, self._watched = (broker, name), watched
+        #: by serial number, in the order in which they were named or heard of
+        self.inboxes = {one: Inbox(watched.robot(one)) for one in watched.serials}
+        begins = VERSIONS[watched.version][1], watched.manufacturer
+        every = [*watched.serials] or ["+"]
+        self._open(
+            broker, name, ["/".join((*begins, one, kind)) for one in every for kind in hears]
+        )
+
+    @property
+    def hears(self) -> bool:
+        """Return whether there is a connection to the broker now."""
+        return bool(self.client.is_connected())
+
+    def end(self) -> None:
+        """Say farewell; what the broker would have kept for who comes back is forgotten."""
+        self.close()
+        with suppress(BrokerError):
+            self._forget(*self._where)
+
+    def _on_message(self, _client: object, _data: object, message: Any) -> None:  # noqa: ANN401
+        *_, serial, kind = message.topic.split("/")
+        if serial not in self.inboxes:
+            if not message.payload:  # what was kept of it is taken back
+                return
+            self.inboxes[serial] = Inbox(self._watched.robot(serial))
+        self.inboxes[serial].put(kind, message)
 
 
 def _at_once(_client: object, _data: object, line: Any) -> None:  # noqa: ANN401 - a socket

@@ -18,5 +18,8 @@ def test_a_robot_that_drives_now_is_asked_for_and_what_is_wrong_is_said(app):
     refused = BrokerError("It must let us in.", "127.0.0.1:1", answers=True)
     assert "mqtt://USER" in watching._said(refused)
     assert map_of(app)["drive"] is None
-    app.text_input(key="drive_serial").set_value("a/b").run()
+    app.text_input(key="drive_serial robot1").set_value("robot-1, a/b").run()
     assert "but no /, +, # or $" in app.error[0].value
+    app.segmented_control(key="drive_whose").set_value("all").run()
+    assert not app.error
+    assert not [box for box in app.text_input if box.key.startswith("drive_serial")]

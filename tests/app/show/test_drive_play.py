@@ -31,8 +31,9 @@ def test_the_changes_of_a_day_lead_from_the_mornings_classes_to_the_evenings(dri
         assert 0 < second <= data["end"]
         rank[plants] = classes
     assert rank.tolist() == colours.by_chance(day.believed[-1][1]).rank.tolist()
-    assert [one[2] for one in data["stops"]] == [one.found for one in day.trace.stops]
-    assert len({len(data[name]) for name in ("at", "lon", "lat", "heading")}) == 1
+    assert [one[2:] for one in data["stops"]] == [[one.found, 0] for one in day.trace.stops]
+    (robot,) = data["robots"]
+    assert len({len(robot[name]) for name in ("at", "lon", "lat", "heading")}) == 1
 
 
 def test_a_day_is_written_once_and_found_under_its_address(driven):
@@ -40,5 +41,5 @@ def test_a_day_is_written_once_and_found_under_its_address(driven):
     address = drive_play.content(choices, scene, day).drive
     assert address == drive_play.published(scene, day)
     kept = json.loads(STORE.get(address)[1])
-    assert np.array(kept["lon"]) == pytest.approx(day.trace.poses[:, 1], abs=1e-7)
+    assert np.array(kept["robots"][0]["lon"]) == pytest.approx(day.trace.poses[:, 1], abs=1e-7)
     assert drive_play.content(choices, scene, None).drive is None

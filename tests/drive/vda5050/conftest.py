@@ -25,10 +25,11 @@ def broker_program(tmp_path_factory):
         pytest.skip("the MQTT broker mosquitto (Debian's package) is not on this machine")
 
     @contextmanager
-    def started(settings):
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
+    def started(settings, port=0):
+        if not port:
+            with socket.socket() as free:
+                free.bind(("127.0.0.1", 0))
+                port = free.getsockname()[1]
         told = tmp_path_factory.mktemp("broker") / "mosquitto.conf"
         told.write_text(f"listener {port} 127.0.0.1\nset_tcp_nodelay true\n{settings}")
         with subprocess.Popen([program, "-c", str(told)], stderr=subprocess.DEVNULL) as running:

@@ -1,11 +1,12 @@
 """Brokers as they are named, and messages over connections that break."""
 
 import builtins
+import queue
 import socket
 
 import pytest
 
-from fieldmon.drive.vda5050.mqtt import Broker, Wire
+from fieldmon.drive.vda5050.mqtt import Broker, Ear, Watched, Wire
 from fieldmon.errors import SettingError
 from tests.drive.vda5050.conftest import ROBOT
 
@@ -21,6 +22,30 @@ from tests.drive.vda5050.conftest import ROBOT
 )
 def test_a_broker_is_named_as_people_do(text, broker):
     assert Broker.of(text) == broker
+
+
+def test_who_is_watched_is_named_once_each_or_is_everybody():
+    assert Watched.of("a", " r1,r2 , r1,") == Watched("a", ("r1", "r2"))
+    assert Watched.of("a", None).serials == ()
+    assert Watched.of("a", "r 1", "3.0").robot("r 1").topic == "vda5050/v3/a/r 1"
+    for maker, serials in (("a", " , "), ("a", "r1, +"), ("", None), ("a/b", "r1")):
+        with pytest.raises(SettingError, match="can be printed"):
+            Watched.of(maker, serials)
+
+
+def test_a_broker_keeps_nothing_for_who_listened_and_has_ended(broker):
+    mqtt = pytest.importorskip("paho.mqtt.client")
+    ear = Ear(broker, "an ear", Watched("fieldmon"), ("state",))
+    assert ear.hears
+    ear.end()
+    said = queue.Queue()
+    again = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2, client_id="an ear", clean_session=False)
+    again.on_connect = lambda _client, _data, flags, *_: said.put(flags.session_present)
+    again.connect(broker.host, broker.port)
+    again.loop_start()
+    assert said.get(timeout=180) is False
+    again.disconnect()
+    again.loop_stop()
 
 
 @pytest.mark.parametrize("text", ["", "http://farm", "farm:port", "farm:99999"])

@@ -98,8 +98,8 @@ def test_a_robot_whose_clock_is_put_back_is_seen_to_go_on(wire, watcher):
     np.testing.assert_allclose(watcher.trace().poses[:, 0], [0.0, 2.0, 5.0])
 
 
-def test_a_lost_connection_a_pause_and_an_error_are_told(wire, watcher):
-    assert watcher.heard() == ("waiting", None, "")
+def test_a_lost_connection_a_pause_and_an_error_are_told(wire, watcher, monkeypatch):
+    assert watcher.heard() == ("waiting", None, "", None)
     wire.put("state", state((0.0, 0.0)))
     wire.put("connection", {"connectionState": "CONNECTIONBROKEN"})
     watcher.take()
@@ -107,6 +107,15 @@ def test_a_lost_connection_a_pause_and_an_error_are_told(wire, watcher):
     wire.put("connection", {"connectionState": "ONLINE"})
     watcher.take()
     assert watcher.heard().standing == "live"
+    assert watcher.heard().battery == STATE["batteryState"]["batteryCharge"]
+    wire.put("connection", {"connectionState": "OFFLINE"})
+    watcher.take()
+    assert watcher.heard().standing == "off"
+    wire.put("connection", {"connectionState": "ONLINE"})
+    watcher.take()
+    monkeypatch.setattr("fieldmon.drive.vda5050.watcher._SILENT_S", -1.0)
+    assert watcher.heard().standing == "lost"  # though nobody said that its connection is broken
+    monkeypatch.undo()
     wire.put("state", state((0.0, 0.0), paused=True))
     watcher.take()
     assert watcher.heard().standing == "paused"
@@ -114,6 +123,78 @@ def test_a_lost_connection_a_pause_and_an_error_are_told(wire, watcher):
     wire.put("state", state((0.0, 0.0), errors=[fatal]))
     watcher.take()
     assert watcher.heard()[::2] == ("failed", "left wheel")
+
+
+def test_who_waits_has_no_order_or_is_done_is_told_once_it_is_so_for_a_while(
+    wire, watcher, monkeypatch
+):
+    node = {"nodeId": "n2", "sequenceId": 2, "released": False}
+    stands = {"nodeStates": [node], "driving": False}
+    for settles_s, told in ((1e9, ["live", "live"]), (-1.0, ["held", "done"])):
+        monkeypatch.setattr("fieldmon.drive.vda5050.watcher._SETTLES_S", settles_s)
+        for parts, standing in zip((stands, stands | {"nodeStates": []}), told, strict=True):
+            wire.put("state", state((0.0, 0.0), orderId="day", driving=True))
+            wire.put("state", state((0.0, 0.0), orderId="day", **parts))
+            watcher.take()
+            assert watcher.heard().standing == standing
+    wire.put("state", state((0.0, 0.0), orderId="", nodeStates=[]))
+    watcher.take()
+    assert watcher.heard().standing == "idle"
+
+
+def test_no_way_is_known_across_rows_or_after_a_lost_line(wire, watcher, plot):
+    """Rows lie along x, 3 m apart; 0 is the plot's middle, between two of them."""
+    frame, east_north = plot.grid.frame, plot.grid.frame.turned(90.0)
+    at = lambda x, y: east_north.xy_m(frame.lonlat(np.array([[x, y]])))[0].tolist()  # noqa: E731
+    rows_m = np.unique(plot.grid.xy_m[:, 1])
+    aisle, next_aisle = rows_m[:-1] + np.diff(rows_m) / 2, rows_m[1:-1] + np.diff(rows_m)[1:] / 2
+    x = float(np.median(plot.grid.xy_m[:, 0])) + 0.1
+    put = lambda second, *place: wire.put("state", state(at(*place)), second)  # noqa: E731
+    put(1.0, x, aisle[0])
+    put(9.0, x + 5.0, aisle[0])  # along its aisle, however far
+    put(10.0, x, next_aisle[0])
+    put(11.0, x + 1.0, next_aisle[0])
+    wire.put("connection", {"connectionState": "CONNECTIONBROKEN"})
+    put(12.0, x + 2.0, next_aisle[0])  # what was sent meanwhile came after all
+    wire.put("connection", {"connectionState": "CONNECTIONBROKEN"})
+    put(40.0, x + 6.0, next_aisle[0])
+    watcher.take()
+    trace = watcher.trace()
+    assert trace.poses[list(trace.unseen), 0].tolist() == [9.0, 39.0]
+    assert trace.poses[[k - 1 for k in trace.unseen], 0].tolist() == [8.0, 11.0]
+
+
+def test_a_robot_of_another_plot_is_neither_on_the_map_nor_do_its_finds_count(wire, watcher, plot):
+    ordered(wire, plot)
+    wire.put("state", state((4.0, 0.0), {"found": True}), 1.0)
+    watcher.take()
+    assert len(watcher.trace().stops) == 1
+    east_north = plot.grid.frame.turned(90.0)
+    places = lambda m: east_north.xy_m(plot.grid.frame.lonlat(m))  # noqa: E731
+    errand, first = Errand(1, STOP, line((0, 0), (5, 0))), {"orderId": "x", "orderUpdateId": 0}
+    known, its_plant = first | {"node": None, "strays_m": 0.3}, plot.grid.xy_m[STOP.plant]
+    for off_m, standing, stops in ((7.0, "elsewhere", 0), (0.1, "live", 1)):
+        stands = np.add(its_plant, (off_m, 0.0)), "left"
+        wire.put("order", order_of(errand, places, known, "a1", stands)[0])
+        wire.put("state", state((4.0, 0.0), {"found": True}), 2.0 + stops)
+        watcher.take()
+        assert watcher.heard().standing == standing
+        assert (len(watcher.trace().stops), len(watcher.trace().poses)) == (stops, stops)
+    wire.put("state", state((5000.0, 0.0)), 9.0)  # nor is one that is far away
+    watcher.take()
+    assert watcher.heard().standing == "elsewhere"
+    assert (len(watcher.trace().poses), len(watcher.way[0])) == (0, 0)
+
+
+def test_two_robots_under_one_serial_number_are_told(wire, watcher):
+    other = Heard(wire.robot.version)
+    other.header["headerId"] = 900
+    for _ in range(4):
+        for one in (wire, other):
+            one.put("state", state((0.0, 0.0)))
+        wire.heard.put(other.heard.get())
+    watcher.take()
+    assert watcher.heard().standing == "double"
 
 
 def test_a_place_between_states_is_taken_and_one_that_is_not_known_is_not(wire, watcher):

@@ -92,3 +92,29 @@ def test_lines_of_rows_let_the_plants_under_them_be_seen_on_either_ground():
     for line in (colours.ROWS, colours.ROWS_IN_DARK):
         assert len(line) == 4
         assert line[3] < 128
+
+
+# what one sees who lacks a kind of cones (Machado 2009), as shares of linear red, green and blue
+_SEES = {
+    "all": np.eye(3),
+    "no red": [[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]],
+    "no green": [[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]],
+    "no blue": [[1.256, -0.077, -0.179], [-0.078, 0.931, 0.148], [0.005, 0.691, 0.304]],
+}
+_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+
+
+def lab(colour, sees):
+    """Return a colour as CIELAB."""
+    light = np.clip(np.array(sees) @ (np.array(colour) / 255) ** 2.2, 0, 1)
+    x, y, z = np.cbrt(np.maximum(_XYZ @ light / [0.9505, 1.0, 1.089], 1e-6))
+    return np.array([116 * y - 16, 500 * (x - y), 200 * (y - z)])
+
+
+@pytest.mark.parametrize("sees", _SEES)
+@pytest.mark.parametrize("robots", [colours.ROBOTS, colours.ROBOTS_IN_DARK])
+def test_robots_are_told_apart_whatever_colours_one_sees(robots, sees):
+    seen = [lab(one, _SEES[sees]) for one in robots]
+    apart = [np.linalg.norm(a - b) for k, a in enumerate(seen) for b in seen[:k]]
+    assert min(apart) > 20  # 2 is just seen side by side
+    assert colours.of_robot(len(robots)) == colours.of_robot(0)

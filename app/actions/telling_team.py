@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from fieldmon.plot.robot import Robot
 
-    from ..state.told_team import TeamChoice, TeamDraft, TeamRow
+    from ..state.told_team import TeamChoice, TeamDraft, MemberRow
 
 _PROBLEM = "team table problem "
 # more rows than these take a page too long
@@ -69,7 +69,7 @@ def _told(draft: TeamDraft) -> TeamChoice | None:
         return None
 
 
-def _row(place: str, row: TeamRow, *, is_alone: bool) -> None:
+def _row(place: str, row: MemberRow, *, is_alone: bool) -> None:
     show = widget_memory.show
     with st.container(border=True, key=f"team_row_{row.number}"):
         with st.container(horizontal=True, vertical_alignment="bottom"):

@@ -41,7 +41,7 @@ class TeamChoice(NamedTuple):
 
 
 @dataclass(frozen=True)
-class TeamRow:
+class MemberRow:
     """A row of boxes: its number, and who stood in it at first; they start at so many seconds."""
 
     number: int
@@ -112,7 +112,7 @@ class TeamDraft:
     number: int
     seen: TeamChoice
     begun: TeamChoice
-    rows: tuple[TeamRow, ...]
+    rows: tuple[MemberRow, ...]
     plain: TeamChoice
 
     def key(self, box: str) -> str:
@@ -194,7 +194,7 @@ def add(place: str, who: str) -> None:
     called = texts.SCOUT_NAMED if who == SCOUT else texts.ROBOT_NAMED
     name = next(name for k in count(1) if person_key(name := called.format(n=k)) not in names)
     starts_s = min((row.starts() for row in before.rows), default=0.0)
-    row = TeamRow(_next(), TeamMember(name, robot), starts_s)
+    row = MemberRow(_next(), TeamMember(name, robot), starts_s)
     _keep(place, replace(before, rows=(*before.rows, row)))
 
 
@@ -205,7 +205,7 @@ def take_out(place: str, number: int) -> None:
     _keep(place, replace(before, rows=rows))
 
 
-def turn_kind(row: TeamRow) -> None:
+def turn_kind(row: MemberRow) -> None:
     """Let whoever is of another kind now look as long as that kind does (for callbacks)."""
     widget_memory.put(row.key("look"), float(usual_kind(row.said("who")).look_s))
 
@@ -216,9 +216,9 @@ def _begun(seen: TeamChoice, choice: TeamChoice) -> TeamDraft:
     return TeamDraft(_next(), seen, choice, rows, plain)
 
 
-def _rows(team: Iterable[TeamMember], starts: time) -> tuple[TeamRow, ...]:
+def _rows(team: Iterable[TeamMember], starts: time) -> tuple[MemberRow, ...]:
     first_s = 3600.0 * starts.hour + _MIN_S * starts.minute + starts.second
-    return tuple(TeamRow(_next(), one, first_s + one.starts_s) for one in team)
+    return tuple(MemberRow(_next(), one, first_s + one.starts_s) for one in team)
 
 
 def _choice(

@@ -77,9 +77,7 @@ def night_of(season, day, who=""):
     return begins, moments[-1].item()
 
 
-@pytest.mark.parametrize(
-    ("returns", "late_s"), [(True, None), (False, None), (False, 2400.0)]
-)
+@pytest.mark.parametrize(("returns", "late_s"), [(True, None), (False, None), (False, 2400.0)])
 def test_each_night_of_a_season_has_its_own_begin_and_all_its_hours(tmp_path, returns, late_s):
     """Those before went past midnight, too. With `late_s` two of a team, one so much later."""
     robot, starts = replace(ROBOT, hours=1.0, returns=returns), time(23, 30)

@@ -188,7 +188,7 @@ def named_file(tmp_path_factory):
 @pytest.fixture
 def season_named(named_file, seasons_folder):
     """Return a season with names of rows and plants, a copy for each test."""
-    return Season(shutil.copy(named_file, seasons_folder))
+    return Season(shutil.copy(named_file, seasons_folder / named_file.name))
 
 
 @pytest.fixture

@@ -526,13 +526,12 @@ def broken_off(monkeypatch, typed=None):
 def test_a_press_is_carried_out_though_what_is_typed_next_breaks_its_run_off(
     season_app, season, monkeypatch
 ):
-    go(season_app, "record")
-    row = key_of(season_app, "one_row")
-
     def type_next():
         st.session_state[row] = 5
 
+    go(season_app, "record")
     for n, more in enumerate((None, type_next), 1):
+        row = key_of(season_app, "one_row")
         for name, value in {"one_row": 3, "one_plant": 3 + n, "one_result": FOUND}.items():
             season_app.session_state[key_of(season_app, name)] = value
         season_app.run()

@@ -57,6 +57,7 @@ def test_seasons_are_those_of_the_pest_that_was_chosen(app, monkeypatch):
     assert not app.exception
     assert "rate" not in {one.key for one in app.number_input}
     assert any("Spreads as the chosen pest" in one.value for one in app.caption)
+    app.number_input(key="n_days").set_value(2)
     app.button(key="run").click().run()
     assert [one.pest.name for one in begun] == ["whitefly"]
     go(app, "simulate")

@@ -173,10 +173,10 @@ def test_another_season_of_one_opened_by_its_address_has_its_measured_plants_and
     assert np.array_equal(before.field.plant_names, after.field.plant_names)
 
 
-AREA = MultiPolygon([box(35.1500, 30.3600, 35.1512, 30.3610)])
-WEST, EAST = box(35.1500, 30.3600, 35.1506, 30.3610), box(35.1506, 30.3600, 35.1512, 30.3610)
-BENT = LineString([(35.1501, 30.3602), (35.1506, 30.3605), (35.1511, 30.3603)])
-SCATTERED = np.random.default_rng(1).uniform([35.1501, 30.3601], [35.1511, 30.3609], (40, 2))
+AREA = MultiPolygon([box(35.1500, 30.3600, 35.1506, 30.3605)])
+WEST, EAST = box(35.1500, 30.3600, 35.1503, 30.3605), box(35.1503, 30.3600, 35.1506, 30.3605)
+BENT = LineString([(35.15005, 30.3601), (35.1503, 30.36025), (35.15055, 30.36015)])
+SCATTERED = np.random.default_rng(1).uniform([35.15005, 30.36005], [35.15055, 30.36045], (40, 2))
 PLANTED = {
     "blocks": (
         {"blocks": (Block("west", WEST, 20.0, 3.0, 2.0), Block("east", EAST))},

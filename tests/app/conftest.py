@@ -169,9 +169,9 @@ def season(seasons_folder):
     return lambda: Season(seasons_folder / "Gate 2026.gpkg")
 
 
-@pytest.fixture
-def season_named(seasons_folder):
-    """Return a season of rows 1 to 4 that their file calls 5a, C, 2, D.
+@pytest.fixture(scope="session")
+def named_file(tmp_path_factory):
+    """Begin a season of rows 1 to 4 that their file calls 5a, C, 2, D, once; return its file.
 
     Of the plants of row 1 the third has the name of the fourth.
     """
@@ -181,7 +181,14 @@ def season_named(seasons_folder):
     names = PlantNames(np.array(["5a", "C", "2", "D"])[row], None, called.astype(np.str_))
     plot = plot_around("own", lonlat, names=names)
     settings = MonitoringSettings(date(2026, 11, 16), robot=Robot(hours=1.0))
-    return Season.create(seasons_folder / "Own 2026.gpkg", plot, Records.none(), settings)
+    path = tmp_path_factory.mktemp("named") / "Own 2026.gpkg"
+    return Season.create(path, plot, Records.none(), settings).path
+
+
+@pytest.fixture
+def season_named(named_file, seasons_folder):
+    """Return a season with names of rows and plants, a copy for each test."""
+    return Season(shutil.copy(named_file, seasons_folder / named_file.name))
 
 
 @pytest.fixture

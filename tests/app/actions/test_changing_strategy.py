@@ -15,42 +15,15 @@ from tests.app.driving import go, metric, opened, press, tap, texts_of, until
 BEGINS = date(2026, 11, 16)
 
 
-def test_more_hours_than_the_slider_had_and_odd_seconds_leave_the_page_whole(season_app, season):
-    project, settings = season(), season().settings
-    robot = replace(settings.robot, hours=17.0, look_s=22.5)
-    project.change(replace(settings, robot=robot), settings)
-    go(season_app, "today")
-    assert not season_app.exception
-    assert next(one for one in season_app.slider if one.key.startswith("hours ")).value == 17.0
-    assert not [one for one in season_app.button if one.key == "change_setup"]
-
-
-def test_whole_numbers_of_a_program_leave_the_page_whole(season_app, season):
-    project, settings = season(), season().settings
-    project.change(replace(settings, robot=replace(settings.robot, hours=3, look_s=40)), settings)
-    go(season_app, "today")
-    assert not season_app.exception
-    assert next(one for one in season_app.slider if one.key.startswith("hours ")).value == 3.0
-
-
-def test_other_hours_are_used_from_now_on_when_asked_for(season_app, season):
-    hours = next(s for s in season_app.slider if s.label == "Working hours")
-    hours.set_value(4.0).run()
-    assert season().settings.robot.hours == 12.0
-    press(season_app, "Use from now on")
-    assert season().settings.robot.hours == 4.0
-    assert int(metric(season_app, "Plants to inspect").split(" / ")[0]) < 300
-
-
-def test_a_plan_of_other_hours_than_the_slider_says_is_not_handed_on(season_app, season):
-    hours_box(season_app).set_value(4.0).run()
-    assert "first use what you changed" in texts_of(season_app)
-    for step in ("plan", "send"):
-        button = season_app.button(key=f"do_{step}")
-        assert (button.disabled, button.proto.type) == (True, "secondary")
-    press(season_app, "Use from now on")
-    tap(season_app, "do_plan")
-    assert season().planned_and_done(BEGINS).hours <= 4.0
+def test_numbers_of_a_program_that_no_slider_has_leave_the_page_whole(season_app, season):
+    for hours, look_s in ((17.0, 22.5), (3, 40)):
+        project, settings = season(), season().settings
+        robot = replace(settings.robot, hours=hours, look_s=look_s)
+        project.change(replace(settings, robot=robot), settings)
+        go(season_app, "today")
+        assert not season_app.exception
+        assert hours_box(season_app).value == float(hours)
+        assert not [one for one in season_app.button if one.key == "change_setup"]
 
 
 def test_a_day_that_was_missed_is_given_its_hours_and_one_that_was_worked_keeps_them(
@@ -153,15 +126,26 @@ def places_of(app):
             for name, is_it in at.items()}  # fmt: skip
 
 
-def test_the_hours_stand_above_the_day_s_sentence_with_their_own_button(season_app, season):
+def test_other_hours_stand_above_the_day_s_sentence_and_count_once_they_are_used(
+    season_app, season
+):
     at = places_of(season_app)
     assert at["hours"] < at["sentence"] < at["seconds"], "they are changed every day"
     hours_box(season_app).set_value(4.0).run()
     shown = list(season_app.main)
     use = next(k for k, one in enumerate(shown) if getattr(one, "key", "") == "change_setup")
     assert at["hours"] < use < places_of(season_app)["sentence"]
+    assert season().settings.robot.hours == 12.0
+    # a plan of other hours than the slider says is not handed on
+    assert "first use what you changed" in texts_of(season_app)
+    for step in ("plan", "send"):
+        button = season_app.button(key=f"do_{step}")
+        assert (button.disabled, button.proto.type) == (True, "secondary")
     press(season_app, "Use from now on")
     assert season().settings.robot.hours == 4.0
+    assert int(metric(season_app, "Plants to inspect").split(" / ")[0]) < 300
+    tap(season_app, "do_plan")
+    assert season().planned_and_done(BEGINS).hours <= 4.0
     go(season_app, "record")
     at = places_of(season_app)
     assert at["hours"] is not None

@@ -25,6 +25,7 @@ def test_a_simulated_season_begins_as_the_open_season_believes(season_app, seaso
         go(season_app, page)
         assert numbers(season_app) == [round(share, 1), rate]
         assert any("as the season believes" in one.value for one in season_app.caption)
+        season_app.number_input(key="n_days").set_value(2)
 
 
 def test_without_a_season_a_simulated_season_begins_as_in_a_command(app):

@@ -66,19 +66,6 @@ def test_thresholds_of_ones_own_are_brought_and_the_answer_takes_them(season_app
     assert "bad.csv, line 2" in season_app.error[0].value
 
 
-def test_zones_that_were_treated_are_noted_with_what_was_advised(season_app, season):
-    go(season_app, "decide")
-    boxed(season_app.number_input, "efficacy").set_value(80)
-    next(b for b in season_app.button if b.label == texts.TREAT_BUTTON).click()
-    season_app.run()
-    assert not season_app.exception
-    (one,) = season().treatments()
-    assert 0 < one.place.plants.sum() <= len(season().plot.grid)
-    advised, treated = season().log()[-2:]
-    assert (advised.kind, treated.kind) == ("advised", "treated")
-    assert advised.what["date"] == str(one.on)
-
-
 def test_zones_noted_as_treated_are_those_on_the_page_whatever_another_session_found_since(
     season_app, season
 ):
@@ -92,8 +79,12 @@ def test_zones_noted_as_treated_are_those_on_the_page_whatever_another_session_f
     assert (season().advice(default_date(season())).sprayed != seen).any()
     boxed(season_app.number_input, "efficacy").set_value(80)
     press(season_app, texts.TREAT_BUTTON)
+    assert not season_app.exception
     (one,) = season().treatments()
     assert one.place.plants.tolist() == seen.tolist()
+    advised, treated = season().log()[-2:]
+    assert (advised.kind, treated.kind) == ("advised", "treated")
+    assert advised.what["date"] == str(one.on)
 
 
 def test_of_plants_with_two_faces_each_is_counted_once(monkeypatch):

@@ -45,7 +45,9 @@ def corners(app, places):
     return app
 
 
-def test_four_typed_corners_are_a_plot_with_a_route_and_survive_a_reload(drawing):
+def test_four_typed_corners_are_a_plot_that_survives_a_reload_and_begins_seasons(
+    drawing, tmp_path, seasons_folder
+):
     corners(drawing, SQUARE)
     assert map_of(drawing)["draw"]["points"] == [list(corner) for corner in SQUARE]
     assert "4 corners, 4.21 ha" in texts_of(drawing).replace("\u00a0", " ")
@@ -60,27 +62,7 @@ def test_four_typed_corners_are_a_plot_with_a_route_and_survive_a_reload(drawing
     again = opened(texts.UPLOAD, files=word[0] if isinstance(word, list) else word)
     assert plot_name(again) == texts.OUTLINE_NAME
     assert "route" in {one["key"] for one in map_of(again)["switches"]}
-
-
-def test_corners_so_far_survive_a_reload_and_what_is_used_can_be_corrected(drawing):
-    corners(drawing, SQUARE[:3])
-    word = drawing.query_params["files"]
-    again = go(opened(texts.UPLOAD, files=word[0] if isinstance(word, list) else word), "plot")
-    assert map_of(again)["draw"]["points"] == [list(corner) for corner in SQUARE[:3]]
-    press(again, texts.OUTLINE_USE)
-    assert metric(again, "Area") == "2.11 ha"
-    press(again, texts.OUTLINE_CORRECT)
-    corners(again, SQUARE[3:])
-    press(again, texts.OUTLINE_USE)
-    assert not again.error
-    assert metric(again, "Area") == "4.21 ha"
-
-
-def test_another_season_of_one_opened_by_its_address_has_its_boundary_gate_and_no_go(
-    drawing, seasons_folder
-):
-    corners(drawing, SQUARE)
-    press(drawing, texts.OUTLINE_USE)
+    # another season of one opened by its address has its boundary, gate and no-go areas
     drawn = {"gate": "34.9,31.5", "no_go": "34.9005,31.5005 34.901,31.5005 34.901,31.501"}
     for kind, places in drawn.items():
         drawing.selectbox(key="draw_kind").set_value(kind).run()
@@ -103,17 +85,26 @@ def test_another_season_of_one_opened_by_its_address_has_its_boundary_gate_and_n
     ]
     assert kept[0].boundary.equals_exact(kept[1].boundary, 1e-7, normalize=True)
     assert kept[0].no_go.equals_exact(kept[1].no_go, 1e-7, normalize=True)
+    # and opens no other plot that is at hand
+    other = upload(opened(), plot=("plot.zip", zipped(tmp_path, square())))
+    other.selectbox(key="season").set_value("Drawn 2026").run()
+    press(go(other, "plot"), texts.ANOTHER)
+    assert texts.ANOTHER_ELSEWHERE in [one.value for one in other.error]
+    assert other.selectbox(key="season").value == "Drawn 2026"
 
 
-def test_another_season_opens_no_other_plot_that_is_at_hand(drawing, tmp_path):
-    corners(drawing, SQUARE)
-    press(drawing, texts.OUTLINE_USE)
-    begun(drawing, "Drawn 2026")
-    another = upload(opened(), plot=("plot.zip", zipped(tmp_path, square())))
-    another.selectbox(key="season").set_value("Drawn 2026").run()
-    press(go(another, "plot"), texts.ANOTHER)
-    assert texts.ANOTHER_ELSEWHERE in [one.value for one in another.error]
-    assert another.selectbox(key="season").value == "Drawn 2026"
+def test_corners_so_far_survive_a_reload_and_what_is_used_can_be_corrected(drawing):
+    corners(drawing, SQUARE[:3])
+    word = drawing.query_params["files"]
+    again = go(opened(texts.UPLOAD, files=word[0] if isinstance(word, list) else word), "plot")
+    assert map_of(again)["draw"]["points"] == [list(corner) for corner in SQUARE[:3]]
+    press(again, texts.OUTLINE_USE)
+    assert metric(again, "Area") == "2.11 ha"
+    press(again, texts.OUTLINE_CORRECT)
+    corners(again, SQUARE[3:])
+    press(again, texts.OUTLINE_USE)
+    assert not again.error
+    assert metric(again, "Area") == "4.21 ha"
 
 
 def test_too_few_corners_and_crossed_ones_are_refused_in_a_sentence_and_stay(drawing):

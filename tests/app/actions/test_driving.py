@@ -1,6 +1,7 @@
 """A planned day is driven by a simulated robot."""
 
 import json
+from dataclasses import replace
 from datetime import date
 from types import SimpleNamespace
 
@@ -10,6 +11,8 @@ from tests.app.driving import fetched, go, map_of, press, texts_of, until
 
 
 def test_a_planned_day_is_driven_and_handed_to_the_map_and_nothing_is_recorded(season_app, season):
+    kept = season()
+    kept.change(replace(kept.settings, robot=kept.settings.robot.with_hours(1.0)), kept.settings)
     before = season().revision
     app = go(season_app, "drive")
     assert not app.exception

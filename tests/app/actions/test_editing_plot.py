@@ -37,7 +37,7 @@ def test_a_gate_is_set_where_only_plants_were_brought(app):
     assert layer(app, "gate") == on_plot
 
 
-def test_the_gate_and_areas_are_drawn_and_taken_back(app):
+def test_areas_are_drawn_refused_in_a_sentence_and_taken_back(app):
     go(app, "plot")
     before = plants(app, "plants")
     lon, lat = before.lonlat[len(before) // 2]
@@ -46,6 +46,11 @@ def test_the_gate_and_areas_are_drawn_and_taken_back(app):
     asked = map_of(app)["draw"]
     assert (asked["id"], asked["kind"]) == ("no_go", "area")
     assert "Click the corners" in asked["hint"]
+    # it snaps to the corners of the outline
+    outline = [tuple(place) for row in layer(app, "boundary")["data"] for place in row["path"]]
+    snaps = np.array(asked["snap"])
+    assert len(snaps) > 3
+    assert set(map(tuple, np.round(snaps, 7))) <= set(outline)
     corners = [(lon, lat), (lon + 3e-4, lat), (lon + 3e-4, lat + 3e-4), (lon, lat + 3e-4)]
     app.text_input(key="draw_typed").set_value(" ".join(f"{x},{y}" for x, y in corners)).run()
     press(app, "Add")
@@ -55,15 +60,10 @@ def test_the_gate_and_areas_are_drawn_and_taken_back(app):
     assert len(plants(app, "plants")) < len(before) - 20
     press(app, "Undo the last one")
     assert plants(app, "plants").lonlat.tolist() == before.lonlat.tolist()
-
-
-def test_what_is_drawn_snaps_to_the_corners_of_the_outline(app):
-    go(app, "plot")
-    app.selectbox(key="draw_kind").set_value("path").run()
-    outline = [tuple(place) for row in layer(app, "boundary")["data"] for place in row["path"]]
-    snaps = np.array(map_of(app)["draw"]["snap"])
-    assert len(snaps) > 3
-    assert set(map(tuple, np.round(snaps, 7))) <= set(outline)
+    app.text_input(key="draw_typed").set_value("35,30 35.1,30.1 35.1,30 35,30.1").run()
+    press(app, "Add")
+    press(app, "Finish")
+    assert "must not cross itself" in app.error[0].value
 
 
 @pytest.fixture
@@ -114,15 +114,6 @@ def test_what_another_tool_drew_is_not_taken_for_this_one(session):
     _, answers = editing_plot.content(choices, choices.records)
     answers.drawn("no_go", AREA)
     assert plot_files.drawn(choices.plot_key) == ()
-
-
-def test_an_area_that_crosses_itself_is_refused_in_a_sentence(app):
-    go(app, "plot")
-    app.selectbox(key="draw_kind").set_value("no_go").run()
-    app.text_input(key="draw_typed").set_value("35,30 35.1,30.1 35.1,30 35,30.1").run()
-    press(app, "Add")
-    press(app, "Finish")
-    assert "must not cross itself" in app.error[0].value
 
 
 def test_a_block_is_cut_by_a_line_and_planted_by_itself(app):

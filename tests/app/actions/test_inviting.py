@@ -40,7 +40,17 @@ def said_by(app):
 
 
 def test_a_code_opens_the_season_for_one_person_until_it_is_taken_back(scout, season):
+    fold = lambda: next(one for one in scout.expander if one.label == texts.INVITE)  # noqa: E731
+    assert not fold().proto.expanded
+    scout.text_input(key="invite_name").set_value(" ")
+    press(scout, texts.INVITE_BUTTON)
+    assert "must have a name" in scout.error[0].value
+    assert scouts.scouts_of(season()) == ()
     said = made(scout, first=2, last=9)
+    assert fold().proto.expanded
+    shown = list(scout.main)
+    code, name = scout.code[0], scout.text_input(key="invite_name")
+    assert shown.index(code) < shown.index(name), "it stands above the boxes that it was made by"
     assert said["season"] == ["Gate 2026"]
     who = scouts.key_owner(season(), said["key"][0])
     assert (who.name, who.rows) == ("Ann", (2, 9))
@@ -48,29 +58,7 @@ def test_a_code_opens_the_season_for_one_person_until_it_is_taken_back(scout, se
     with pytest.raises(AccessError):
         scouts.key_owner(season(), said["key"][0])
     assert len(scout.code) == 0
-
-
-def test_a_code_stands_above_the_boxes_that_it_was_made_by(scout):
-    made(scout)
-    shown = list(scout.main)
-    code, name = scout.code[0], scout.text_input(key="invite_name")
-    assert shown.index(code) < shown.index(name)
-
-
-def test_the_fold_stays_open_at_a_code_until_that_is_taken_back(scout):
-    fold = lambda: next(one for one in scout.expander if one.label == texts.INVITE)  # noqa: E731
     assert not fold().proto.expanded
-    made(scout)
-    assert fold().proto.expanded
-    scout.button(key="take back Ann").click().run()
-    assert not fold().proto.expanded
-
-
-def test_a_code_without_a_name_is_none(scout, season):
-    scout.text_input(key="invite_name").set_value(" ")
-    press(scout, texts.INVITE_BUTTON)
-    assert "must have a name" in scout.error[0].value
-    assert scouts.scouts_of(season()) == ()
 
 
 def test_it_says_where_phones_cannot_come(scout, monkeypatch):
@@ -93,17 +81,13 @@ def test_the_morning_sends_a_link_with_a_key_of_that_person(season_app, season, 
     assert pictures == [qr_code.image(address, texts.INVITE_ALT)]
 
 
-def test_a_new_code_for_a_name_says_that_the_earlier_one_is_over(scout, season):
+def test_a_second_code_says_that_the_earlier_one_is_over_or_that_plants_are_shared(scout, season):
     said = made(scout)
     assert not scout.success
     made(scout)
     assert "earlier code of \u2068Ann\u2069 no longer holds" in scout.success[0].value
     with pytest.raises(AccessError):
         scouts.key_owner(season(), said["key"][0])
-
-
-def test_a_second_code_for_the_same_plants_says_that_they_are_shared(scout):
-    made(scout)
     made(scout, "Ben")
     assert "shares these plants with \u2068Ann\u2069" in scout.success[0].value
     ask_for(scout, "Cem", first=1, last=2)

@@ -4,7 +4,6 @@ from dataclasses import replace
 from datetime import UTC, date, datetime
 
 import numpy as np
-import pytest
 
 from app.actions import handing_out
 from app.words import texts
@@ -22,11 +21,23 @@ def test_without_a_season_one_button_begins_it(app):
     assert app.selectbox(key="season").value == "Gate 2026"
 
 
-def test_the_plan_is_kept_once_it_is_used(season_app, season):
-    assert not len(season().kept_route(date(2026, 11, 16)))
+def test_a_plan_is_kept_once_it_is_used_and_ticked_with_what_is_left_of_it(season_app, season):
+    def plan():
+        (said,) = [one.value for one in season_app.markdown if texts.STEPS["plan"] in one.value]
+        return said
+
+    kept, first = season(), date(2026, 11, 16)
+    assert not len(kept.kept_route(first))
     tap(season_app, "do_plan")
-    assert len(season().kept_route(date(2026, 11, 16))) > 100
+    n = len(kept.kept_route(first))
+    assert n > 100
     assert texts.PLAN_USED.format(day="Mon 16 Nov") in season_app.success[0].value
+    assert f"{n:,} plants" in plan()
+    done = kept.kept_route(first)[:5]
+    kept.record(Inspections.of(done, np.zeros(5, np.int8), np.datetime64(first)))
+    season_app.run()
+    assert f"{n:,} plants, " in plan()
+    assert f"; {n - 5:,} left" in plan()
 
 
 def test_a_route_taken_as_a_file_is_the_one_whose_stops_are_recorded(season_app, season):
@@ -76,15 +87,17 @@ def test_the_next_day_of_a_day_is_its_own_though_that_is_done_too(season_app, se
     assert season_app.date_input(key="day Gate 2026").value == date(2026, 11, 18)
 
 
-@pytest.mark.parametrize("begun", [True, False], ids=["season", "plan"])
-def test_the_route_goes_along_as_a_file_where_no_phone_reaches_this_machine(begun, request):
-    here = request.getfixturevalue("season_app" if begun else "app")
-    tap(here, "do_send")
-    assert (texts.INVITE_LOCAL if begun else texts.SEND_ALONE) in texts_of(here)
-    formats = here.selectbox(key="format")
+def goes_along_as_a_file(app, said):
+    assert said in texts_of(app)
+    formats = app.selectbox(key="format")
     assert formats.value == "gpx"
     assert formats.options[0].endswith(": gpx"), "what most use stands first"
     assert formats.options[-1].endswith(": nav2-pauses")
+
+
+def test_the_route_of_a_plan_goes_along_as_a_file(app):
+    tap(app, "do_send")
+    goes_along_as_a_file(app, texts.SEND_ALONE)
 
 
 def test_recording_is_one_button_away(season_app):
@@ -94,32 +107,19 @@ def test_recording_is_one_button_away(season_app):
     assert opened("Gate 2026").get("download_button")
 
 
-def test_to_look_at_the_ways_to_a_phone_is_not_yet_to_take_the_day_along(season_app):
+def test_where_no_phone_comes_the_route_is_a_file_and_to_look_at_it_is_not_to_take_it_along(
+    season_app,
+):
     def sent():
         said = [one.value for one in season_app.markdown if texts.STEPS["send"] in one.value]
         return [one.startswith(":green") for one in said]
 
     tap(season_app, "do_send")
+    goes_along_as_a_file(season_app, texts.INVITE_LOCAL)
     assert sent() == [False]
     season_app.text_input(key="invite_name").set_value("Ann")
     press(season_app, texts.INVITE_BUTTON)
     assert sent() == [True]
-
-
-def test_a_ticked_plan_is_the_one_kept_with_what_is_left_of_it(season_app, season):
-    def plan():
-        (said,) = [one.value for one in season_app.markdown if texts.STEPS["plan"] in one.value]
-        return said
-
-    kept, first = season(), date(2026, 11, 16)
-    tap(season_app, "do_plan")
-    n = len(kept.kept_route(first))
-    assert f"{n:,} plants" in plan()
-    done = kept.kept_route(first)[:5]
-    kept.record(Inspections.of(done, np.zeros(5, np.int8), np.datetime64(first)))
-    season_app.run()
-    assert f"{n:,} plants, " in plan()
-    assert f"; {n - 5:,} left" in plan()
 
 
 def test_a_treatment_is_said_where_nothing_was_inspected_yet(season_app, season):

@@ -12,6 +12,7 @@ import streamlit as st
 
 from app.actions import contradicting, recording
 from app.show import plant_history
+from app.show.recorded_batches import GONE
 from app.state import seasons_folder
 from app.state.choices import WHOSE_DAY
 from app.state.fresh_boxes import FreshBoxes
@@ -26,7 +27,7 @@ from tests.monitoring.changes.test_outside_changes import moved_to, outside
 from tests.monitoring.seasons import a_season
 
 
-def test_one_plant_is_recorded_and_undone(season_app, season):
+def test_one_plant_is_recorded_undone_or_gone(season_app, season):
     go(season_app, "record")
     boxed(season_app.number_input, "one_row").set_value(3)
     boxed(season_app.number_input, "one_plant").set_value(4)
@@ -44,6 +45,16 @@ def test_one_plant_is_recorded_and_undone(season_app, season):
     go(season_app, "record")
     press(season_app, "Redo")
     assert season().history.inspections.plant.tolist() == [plant]
+    # pulled out by now, and no treatment
+    for name, value in {"one_row": 3, "one_plant": 5, "one_result": GONE}.items():
+        season_app.session_state[key_of(season_app, name)] = value
+    season_app.run()
+    send(season_app, "one")
+    assert "1 recorded" in season_app.success[0].value
+    assert season().history.gone(0).nonzero()[0].tolist() == [
+        season().history.inspections.plant[-1]
+    ]
+    assert season().treatments() == ()
 
 
 def test_in_a_team_who_inspected_or_treated_is_who_is_said_to_have(season_app, season):
@@ -87,19 +98,6 @@ def test_in_a_team_who_inspected_or_treated_is_who_is_said_to_have(season_app, s
     send(season_app, "route")
     assert season().history.inspections.who.tolist()[-1] == "Dan"
     assert season().batches()[0].who == "Dan"
-
-
-def test_a_plant_that_was_pulled_out_is_recorded_as_gone(season_app, season):
-    go(season_app, "record")
-    for name, value in {"one_row": 3, "one_plant": 4, "one_result": 3}.items():
-        season_app.session_state[key_of(season_app, name)] = value
-    season_app.run()
-    send(season_app, "one")
-    assert "1 recorded" in season_app.success[0].value
-    history = season().history
-    (plant,) = history.inspections.plant
-    assert np.flatnonzero(history.gone(int(history.days[0]))).tolist() == [plant]
-    assert season().treatments() == ()
 
 
 def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_it_was_tapped(season_named):
@@ -157,12 +155,6 @@ def treated(app):
     assert "treatment of the plot" not in texts_of(app)
 
 
-def test_enter_in_a_box_records_nothing(season_app):
-    go(season_app, "record")
-    boxes = [*season_app.number_input, *season_app.text_input]
-    assert not [box.key for box in boxes if box.proto.form_id], "a form may be sent by Enter"
-
-
 def test_a_treatment_lowers_what_is_expected_and_is_taken_back(season_app):
     before = expected(season_app)
     treated(season_app)
@@ -173,7 +165,9 @@ def test_a_treatment_lowers_what_is_expected_and_is_taken_back(season_app):
     assert expected(season_app) == before
 
 
-def test_a_file_of_findings_is_recorded_once(season_app, season):
+def test_a_file_is_recorded_once_and_what_was_left_out_of_one_is_a_warning_that_can_be_closed(
+    season_app, season
+):
     go(season_app, "record")
     table = b"row,number,found,count\n1,1,yes,3\n1,2,no,\n2,5,,\n"
     for says in ("2 recorded, 0 known", "0 recorded, 2 known"):
@@ -181,6 +175,15 @@ def test_a_file_of_findings_is_recorded_once(season_app, season):
         season_app.button(key="record_file").click().run()
         assert says in season_app.success[0].value
     assert season().history.inspections.result.tolist() == [1, 0]
+    table = b"row,number,found,count\n1,3,yes,3\n999,1,yes,\n"
+    boxed(season_app.file_uploader, "findings_file").upload("some.csv", table).run()
+    season_app.button(key="record_file").click().run()
+    assert not season_app.success
+    assert "1 recorded, 0 known" in season_app.warning[0].value
+    assert "1 was left out" in season_app.warning[0].value
+    press(season_app, texts.NOTICE_CLOSE)
+    assert not season_app.warning
+    assert len(season().history.inspections) == 3
 
 
 def test_what_a_route_file_says_that_it_finds_reaches_the_season_and_its_page(season_app, season):
@@ -194,19 +197,6 @@ def test_what_a_route_file_says_that_it_finds_reaches_the_season_and_its_page(se
     assert season().history.detections.tolist() == [0.3, 0.3]
     go(season_app, "season")
     assert "2 inspections find 30 % of what is there, as was said with them" in texts_of(season_app)
-
-
-def test_a_file_of_which_some_was_left_out_is_a_warning_that_can_be_closed(season_app, season):
-    go(season_app, "record")
-    table = b"row,number,found,count\n1,1,yes,3\n999,1,yes,\n"
-    boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
-    season_app.button(key="record_file").click().run()
-    assert not season_app.success
-    assert "1 recorded, 0 known" in season_app.warning[0].value
-    assert "1 was left out" in season_app.warning[0].value
-    press(season_app, texts.NOTICE_CLOSE)
-    assert not season_app.warning
-    assert len(season().history.inspections) == 1
 
 
 def test_words_that_say_neither_and_other_plots_are_asked_about_in_a_file_too(season_app, season):
@@ -235,16 +225,14 @@ def test_words_that_say_neither_and_other_plots_are_asked_about_in_a_file_too(se
     assert sorted(zip(plants, result, strict=True)) == [(1, 1), (2, 1), (3, 1), (4, 0)]
 
 
-def test_a_day_before_the_season_is_refused_with_the_row_and_the_plant(season_app):
+def test_a_day_before_the_season_is_refused_and_a_record_without_a_day_gets_none_silently(
+    season_app, season
+):
     go(season_app, "record")
     table = b"row,number,found,date\n1,1,yes,2026-11-16\n2,3,no,2026-11-15\n"
     boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
     season_app.button(key="record_file").click().run()
     assert season_app.error[0].value.startswith("Row 2, plant 3: The day must be of this season")
-
-
-def test_a_record_without_a_date_beside_dated_ones_gets_none_silently(season_app, season):
-    go(season_app, "record")
     table = b"row,number,date,found\n1,1,2026-11-16,yes\n1,2,,yes\n"
     boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
     season_app.button(key="record_file").click().run()
@@ -295,23 +283,21 @@ def test_what_qgis_corrected_and_added_in_a_copy_comes_in_by_uploading_it(
     assert "1 correction taken" in season_app.success[0].value
 
 
-@pytest.mark.parametrize("data", [b"a,b\n1,2\n", b"row,number,found\n999,1,yes\n", b"\x00\x01"])
-def test_a_file_that_does_not_fit_is_a_sentence(season_app, season, data):
+def test_a_file_that_does_not_fit_is_a_sentence(season_app, season):
     go(season_app, "record")
-    boxed(season_app.file_uploader, "findings_file").upload("found.csv", data).run()
-    season_app.button(key="record_file").click().run()
-    assert not season_app.exception
-    (said,) = [*season_app.error, *season_app.warning]
-    assert "found must" in said.value or "found.csv" in said.value or "0 recorded" in said.value
+    for data in (b"a,b\n1,2\n", b"row,number,found\n999,1,yes\n", b"\x00\x01"):
+        boxed(season_app.file_uploader, "findings_file").upload("found.csv", data).run()
+        season_app.button(key="record_file").click().run()
+        assert not season_app.exception
+        (said,) = [*season_app.error, *season_app.warning]
+        assert "found must" in said.value or "found.csv" in said.value or "0 recorded" in said.value
     assert not len(season().history.inspections)
 
 
-def test_five_days_in_the_app_give_the_digits_of_the_same_days_without_it(
-    season_app, season, tmp_path
-):
+def test_days_in_the_app_give_the_digits_of_the_same_days_without_it(season_app, season, tmp_path):
     mine = season()
     twin = Season.create(tmp_path / "twin.gpkg", mine.plot, mine.records, mine.settings)
-    for day in range(16, 21):
+    for day in range(16, 19):
         on = date(2026, 11, day)
         season_app.date_input(key="day Gate 2026").set_value(on).run()
         go(season_app, "record")
@@ -363,13 +349,15 @@ def test_what_is_typed_before_the_page_of_another_day_is_there_is_of_that_day(se
     assert not season_app.info
 
 
-@pytest.mark.parametrize("form", ["route", "one", "treatment"])
-def test_a_click_on_an_untouched_form_records_nothing(season_app, season, form):
+def test_enter_in_a_box_and_a_click_on_an_untouched_form_record_nothing(season_app, season):
     go(season_app, "record")
+    boxes = [*season_app.number_input, *season_app.text_input]
+    assert not [box.key for box in boxes if box.proto.form_id], "a form may be sent by Enter"
     before = season().revision
-    send(season_app, form)
-    assert "must be said" in season_app.error[0].value
-    assert season().revision == before
+    for form in ("route", "one", "treatment"):
+        send(season_app, form)
+        assert "must be said" in season_app.error[0].value
+        assert season().revision == before
 
 
 def test_only_marked_stops_are_recorded_where_no_number_is_said(season_app, season):
@@ -405,28 +393,24 @@ def fill(app):
     assert None not in said(app)
 
 
-def test_what_was_recorded_does_not_stay_in_the_boxes(season_app, season):
+def test_what_was_recorded_does_not_stay_in_the_boxes_and_what_was_not_does(season_app, season):
     go(season_app, "record")
-    for form, of in (("one", slice(4)), ("route", slice(4, None))):
-        fill(season_app)
+    fill(season_app)
+    for form, of in (("route", slice(4, None)), ("one", slice(4))):
         send(season_app, form)
         assert season_app.success[0].value
         assert said(season_app)[of] == EMPTY[of]
+        if form == "route":
+            assert said(season_app)[:4] == [3, 4, 7, FOUND], "of the other form"
         n = len(season().history.inspections)
         send(season_app, form)
         assert "must be said" in season_app.error[0].value
         assert len(season().history.inspections) == n, "a second click records nothing"
 
 
-def test_what_was_not_recorded_yet_stays_in_the_boxes_of_the_other_form(season_app):
-    go(season_app, "record")
-    fill(season_app)
-    send(season_app, "route")
-    assert said(season_app)[:4] == [3, 4, 7, FOUND]
-
-
-def test_another_day_has_empty_boxes(season_app, season):
+def test_another_day_and_another_season_have_empty_boxes(season_app, season, seasons_folder):
     season().plan(date(2026, 11, 16))
+    shutil.copy(seasons_folder / "Gate 2026.gpkg", seasons_folder / "Other 2026.gpkg")
     go(season_app, "record")
     fill(season_app)
     boxed(season_app.file_uploader, "findings_file").upload("a.csv", b"row,plant,found\n1,1,1\n")
@@ -438,11 +422,6 @@ def test_another_day_has_empty_boxes(season_app, season):
     assert boxed(season_app.file_uploader, "findings_file").value is None
     assert boxed(season_app.number_input, "efficacy").value is None
     assert not boxed(season_app.text_input, "product").value
-
-
-def test_another_season_has_empty_boxes(season_app, seasons_folder):
-    shutil.copy(seasons_folder / "Gate 2026.gpkg", seasons_folder / "Other 2026.gpkg")
-    go(season_app, "record")
     fill(season_app)
     season_app.selectbox(key="season").set_value("Other 2026").run()
     assert season_app.query_params["season"] in ("Other 2026", ["Other 2026"])
@@ -544,46 +523,36 @@ def broken_off(monkeypatch, typed=None):
     monkeypatch.setattr(contradicting, "ask_about_contradictions", ask)
 
 
-@pytest.mark.parametrize("is_more_typed", [False, True])
 def test_a_press_is_carried_out_though_what_is_typed_next_breaks_its_run_off(
-    season_app, season, monkeypatch, is_more_typed
+    season_app, season, monkeypatch
 ):
-    go(season_app, "record")
-    row = key_of(season_app, "one_row")
-    for name, value in {"one_row": 3, "one_plant": 4, "one_result": FOUND}.items():
-        season_app.session_state[key_of(season_app, name)] = value
-    season_app.run()
-
     def type_next():
         st.session_state[row] = 5
 
-    broken_off(monkeypatch, type_next if is_more_typed else None)
-    send(season_app, "one")
-    (plant,) = season().history.inspections.plant
-    numbered = season().plant_numbers
-    assert (numbered.line[plant], numbered.number[plant]) == (3, 4)
-    assert boxed(season_app.number_input, "one_row").value == (5 if is_more_typed else None)
-    assert boxed(season_app.number_input, "one_plant").value is None
-
-
-def test_a_treatment_is_noted_though_the_run_of_the_press_is_broken_off(
-    season_app, season, monkeypatch
-):
     go(season_app, "record")
+    for n, more in enumerate((None, type_next), 1):
+        row = key_of(season_app, "one_row")
+        for name, value in {"one_row": 3, "one_plant": 3 + n, "one_result": FOUND}.items():
+            season_app.session_state[key_of(season_app, name)] = value
+        season_app.run()
+        with monkeypatch.context() as patch:
+            broken_off(patch, more)
+            send(season_app, "one")
+        plant = season().history.inspections.plant[-1]
+        numbered = season().plant_numbers
+        assert len(season().history.inspections) == n
+        assert (numbered.line[plant], numbered.number[plant]) == (3, 3 + n)
+        assert boxed(season_app.number_input, "one_row").value == (5 if more else None)
+        assert boxed(season_app.number_input, "one_plant").value is None
     boxed(season_app.number_input, "efficacy").set_value(90).run()
-    broken_off(monkeypatch)
-    send(season_app, "treatment")
+    with monkeypatch.context() as patch:
+        broken_off(patch)
+        send(season_app, "treatment")
     assert len(season().treatments()) == 1
-
-
-def test_stops_of_the_route_are_recorded_though_the_run_of_the_press_is_broken_off(
-    season_app, season, monkeypatch
-):
-    go(season_app, "record")
     boxed(season_app.number_input, "stops_done").set_value(3).run()
     broken_off(monkeypatch)
     send(season_app, "route")
-    assert len(season().history.inspections) == 3
+    assert len(season().history.inspections) == 5
 
 
 def test_what_is_recorded_into_a_season_that_was_renamed_meanwhile_is_said_not_to_be_kept(

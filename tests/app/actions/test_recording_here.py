@@ -30,25 +30,29 @@ def test_nothing_is_offered_before_a_plant_was_tapped_or_a_season_began(app, sea
     assert keys(app.run()) == set()
 
 
-@pytest.mark.parametrize("result", [FOUND, CLEAN])
-def test_one_press_records_the_plant_shown_on_the_day_shown(tapped, season, result):
+def test_one_press_records_the_plant_and_day_shown_and_is_known_contradicted_or_taken_back(
+    tapped, season
+):
     assert "**Row 3, plant 4**" in texts_of(tapped)
     assert not len(season().history.inspections)
-    tap(tapped, f"here_{result}")
+    assert "here_undo" not in keys(tapped)
+    tap(tapped, "here_1")
     assert "1 recorded" in tapped.success[0].value
     kept = season().history.inspections
-    assert kept.result.tolist() == [result]
+    assert kept.result.tolist() == [FOUND]
     numbered = season().plant_numbers
     (plant,) = kept.plant.tolist()
     assert (numbered.line[plant], numbered.number[plant]) == (3, 4)
     assert kept.date[0].item() == date(2026, 11, 16)
-
-
-def test_it_is_taken_back_beside_it_and_a_second_press_of_the_same_is_known(tapped, season):
-    assert "here_undo" not in keys(tapped)
-    tap(tapped, "here_1")
     tap(tapped, "here_1")
     assert "0 recorded, 1 known" in tapped.success[0].value
+    # what contradicts waits for a word
+    tap(tapped, "here_0")
+    assert season().history.inspections.result.tolist() == [FOUND]
+    assert "contradict" in tapped.warning[0].value
+    tap(tapped, "record_none")
+    assert season().history.inspections.result.tolist() == [FOUND]
+    assert not tapped.warning
     # another plant is looked at meanwhile
     tapped.session_state["history plant"] = 5
     tapped.run()
@@ -58,6 +62,8 @@ def test_it_is_taken_back_beside_it_and_a_second_press_of_the_same_is_known(tapp
     tap(tapped, "here_undo")
     assert not len(season().history.inspections)
     assert "here_undo" not in keys(tapped)
+    tap(tapped, "here_0")
+    assert season().history.inspections.result.tolist() == [CLEAN]
 
 
 def test_after_a_merge_it_is_still_what_is_taken_back(tapped, season, tmp_path):
@@ -69,16 +75,6 @@ def test_after_a_merge_it_is_still_what_is_taken_back(tapped, season, tmp_path):
     tapped.run()
     tap(tapped, "here_undo")
     assert season().history.inspections.plant.tolist() == [9]
-
-
-def test_what_contradicts_waits_for_a_word(tapped, season):
-    tap(tapped, "here_1")
-    tap(tapped, "here_0")
-    assert season().history.inspections.result.tolist() == [FOUND]
-    assert "contradict" in tapped.warning[0].value
-    tap(tapped, "record_none")
-    assert season().history.inspections.result.tolist() == [FOUND]
-    assert not tapped.warning
 
 
 def test_a_day_that_has_not_come_is_not_recorded(tapped):

@@ -24,12 +24,12 @@ def test_what_is_recorded_of_a_day_that_has_not_come_is_said_on_the_pages_of_tod
     season_app, season
 ):
     go(season_app, "record")
-    season_app.date_input[0].set_value(date(2026, 12, 20)).run()
+    season_app.date_input[0].set_value(date(2026, 11, 19)).run()
     for name, value in {"one_row": 3, "one_plant": 4, "one_result": FOUND}.items():
         season_app.session_state[key_of(season_app, name)] = value
     season_app.run()
     send(season_app, "one")
-    said = "of **Sun 20 Dec**, which has not come: it is Mon 16 Nov."
+    said = "of **Thu 19 Nov**, which has not come: it is Mon 16 Nov."
     assert any("1 recorded" in one.value and said in one.value for one in season_app.warning)
     season_app.date_input[0].set_value(date(2026, 11, 16)).run()
     for page in ("today", "season"):

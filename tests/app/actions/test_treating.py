@@ -81,7 +81,9 @@ def test_water_is_noted_by_the_area_in_which_the_plot_is_said(season_app, season
     assert one.application.water_l_ha == 800.0
 
 
-def test_a_dose_stands_beside_its_unit_on_a_phone_too(season_app):
+def test_a_dose_stands_beside_its_unit_which_is_asked_for_and_an_efficacy_is_no_share(
+    season_app, season
+):
     go(season_app, "record")
     kinds = {"number_input", "text_input", "time_input"}
     boxes = [one.key for one in season_app.main if one.type in kinds]
@@ -90,9 +92,6 @@ def test_a_dose_stands_beside_its_unit_on_a_phone_too(season_app):
     assert boxes[at : at + 2] == ["treat dose", "treat unit"]
     began = boxes.index("treat began")
     assert boxes[began : began + 2] == ["treat began", "treat ended"]
-
-
-def test_a_dose_without_a_unit_is_asked_for_and_an_efficacy_that_is_a_share(season_app, season):
     noted(season_app, dose=0.5)
     assert "must have a number and a unit" in season_app.error[0].value
     # a command takes a share: here it would be hardly any
@@ -122,6 +121,8 @@ def test_a_treatment_of_rows_is_of_their_plants_as_in_a_command(season_app, seas
     part_noted(season_app, rows="20-400")
     assert "row 400 is named" in season_app.error[0].value
     assert len(season().treatments()) == 1
+    part_noted(season_app, rows="")
+    assert season().treatments()[-1].place.plants.all(), "without a word it is the whole plot"
 
 
 def test_a_treatment_of_what_is_selected_on_the_map_is_of_those_plants(season_app, season):
@@ -157,13 +158,6 @@ def test_a_treatment_of_a_file_is_of_its_area_whatever_the_zones_are_now(season_
     assert one.place.plants.tolist() == advice.sprayed.tolist()
     part_noted(season_app)
     assert season().treatments()[-1].place.plants.sum() != advice.sprayed.sum(), "it is emptied"
-
-
-def test_without_a_word_on_where_the_whole_plot_was_treated(season_app, season):
-    go(season_app, "record")
-    part_noted(season_app)
-    (one,) = season().treatments()
-    assert one.place.plants.all()
 
 
 @pytest.mark.parametrize("page", ["record", "season"])

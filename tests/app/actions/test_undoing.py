@@ -1,38 +1,35 @@
 """What was recorded is undone, and counts again."""
 
-from datetime import date, timedelta
+from datetime import date
 
 import numpy as np
-import pytest
 
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from tests.app.driving import go, press
 
 
-@pytest.mark.parametrize(
-    ("who", "later", "why"), [("Dana", 0, "Dana"), ("", 1, "17 Nov, and this page is about")]
-)
-def test_what_is_of_another_person_or_day_is_undone_after_a_question(
-    season_app, season, who, later, why
-):
-    on = date(2026, 11, 16) + timedelta(days=later)
-    season().record(Inspections.of([3, 4], [0, 1], on), "phone", who)
-    go(season_app, "record")
-    press(season_app, "Undo")
-    assert len(season().history.inspections) == 2
-    assert why in season_app.warning[-1].value.replace("\u2068", "").replace("\u2069", "")
-    press(season_app, "Leave it")
-    press(season_app, "Undo")
-    press(season_app, "Take it back")
-    assert not len(season().history.inspections)
-    press(season_app, "Redo")
-    assert len(season().history.inspections) == 2
+def test_what_is_of_another_person_or_day_is_undone_after_a_question(season_app, season):
+    n = 0
+    for who, day, why in (("Dana", 16, "Dana"), ("", 17, "17 Nov, and this page is about")):
+        phones = Inspections.of([n + 3, n + 4], [0, 1], date(2026, 11, day))
+        season().record(phones, "phone", who)
+        go(season_app, "record")
+        press(season_app, "Undo")
+        assert len(season().history.inspections) == n + 2
+        assert why in season_app.warning[-1].value.replace("\u2068", "").replace("\u2069", "")
+        press(season_app, "Leave it")
+        press(season_app, "Undo")
+        press(season_app, "Take it back")
+        assert len(season().history.inspections) == n
+        press(season_app, "Redo")
+        n += 2
+        assert len(season().history.inspections) == n
 
 
 def test_what_was_recorded_long_ago_can_be_shown_and_undone(season_app, season):
-    for k in range(22):
-        season().record(Inspections.of([k], [0], date(2026, 11, 16)), "typed in")
+    typed = [(Inspections.of([k], [0], date(2026, 11, 16)), "typed in") for k in range(22)]
+    season().record_all(typed)
     go(season_app, "record")
     assert not [one for one in season_app.button if one.key == "undo 2"]
     press(season_app, "Show 2 more")

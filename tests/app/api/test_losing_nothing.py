@@ -16,8 +16,8 @@ from tests.app.api.phone import ENDINGS, Phone
 from tests.monitoring.phone import told
 from tests.monitoring.rules import keeps_the_rules
 
-DISCONNECTS = int(os.environ.get("FIELDMON_DISCONNECTS", "60"))
-ROUNDS = int(os.environ.get("FIELDMON_ROUNDS", "8"))
+DISCONNECTS = int(os.environ.get("FIELDMON_DISCONNECTS", "25"))
+ROUNDS = int(os.environ.get("FIELDMON_ROUNDS", "4"))
 
 
 def holds_exactly(path, phones):

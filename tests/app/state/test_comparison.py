@@ -40,22 +40,27 @@ def compared(plot, strategies, seeds=4, pest_in_weather=None):
     return running
 
 
-def test_a_strategy_compared_with_its_own_twin_differs_by_nothing(plot):
-    once, again = (compared(plot, SHORT).seasons() for _ in range(2))
+@pytest.fixture(scope="module")
+def short(plot):
+    """Return the seasons of both strategies, compared once."""
+    return compared(plot, SHORT).seasons()
+
+
+def test_a_strategy_compared_with_its_own_twin_differs_by_nothing(plot, short):
+    again = compared(plot, SHORT).seasons()
     for strategy in SHORT:
-        for one, other in zip(once[strategy], again[strategy], strict=True):
+        for one, other in zip(short[strategy], again[strategy], strict=True):
             assert one.left.tolist() == other.left.tolist()
 
 
-def test_every_strategy_meets_the_same_insects_on_the_first_morning(plot):
-    seasons = compared(plot, SHORT).seasons()
-    starts = [[int(s.new[0]) for s in walked] for walked in seasons.values()]
+def test_every_strategy_meets_the_same_insects_on_the_first_morning(short):
+    starts = [[int(s.new[0]) for s in walked] for walked in short.values()]
     assert starts[0] == starts[1]
     assert len(set(starts[0])) > 1
 
 
-def test_seasons_of_a_pest_are_its_own_whatever_a_chance_a_night_says(plot):
-    usual = compared(plot, SHORT[:1]).seasons()[SHORT[0]]
+def test_seasons_of_a_pest_are_its_own_whatever_a_chance_a_night_says(plot, short):
+    usual = short[SHORT[0]]
     of_pest = compared(
         plot, SHORT[:1], pest_in_weather=PestInWeather(shipped_pest("whitefly"))
     ).seasons()
@@ -90,8 +95,8 @@ def test_a_stopped_comparison_goes_on_where_it_stood(plot):
     assert running.done > part
 
 
-def test_curves_stay_within_their_interval_and_percent(plot):
-    walked = next(iter(compared(plot, SHORT).seasons().values()))
+def test_curves_stay_within_their_interval_and_percent(short):
+    walked = next(iter(short.values()))
     mean, low, high = curve(walked)
     assert (low <= mean).all()
     assert (mean <= high).all()

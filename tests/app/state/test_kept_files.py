@@ -49,7 +49,28 @@ def brought(app, tmp_path):
     return app
 
 
-def test_a_reload_finds_files_answers_rows_and_what_was_drawn(brought):
+def test_files_are_found_by_whoever_has_the_whole_address_and_nobody_takes_them_out(brought):
+    (kept,) = kept_files.folder().iterdir()
+    assert len(list(kept.iterdir())) == 3
+    phone = reloaded(brought)
+    assert word_of(phone) == kept.name, "the same address, as long as nothing was changed"
+    # what a phone takes out is gone there alone
+    go(phone, "plot").button(key="forget record").click().run()
+    own = kept_files.folder() / word_of(phone)
+    assert len(list(own.iterdir())) == 2
+    row_box(phone, "row_spacing").set_value(7.0).run()
+    office = go(reloaded(brought), "plot")
+    assert "1 of 1 records shown" in texts_of(office)
+    assert row_box(office, "row_spacing").value != 7.0
+    phone.button(key="forget plot").click().run()
+    assert not own.exists()
+    assert "files" not in phone.query_params
+    assert len(list(kept.iterdir())) == 3
+    word = kept.name
+    assert len(word) == 22
+    for guess in ("", word[:-1], f"../{word}", "x" * 22, f"{word}/.."):
+        assert "Bring a plot" in texts_of(opened(texts.UPLOAD, files=guess))
+    # a reload finds files, answers, rows and what was drawn
     row_box(brought, "row_spacing").set_value(7.0).run()
     brought.selectbox(key="draw_kind").set_value("gate").run()
     brought.text_input(key="draw_typed").set_value("35.1501,30.3601").run()
@@ -63,32 +84,6 @@ def test_a_reload_finds_files_answers_rows_and_what_was_drawn(brought):
     assert "1 of 1 records shown" in texts_of(again)
     assert "In use" in texts_of(again)
     assert "the gate: 1" in texts_of(again)
-
-
-@pytest.mark.usefixtures("brought")
-def test_nobody_sees_files_without_the_whole_word():
-    word = Path(next(kept_files.folder().iterdir())).name
-    assert len(word) == 22
-    for guess in ("", word[:-1], f"../{word}", "x" * 22, f"{word}/.."):
-        assert "Bring a plot" in texts_of(opened(texts.UPLOAD, files=guess))
-
-
-def test_what_a_phone_takes_out_is_gone_there_and_kept_for_whoever_gave_it_the_address(brought):
-    (kept,) = kept_files.folder().iterdir()
-    assert len(list(kept.iterdir())) == 3
-    phone = reloaded(brought)
-    assert word_of(phone) == kept.name, "the same address, as long as nothing was changed"
-    go(phone, "plot").button(key="forget record").click().run()
-    own = kept_files.folder() / word_of(phone)
-    assert len(list(own.iterdir())) == 2
-    row_box(phone, "row_spacing").set_value(7.0).run()
-    office = go(reloaded(brought), "plot")
-    assert "1 of 1 records shown" in texts_of(office)
-    assert row_box(office, "row_spacing").value != 7.0
-    phone.button(key="forget plot").click().run()
-    assert not own.exists()
-    assert "files" not in phone.query_params
-    assert len(list(kept.iterdir())) == 3
 
 
 def test_what_nobody_came_back_to_for_a_day_is_removed():

@@ -44,7 +44,7 @@ def test_the_answer_stands_at_the_top_and_the_zones_on_the_map(recorded):
     assert metric(recorded, texts.DECIDE_ENOUGH).endswith("%")
 
 
-def test_costs_are_of_the_area_in_which_the_plot_is_said(recorded):
+def test_costs_are_of_the_area_in_which_the_plot_is_said_and_the_answer_follows(recorded):
     go(recorded, "decide")
     area = metric(recorded, texts.DECIDE_AREA)
     assert "to treat 1 ha costs 1, a zone" in texts_of(recorded)
@@ -58,11 +58,7 @@ def test_costs_are_of_the_area_in_which_the_plot_is_said(recorded):
     assert now.split()[1] == "dunam"
     # the same share of the plot
     assert now.split()[2:] == area.split()[2:]
-
-
-def test_costs_are_changed_there_and_the_answer_follows(recorded):
-    go(recorded, "decide")
-    recorded.number_input(key="decide per_ha").set_value(0.0).run()
+    box.set_value(0.0).run()
     assert not recorded.exception
     before = metric(recorded, texts.DECIDE_AREA)
     assert "(100 %)" in before

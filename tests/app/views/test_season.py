@@ -7,7 +7,7 @@ import numpy as np
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring.estimates import figures_of_day
-from tests.app.driving import begun, boxed, go, metric, texts_of
+from tests.app.driving import boxed, go, metric, texts_of
 
 
 def test_without_a_season_one_can_be_begun(app):
@@ -17,9 +17,8 @@ def test_without_a_season_one_can_be_begun(app):
     assert boxed(app.text_input, "season_name")
 
 
-def test_a_season_just_begun_has_found_nothing_and_says_what_is_expected(app):
-    begun(app)
-    go(app, "season")
+def test_a_season_just_begun_has_found_nothing_and_says_what_is_expected(season_app):
+    app = go(season_app, "season")
     assert not app.exception
     assert metric(app, texts.FOUND_EVER) == "0"
     assert metric(app, texts.INSPECTED_EVER).startswith("0 / ")

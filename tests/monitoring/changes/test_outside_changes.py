@@ -50,7 +50,11 @@ EDITS = {
 
 
 @pytest.mark.parametrize("edit", EDITS.values(), ids=EDITS)
-def test_a_changed_inspection_is_refused_by_name_until_it_is_taken_as_a_correction(path, edit):
+def test_a_changed_inspection_is_refused_by_name_until_it_is_a_correction_of_either_copy(
+    path, tmp_path, edit
+):
+    other, was = (shutil.copy(path, tmp_path / name) for name in ("other.gpkg", "was.gpkg"))
+    there, before = Season(other), Season(was)
     outside(path, edit)
     sentence = refused(path)
     assert "row 1 of the layer inspections (clean at row" in sentence
@@ -62,7 +66,20 @@ def test_a_changed_inspection_is_refused_by_name_until_it_is_taken_as_a_correcti
     assert (last.kind, last.who, last.rows) == ("corrections", "Ann", 1)
     assert season.status(BEGINS).day == 0
     season.store.check()
-    assert season.verify() == ()
+    corrected = season.history.states(0).tolist()
+    done = season.merge(there)  # where it was not corrected
+    assert (done.new, done.taken_back, done.contradictions) == (0, 0, ())
+    there.merge(season)
+    for one in (season, there):
+        assert one.history.states(0).tolist() == corrected
+    assert season.verify() == there.verify() == ()
+    # undone it brings back what stood there
+    season.undo()
+    there.merge(season)
+    for one in (season, there):
+        assert one.evening(BEGINS).tolist() == before.evening(BEGINS).tolist()
+        assert check_against_log(one) == ()
+        assert one.batches()[0].undone
 
 
 def test_a_result_changed_to_gone_is_a_correction_and_is_taken_back(path):
@@ -177,27 +194,6 @@ def test_what_an_inspection_finds_is_corrected_and_refused_as_the_rest_of_it(pat
     outside(path, "UPDATE inspections SET detects = 30 WHERE fid = 1")
     with pytest.raises(FileProblem, match="above 0, and 1 at most"):
         Season(path).correct("Ann")
-
-
-@pytest.mark.parametrize("edit", EDITS.values(), ids=EDITS)
-def test_undoing_a_correction_brings_back_what_stood_there_in_either_copy(path, tmp_path, edit):
-    other, was = (shutil.copy(path, tmp_path / name) for name in ("other.gpkg", "was.gpkg"))
-    season, there, before = Season(path), Season(other), Season(was)
-    outside(path, edit)
-    season.correct("Ann")
-    corrected = season.history.states(0).tolist()
-    done = season.merge(there)  # where it was not corrected
-    assert (done.new, done.taken_back, done.contradictions) == (0, 0, ())
-    there.merge(season)
-    for one in (season, there):
-        assert one.history.states(0).tolist() == corrected
-    assert season.verify() == there.verify() == ()
-    season.undo()
-    there.merge(season)
-    for one in (season, there):
-        assert one.evening(BEGINS).tolist() == before.evening(BEGINS).tolist()
-        assert check_against_log(one) == ()
-        assert one.batches()[0].undone
 
 
 def test_what_was_corrected_twice_goes_back_step_by_step(path):

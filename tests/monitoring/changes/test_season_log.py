@@ -190,9 +190,12 @@ def test_a_file_that_says_otherwise_than_its_log_is_found(path, change, said):
 
 
 @pytest.mark.parametrize(
-    "other", [{"waiting_days": 3}, {"by_label": ""}, {"by_label": None}, {"irac_groups": None}]
+    ("row", "other"),
+    [
+        *((0, other) for other in ({"waiting_days": 3}, {"by_label": None})),
+        *((1, other) for other in ({"by_label": ""}, {"irac_groups": None})),
+    ],
 )
-@pytest.mark.parametrize("row", [0, 1])
 def test_what_labels_added_and_that_they_did_is_held_to_the_log(path, tmp_path, other, row):
     """Also if who changes it gives the row its new digest, and of a row that stands back."""
     season, theirs = Season(path), Season(shutil.copy(path, tmp_path / "other.gpkg"))

@@ -22,7 +22,7 @@ from tests.monitoring.seasons import BEGINS, state, three_results
 from tests.monitoring.working import day_by_day, one_by_one, started
 
 SEASONS_OF_OLD = Path(__file__).parents[1] / "seasons_of_old"
-KILLS = int(os.environ.get("FIELDMON_KILLS", "8"))
+KILLS = int(os.environ.get("FIELDMON_KILLS", "4"))
 
 
 def test_a_process_killed_at_any_moment_leaves_a_whole_season(path):
@@ -62,7 +62,7 @@ def test_what_is_no_season_is_not_called_a_damaged_one(content, tmp_path):
 
 
 def test_two_processes_recording_at_once_lose_nothing(path):
-    before, rounds = state(path), 25
+    before, rounds = state(path), 8
     both = [started(one_by_one, path, who, rounds) for who in (0, 1)]
     for process in both:
         process.join(240)

@@ -26,11 +26,6 @@ TEAM = (
 )
 
 
-@pytest.fixture
-def season(tmp_path):
-    return a_season(tmp_path / "season.gpkg")
-
-
 def change(season, **choices):
     season.change(replace(season.settings, **choices), season.settings)
 

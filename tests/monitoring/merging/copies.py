@@ -32,7 +32,7 @@ from fieldmon.plot.grid import plant_numbers
 from tests.monitoring.phone import JPEG
 from tests.monitoring.seasons import BEGINS, a_plot
 
-PAIRS = int(os.environ.get("FIELDMON_MERGES", "40"))
+PAIRS = int(os.environ.get("FIELDMON_MERGES", "20"))
 PLOT = a_plot()
 GRID = PLOT.grid
 LABEL = plant_numbers(GRID)

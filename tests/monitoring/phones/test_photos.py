@@ -33,7 +33,7 @@ def a_photo(finding, name="one", data=JPEG):
     return Photo(name, finding, data, NOW, (35.1501, 30.3601), 4.0)
 
 
-def test_a_photo_comes_out_byte_for_byte_and_is_kept_once(season, key):
+def test_a_photo_is_kept_once_byte_for_byte_and_gdal_finds_it_at_its_plant(season, key):
     one = a_finding(3, FOUND)
     take(season, key, [one], NOW)
     assert keep(season, key, a_photo(one.id))
@@ -43,6 +43,39 @@ def test_a_photo_comes_out_byte_for_byte_and_is_kept_once(season, key):
     assert [(photo.id, photo.plant, photo.scout) for photo in photos_of(season)] == [
         ("one", 3, "Ann")
     ]
+    places = pyogrio.read_dataframe(season.path, layer="photo_places")
+    assert places.plant.tolist() == [3]
+    assert bytes(places.data[0]) == JPEG
+    assert abs(places.get_coordinates().to_numpy() - season.plot.grid.lonlat([3])).max() < 1e-9
+    are_related_as_the_standard_asks(season)
+
+
+def are_related_as_the_standard_asks(season):
+    """OGC 18-000, clauses 7.2 to 7.4: relations, extensions, mapping and media tables."""
+    with closing(sqlite3.connect(season.path)) as db:
+        (relation,) = db.execute(
+            "SELECT base_table_name, base_primary_column, related_table_name, "
+            "related_primary_column, relation_name, mapping_table_name FROM gpkgext_relations"
+        )
+        assert relation == ("inspections", "fid", "photos", "id", "media", "inspections_photos")
+        told = db.execute(
+            "SELECT table_name, column_name, extension_name, scope FROM gpkg_extensions"
+        )
+        assert sorted(told) == [
+            (name, None, "gpkg_related_tables", "read-write")
+            for name in ("gpkgext_relations", "inspections_photos")
+        ]
+        kinds = dict(db.execute("SELECT table_name, data_type FROM gpkg_contents"))
+        assert kinds["photos"] == kinds["inspections_photos"] == "attributes"
+        columns = {row[1]: (row[2], row[5]) for row in db.execute("PRAGMA table_info(photos)")}
+        assert columns["id"] == ("INTEGER", 1)
+        assert (columns["data"][0], columns["content_type"][0]) == ("BLOB", "TEXT")
+        (pair,) = db.execute("SELECT base_id, related_id FROM inspections_photos")
+        there = db.execute(
+            "SELECT i.plant, p.photo FROM inspections i, photos p WHERE i.fid = ? AND p.id = ?",
+            pair,
+        )
+        assert there.fetchone() == (3, "one")
 
 
 def test_a_photo_may_come_before_what_it_belongs_to(season, key):
@@ -82,47 +115,6 @@ def test_photos_have_a_limit_in_number_and_need_a_key(season, key, monkeypatch):
     scouts.withdraw_key(season, "Ann")
     with pytest.raises(AccessError):
         keep(season, key, a_photo("x", "three"))
-
-
-def test_gdal_finds_the_photo_at_its_plant(season, key):
-    one = a_finding(3, FOUND)
-    take(season, key, [one], NOW)
-    keep(season, key, a_photo(one.id))
-    places = pyogrio.read_dataframe(season.path, layer="photo_places")
-    assert places.plant.tolist() == [3]
-    assert bytes(places.data[0]) == JPEG
-    assert abs(places.get_coordinates().to_numpy() - season.plot.grid.lonlat([3])).max() < 1e-9
-
-
-def test_photos_are_related_to_inspections_as_the_standard_asks(season, key):
-    """OGC 18-000, clauses 7.2 to 7.4: relations, extensions, mapping and media tables."""
-    one = a_finding(3, FOUND)
-    take(season, key, [one], NOW)
-    keep(season, key, a_photo(one.id))
-    with closing(sqlite3.connect(season.path)) as db:
-        (relation,) = db.execute(
-            "SELECT base_table_name, base_primary_column, related_table_name, "
-            "related_primary_column, relation_name, mapping_table_name FROM gpkgext_relations"
-        )
-        assert relation == ("inspections", "fid", "photos", "id", "media", "inspections_photos")
-        told = db.execute(
-            "SELECT table_name, column_name, extension_name, scope FROM gpkg_extensions"
-        )
-        assert sorted(told) == [
-            (name, None, "gpkg_related_tables", "read-write")
-            for name in ("gpkgext_relations", "inspections_photos")
-        ]
-        kinds = dict(db.execute("SELECT table_name, data_type FROM gpkg_contents"))
-        assert kinds["photos"] == kinds["inspections_photos"] == "attributes"
-        columns = {row[1]: (row[2], row[5]) for row in db.execute("PRAGMA table_info(photos)")}
-        assert columns["id"] == ("INTEGER", 1)
-        assert (columns["data"][0], columns["content_type"][0]) == ("BLOB", "TEXT")
-        (pair,) = db.execute("SELECT base_id, related_id FROM inspections_photos")
-        there = db.execute(
-            "SELECT i.plant, p.photo FROM inspections i, photos p WHERE i.fid = ? AND p.id = ?",
-            pair,
-        )
-        assert there.fetchone() == (3, "one")
 
 
 _ASK_QGIS = """

@@ -148,12 +148,12 @@ def test_a_changed_export_is_told_from_plants_inspected_anew_on_another_day(seas
 @pytest.fixture
 def varied(season):
     """Give a season with finds and clean plants, at times to the second, by several people."""
-    n = 12
+    n = 6
     season.record(
         Inspections.of(
-            np.arange(310, 310 + n), np.arange(n) % 2, np.datetime64("2026-05-01") + np.arange(n),
-            second=[np.nan, *(30_000.0 + 61 * np.arange(1, n))], who=["Ann", "Jörg", "דנה"] * 4,
-            count=np.where(np.arange(n) % 2, np.arange(n) / 2, np.nan), notes=["", "+3, or 4"] * 6,
+            np.arange(310, 310 + n), np.arange(n) % 2, np.datetime64("2026-04-07") + np.arange(n),
+            second=[np.nan, *(30_000.0 + 61 * np.arange(1, n))], who=["Ann", "Jörg", "דנה"] * 2,
+            count=np.where(np.arange(n) % 2, np.arange(n) / 2, np.nan), notes=["", "+3, or 4"] * 3,
             detects=np.full(n, 0.3),
         ),
         "varied",
@@ -206,15 +206,15 @@ def test_the_table_that_is_exported_comes_back_as_spreadsheets_save_it(varied, t
         assert from_spreadsheet(varied, lines, tmp_path, **way) == (0, 0, 0), way
     edited = [{**line} for line in lines]
     of = {line["who"] + line["date"]: line for line in edited}
-    of["Ann2026-05-04"].update(result="clean", count="")
-    of["Jörg2026-05-02"].update(who="Dan", notes="other")
-    of["דנה2026-05-03"].update(number="2", lon="", lat="")
+    of["Ann2026-04-10"].update(result="clean", count="")
+    of["Jörg2026-04-08"].update(who="Dan", notes="other")
+    of["דנה2026-04-09"].update(number="2", lon="", lat="")
     edited.append({**lines[0], "row": "1", "number": "2", "lon": "", "lat": "", "digest": ""})
     # nor is it beside what is changed
     for way in (german, german | {"code": "cp1252"}, american):
         assert from_spreadsheet(varied, edited, tmp_path, **way) == (3, 1, 1), way
         now = varied.history.inspections
-        (moved,) = numbers.number[now.plant[now.date == np.datetime64("2026-05-03")]]
+        (moved,) = numbers.number[now.plant[now.date == np.datetime64("2026-04-09")]]
         assert moved == 2, way
         assert "Dan" in now.who.tolist()
         assert varied.verify() == ()
@@ -246,7 +246,7 @@ def test_what_another_season_of_the_plot_says_in_one_table_is_none_of_this(varie
     name, file = varied.plot.field.name, varied.path.stem
     lines = [{"plot": f"{name} ({file})"} | line for line in a_table(varied)]
     theirs = [line | {"plot": f"{name} (thrips)"} for line in lines]
-    (one,) = (line for line in theirs if line["who"] + line["date"] == "Ann2026-05-04")
+    (one,) = (line for line in theirs if line["who"] + line["date"] == "Ann2026-04-10")
     one.update(result="clean", count="")
     assert from_spreadsheet(varied, lines + theirs, tmp_path) == (0, 0, 0)
     table = tmp_path / "table" / "edited.csv"
@@ -268,11 +268,11 @@ def test_an_edit_that_makes_an_inspection_like_another_is_none_that_was_taken_al
 ):
     season = Season(path)
     season.record(
-        Inspections.of([300, 300, 301, 302], [1, 0, 0, 0], date(2026, 6, 6),
+        Inspections.of([300, 300, 301, 302], [1, 0, 0, 0], date(2026, 4, 7),
                        second=[25_200.0, 46_800.0, np.nan, np.nan]),
         "today", confirmed=True,
     )  # fmt: skip
-    lines = [line for line in a_table(season) if line["date"] == "2026-06-06"]
+    lines = [line for line in a_table(season) if line["date"] == "2026-04-07"]
     (found,) = (line for line in lines if line["result"] == "found")
     found["result"], found["count"] = "clean", ""
     for gone in (("time",), ("time", "row", "row_name", "number")):
@@ -305,8 +305,8 @@ def test_a_table_without_faces_moves_nothing_to_another_face(tmp_path):
 
 def test_seconds_that_a_file_may_not_show_are_no_correction_and_counted(path, tmp_path):
     season = Season(path)
-    season.record(Inspections.of([300], [0], date(2026, 6, 6), second=[25_231.0]), "today")
-    (line,) = (line for line in a_table(season) if line["date"] == "2026-06-06")
+    season.record(Inspections.of([300], [0], date(2026, 4, 7), second=[25_231.0]), "today")
+    (line,) = (line for line in a_table(season) if line["date"] == "2026-04-07")
     for at, n, n_seconds in (("07:00:31", 0, 0), ("07:00:00", 0, 1), ("07:00:45", 1, 0)):
         assert from_spreadsheet(season, [line | {"time": at}], tmp_path) == (n, 0, 0), at
         file = tmp_path / "table" / "edited.csv"
@@ -315,8 +315,8 @@ def test_seconds_that_a_file_may_not_show_are_no_correction_and_counted(path, tm
 
 def test_dates_whose_order_nothing_tells_are_refused(path, tmp_path):
     season = Season(path)
-    season.record(Inspections.of([300, 301], [0, 1], date(2026, 6, 6)), "today")
-    lines = [line for line in a_table(season) if line["date"] == "2026-06-06"]
+    season.record(Inspections.of([300, 301], [0, 1], date(2026, 5, 5)), "today")
+    lines = [line for line in a_table(season) if line["date"] == "2026-05-05"]
     assert from_spreadsheet(season, lines, tmp_path, day="{m}/{d}/{y}") == (0, 0, 0)
     lines[0]["date"] = "2026-05-06"
     with pytest.raises(ObservationError, match="day or month first"):

@@ -158,7 +158,8 @@ def test_orders_of_another_program_and_a_connection_that_it_takes_are_each_said_
     header = header_of(*ROBOT)
 
     def report(order_id):
-        heard.put(("state", encoded("state", header, STATE | {"orderId": order_id})))
+        state = STATE | {"orderId": order_id, "errors": []}
+        heard.put(("state", encoded("state", header, state)))
 
     report("day")
     assert driver._wait() == ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.kinds import checked
 from fieldmon.monitoring.changes import season_log
@@ -102,6 +102,7 @@ def _log_merged(
     `came` is which treatments do not count any more, and what both corrected, in words.
     """
     ended, corrected = came
+    both: dict[str, Any] = {"corrected": corrected} if corrected else {}
     undone = [
         f"{one.application.product or 'a product that nobody named'} on {one.on}"
         for one, why in ended
@@ -119,7 +120,7 @@ def _log_merged(
         undone=undone,
         chosen=taken.merged.chosen,
         more=str(taken.merged.more),
-        **({"corrected": corrected} if corrected else {}),
+        **both,
     )
 
 

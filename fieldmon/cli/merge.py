@@ -23,7 +23,8 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
 
     For a folder that is synchronised, or two people who worked apart. What was taken back in one
     copy is taken back. Results that contradict one another are listed; both are kept, and fieldmon
-    undo takes out what was wrong.
+    undo takes out what was wrong. An inspection that both copies corrected counts once: as it was
+    corrected last, which is said.
 
     Example: fieldmon merge season.gpkg "season (conflict).gpkg"
     """

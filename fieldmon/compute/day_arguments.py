@@ -26,12 +26,13 @@ Day: TypeAlias = date | Any
 #: a time of day, likewise: a time, or a text as "07:00"
 TimeOfDay: TypeAlias = time | Any
 
-# a time of day, and then a zone: numpy would turn it into UTC
+# a year or a month; and a time of day, and then a zone: numpy would turn it into UTC
+_MONTH = re.compile(r"\s*[-+]?\d+(?:-\d\d?)?\s*")
 _OF_ZONE = re.compile(r"[T ]\d\d.*(?:Z|[+-]\d\d(?::?\d\d)?)\s*$", re.IGNORECASE)
 
 
 def days_of(given: object) -> NDArray[np.datetime64] | None:
-    """Return days, whatever they were given as; None: they are none.
+    """Return days, whatever they were given as; None: they are none, as a month is.
 
     Raise `ObservationError` where one names a zone.
 
@@ -39,12 +40,17 @@ def days_of(given: object) -> NDArray[np.datetime64] | None:
     --------
     >>> days_of("2026-11-18"), days_of(20_000)
     (array('2026-11-18', dtype='datetime64[D]'), None)
+    >>> days_of("2026-11")
     """
     import numpy as np  # noqa: PLC0415 - a date is read without it
 
     try:
         array = _local(given)
         if array.size and array.dtype.kind not in "MUO":
+            return None
+        if array.dtype.kind == "M" and _is_longer(array.dtype) and not np.isnat(array).all():
+            return None
+        if array.dtype.kind in "OU" and any(map(_is_no_day, array.ravel().tolist())):
             return None
         days = array.astype("datetime64[D]", copy=False)
     except (TypeError, ValueError, OverflowError):
@@ -67,7 +73,7 @@ def seconds_of(given: object) -> NDArray[np.float64]:
     import numpy as np  # noqa: PLC0415 - as above
 
     array = _local(given)
-    if array.dtype.kind == "M" and np.datetime_data(array.dtype)[0] in "DWMY":
+    if array.dtype.kind == "M" and (array.dtype == "datetime64[D]" or _is_longer(array.dtype)):
         return np.full(array.shape, np.nan)
     times = array.astype("datetime64[us]")
     second = np.asarray((times - times.astype("datetime64[D]")) / np.timedelta64(1, "s"))
@@ -84,6 +90,23 @@ def _local(given: object) -> NDArray[Any]:
             if _names_zone(one):
                 raise ObservationError(_no_plot(one))
     return array
+
+
+def _is_longer(kind: Any) -> bool:  # noqa: ANN401 - numpy's
+    """Return whether times of a kind of numpy's are longer than days."""
+    import numpy as np  # noqa: PLC0415 - as above
+
+    return np.datetime_data(kind)[0] in {"W", "M", "Y"}
+
+
+def _is_no_day(given: Any) -> bool:  # noqa: ANN401 - anything
+    """Return whether something is a week, month or year, of which numpy would take some day."""
+    if isinstance(given, str):
+        return _MONTH.fullmatch(given) is not None
+    kind = type(given).__name__
+    if kind == "Period":  # pandas's
+        return bool(given.start_time.date() != given.end_time.date())
+    return kind == "datetime64" and _is_longer(given.dtype)
 
 
 def _names_zone(given: object) -> bool:
@@ -126,7 +149,7 @@ def day_in(
                 raise SettingError(_no_plot(given))
             given = local(given)
         day = given.date()
-    elif type(given).__name__ == "datetime64":
+    elif type(given).__name__ == "datetime64" and not _is_longer(given.dtype):
         day = given.astype("datetime64[D]").item()
     return day if isinstance(day, date) else given
 

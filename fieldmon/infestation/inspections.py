@@ -196,6 +196,9 @@ class Inspections:
         if dates is None:
             raise _no_date(on)
         must_be_known("Columns of inspections", columns, list(_TYPES))
+        for name, given in columns.items():
+            if _TYPES[name] is object and texts_of(given) is None:  # bytes may be no text
+                raise _wrong(name, given)
         must_share_index("inspections", {"plant": plant, "result": result, "on": on, **columns})
         seconds = seconds_of(on)
         if "second" in columns and not np.isnan(seconds).all():

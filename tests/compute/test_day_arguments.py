@@ -13,6 +13,8 @@ from fieldmon.errors import SettingError
 def test_days_are_dates_texts_or_numpys_and_no_numbers():
     for good in ("2026-11-18", date(2026, 11, 18), datetime(2026, 11, 18, 5), np.datetime64("NaT")):
         assert days_of(good) is not None
+    days = pd.Series(pd.period_range("2026-11-18", periods=2, freq="D"))
+    assert days_of(days).astype(str).tolist() == ["2026-11-18", "2026-11-19"]
     assert days_of([date(2026, 11, 18), None]).astype(str).tolist() == ["2026-11-18", "NaT"]
     for bad in (
         None,
@@ -26,6 +28,12 @@ def test_days_are_dates_texts_or_numpys_and_no_numbers():
         pd.NaT,
         [[1], [1, 2]],
         True,
+        # numpy takes a day of what is longer than one
+        "2026-11",
+        ["2026-11-18", "2026"],
+        np.array(["2026-11", "NaT"], "datetime64[M]"),
+        [np.datetime64("2026-11-18", "W")],
+        pd.Series(pd.period_range("2026-11", periods=2, freq="M")),
     ):
         assert days_of(bad) is None
 
@@ -38,6 +46,7 @@ def test_days_are_dates_texts_or_numpys_and_no_numbers():
         ("2026-11-18T05:00", date(2026, 11, 18)),  # as `plan_day` takes it
         (np.datetime64("2026-11-18T05"), date(2026, 11, 18)),
         (np.datetime64(10**9, "D"), np.datetime64(10**9, "D")),
+        (np.datetime64("2026-11"), np.datetime64("2026-11")),
         (3, 3),
     ],
 )

@@ -127,7 +127,9 @@ def test_missing_texts_are_nothing_whatever_they_stand_in(who):
     assert Inspections.of([1, 2], [0, 1], MONDAY, who=[np.nan, np.nan]).who.tolist() == ["", ""]
 
 
-@pytest.mark.parametrize("who", [[7, 8], np.array([7, 8]), ["Ann", 7], [["Ann"], ["Ben"]]])
+@pytest.mark.parametrize(
+    "who", [[7, 8], np.array([7, 8]), ["Ann", 7], [["Ann"], ["Ben"]], [b"Ann", b"Ben"]]
+)
 def test_what_is_no_text_is_refused_by_name(who):
     with pytest.raises(ObservationError, match="who of inspections must be texts"):
         Inspections.of([1, 2], [0, 1], MONDAY, who=who)

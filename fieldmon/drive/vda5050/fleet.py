@@ -48,6 +48,8 @@ _POLL_S = 0.2
 _SILENT_S = 45.0
 # so often, heard each time, a robot may leave a thing undone
 _MOST_TRIES = 24
+# so often in a row our connection is lost as soon as it is made before that is said
+_MOST_CUT_OFF = 3
 # how far from a node it may pass where nobody said how wide it is, and nothing more is known
 _FREE_M = 0.3
 _OVER = {"FINISHED", "FAILED"}
@@ -101,6 +103,9 @@ class Vda5050Robot:
         self._has_order, self._is_lost, self._told_until = False, False, False
         self._state: dict[str, Any] | None = None
         self._told = ""
+        #: what is said once a run, however often it holds
+        self._told_once_a_run: set[str] = set()
+        self._had_ours = False
         self._traffic = traffic
         self._day_clock = RobotClock(say)
         #: told where the robot says that it is: seconds, and ``(2,)`` metres of the plot's frame
@@ -319,19 +324,18 @@ class Vda5050Robot:
         wanted
             What is waited for once it has.
         """
-        sent, tries, before, said = -math.inf, 0, self._state, ""
+        sent, tries, before = -math.inf, 0, self._state
         self._heard_at = time.monotonic()
         while True:
             now, in_vain = time.monotonic(), 0
             if not has() and now - sent > _AGAIN_S:
                 if math.isfinite(sent) and self._state is not before and not self._stands():
                     in_vain = tries = tries + 1
-                    last = said
                     said = f"The robot has not {what}{self._complaint()}."
                     if tries > _MOST_TRIES:
                         return said
-                    if said != last:
-                        self._say(said)
+                    other = self._other_order()
+                    self._say_once(said, said.replace(other, "") if other else said)
                 send(in_vain)
                 sent, before = now, self._state
             why = self._wait()
@@ -363,13 +367,36 @@ class Vda5050Robot:
     def _complaint(self) -> str:
         """Return in words what the robot reports, to be put at the end of a sentence."""
         told = [one.get("errorDescription") or one["errorType"] for one in self._heard["errors"]]
-        return f"; it reports: {', '.join(told)}" if told else ", and does not say why"
+        if told:
+            return f"; it reports: {', '.join(told)}"
+        other = self._other_order()
+        return (
+            f": it has the order {other}, which is not ours" if other else ", and does not say why"
+        )
+
+    def _other_order(self) -> str:
+        """Return which order the robot reports, if it is none of this run; "": it has none."""
+        order = str(self._heard["orderId"])
+        return "" if order == self._known["orderId"] else order
+
+    def _say_once(self, sentence: str, about: str) -> None:
+        """Say something, unless that was said in this run."""
+        if about not in self._told_once_a_run:
+            self._told_once_a_run.add(about)
+            self._say(sentence)
 
     def _wait(self) -> str:
         """Hear the robot, or nothing for a moment; return why the day ends, if it does.
 
         Raise `FieldmonError` where somebody stopped the day and the robot is not waited for.
         """
+        if self._wire.cut_off >= _MOST_CUT_OFF:
+            self._say_once(
+                "Our connection to the broker is lost as soon as it is made, again and again: "
+                "another program may drive this robot, too, and take it. Let only one of them do "
+                "so.",
+                "cut off",
+            )
         if (stops := self.stops()) and not self._has_order:
             raise FieldmonError("It has no order and is not waited for.")
         if stops > 1:
@@ -474,6 +501,13 @@ class Vda5050Robot:
         self._state, self._is_lost = message, False
         if message["orderId"] == self._known["orderId"]:
             self._day_clock.hear_order(message)
+            self._had_ours = True
+        elif self._had_ours and (other := self._other_order()):
+            self._say_once(
+                f"The robot had our order, but reports the order {other} now: another program may "
+                "give it orders, too. Let only one of them do so.",
+                "another order",
+            )
         self._see(message)
         if self._stands():
             self._tell("The robot is paused, or driven by hand; waiting.")

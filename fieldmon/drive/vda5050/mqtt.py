@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import queue
 import socket
 import threading
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 _KEEP_ALIVE_S = 15
 # a lost connection is sought again after so long, and twice as long each time, up to
 _SEEK_S, _SEEK_AT_MOST_S = 1.0, 10.0
+# one that is lost so soon after it was made may have been taken by another of the same name
+_SOON_S = 10.0
 # so long a broker may take until it says that one is let in and will hear
 _ANSWERS_S = 30.0
 
@@ -182,6 +185,8 @@ class _End:
     """One end of a connection that comes and goes, to a broker; needs ``fieldmon[robot]``."""
 
     def __init__(self) -> None:
+        #: how often in a row the connection was lost as soon as it was made
+        self.cut_off, self._connected_at = 0, -math.inf
         #: called whenever there is a connection again
         self.connected: Callable[[], None] = lambda: None
         self.client: Any = None
@@ -208,7 +213,7 @@ class _End:
         client = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2, client_id=name, clean_session=clean)
         client.on_message = self._on_message
         client.on_connect, client.on_subscribe = self._on_connect, self._on_subscribe
-        client.on_socket_open = _at_once
+        client.on_disconnect, client.on_socket_open = self._on_disconnect, _at_once
         client.reconnect_delay_set(_SEEK_S, _SEEK_AT_MOST_S)
         if broker.user is not None:
             client.username_pw_set(broker.user, broker.password)
@@ -250,11 +255,18 @@ class _End:
         if said.is_failure:
             self._answer([said])
             return
+        self._connected_at = time.monotonic()
         if self._hears:
             self.client.subscribe([(topic, 1) for topic in self._hears])
         else:
             self._answer([])
         self.connected()
+
+    def _on_disconnect(
+        self, _client: object, _data: object, _flags: object, said: ReasonCode, *_: object
+    ) -> None:
+        soon = said.is_failure and time.monotonic() - self._connected_at < _SOON_S
+        self.cut_off = self.cut_off + 1 if soon else 0
 
     def _on_subscribe(
         self, _client: object, _data: object, _number: int, said: list[ReasonCode], *_: object

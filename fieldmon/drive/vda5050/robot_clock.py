@@ -26,7 +26,7 @@ class RobotClock:
     """
 
     def __init__(self, say: Callable[[str], None]) -> None:
-        self._say, self._is_odd = say, False
+        self._say, self._is_odd, self._went_back = say, False, False
         #: seconds of the day that are gone by the plot's clock; None: by the robot's own
         self.of_plot: Callable[[], float] | None = None
         self._begun, self._order_s = time.monotonic(), math.nan
@@ -51,7 +51,9 @@ class RobotClock:
         """Return when a state was told, as `result_s` counts, where the robot told its clock."""
         told_s = math.nan if self.of_plot is not None else _seconds(day_s(state))
         at_s = told_s + self._behind_s
-        return self.now_s() if _DAY_S.broken(told_s) else at_s
+        # behind the last result it went back, and is counted on from the next one
+        went_back = self._is_own and at_s < self._gone_s
+        return self.now_s() if went_back or _DAY_S.broken(told_s) else at_s
 
     def result_s(self, told_s: object) -> float:
         """Return the robot's own clock if it says one and it counts; else ours.
@@ -79,6 +81,14 @@ class RobotClock:
                 "The robot's clock (day_s) is behind the last result of the day: it is counted on "
                 "from there."
             )
+        elif self._is_own and at_s + self._behind_s < self._gone_s:
+            self._behind_s = self.now_s() - at_s
+            if not self._went_back:
+                self._went_back = True
+                self._say(
+                    "The robot's clock (day_s) went back, as of a robot that was started anew: it "
+                    "is counted on from the last result, each time that it does."
+                )
         ahead_s = at_s - self.now_s()
         if not self._is_own and ahead_s > _AHEAD_S:
             self._say(

@@ -58,10 +58,11 @@ class LogEntry:
         anew = "; batches were numbered anew" if what.get("moved") else ""
         undone = f"; undone there: {', '.join(gone)}" if (gone := what.get("undone")) else ""
         chosen = f"; taken over: {'; '.join(over)}" if (over := what.get("chosen")) else ""
+        twice = "".join(f"; {one.removesuffix('.')}" for one in what.get("corrected", ()))
         told = _SAID[kind]
         if not what.get("source", "?"):  # recorded by a program that named no file
             told = told.removeprefix("{source}: ")
-        said = filled(told, what) + chosen + undone + anew
+        said = filled(told, what) + chosen + undone + twice + anew
         for old, now in self.numbers.items():
             said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
         if self.kind in ("seen", "merged") and (added := what.get("more")):

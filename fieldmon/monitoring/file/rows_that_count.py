@@ -3,19 +3,21 @@
 Two people who worked apart may record the same result of the same plant and time: the first of
 them counts, the other stands back. It was not taken back: whoever undoes the first one's file
 leaves the other's as it was recorded. So does an inspection that was corrected stand back for what
-was made of it, or for nothing if it was deleted: whoever undoes the correction has it back.
+was made of it, or for nothing if it was deleted: whoever undoes the correction has it back. Where
+two copies of a season corrected one inspection otherwise, what was corrected last holds, and what
+the others made of it stands back.
 """
 
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fieldmon.planning.members import person_key
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
 #: in the column `undone` of inspections and treatments
 COUNTS, TAKEN_BACK, STANDS_BACK = 0, 1, 2
@@ -29,7 +31,7 @@ def count_again(db: sqlite3.Connection) -> list[int]:
         "ORDER BY batch DESC, fid DESC",
         (STANDS_BACK,),
     ).fetchall()
-    gone = corrected(_corrections(db)) if found else {}
+    gone = corrected_in(db) if found else NOTHING_CORRECTED
     first = {mark: (fid, batch) for mark, fid, batch in found if may_count(gone, mark, batch)}
     db.executemany(
         "UPDATE inspections SET undone = 0 WHERE fid = ?", [(fid,) for fid, _ in first.values()]
@@ -57,28 +59,85 @@ def _point_findings(
     )
 
 
-#: digests of inspections that stand back for a correction, and the batch of the last one that left
-#: them the same, as one of who inspected does; None: none did
-Corrected = dict[str | None, int | None]
+class Corrected(NamedTuple):
+    """Which inspections stand back for a correction.
+
+    Parameters
+    ----------
+    gone
+        Their digests, and the batch of the last correction that left them the same, as one of who
+        inspected does; None: none did.
+    of_one
+        The corrections that stand, in order, those of one inspection together.
+    outdone
+        Digests and batches of what corrections made of an inspection that was corrected again, to
+        something else.
+    """
+
+    gone: dict[str | None, int | None]
+    of_one: Sequence[list[dict[str, Any]]]
+    outdone: frozenset[tuple[str | None, int | None]]
 
 
-def corrected(corrections: Sequence[dict[str, Any]]) -> Corrected:
+NOTHING_CORRECTED = Corrected({}, (), frozenset())
+
+
+def corrected(
+    corrections: Sequence[dict[str, Any]], recorded: Callable[[str], Iterable[int]]
+) -> Corrected:
     """Return which inspections stand back for a correction, given rows of those in order.
 
-    Where one that was taken back had been corrected itself, the last correction stands.
+    Where one that was taken back had been corrected itself, the last correction stands. `recorded`
+    returns the batches of all inspections with a digest.
     """
-    gone: Corrected = {}
+    gone: dict[str | None, int | None] = {}
     for row in reversed(corrections):
         if row["before"] and (not row["undone"] or row["now"] in gone):
             was = as_it_was(row["before"])["digest"]
             same = was == row["now"] and not row["undone"]
             gone.setdefault(was, row["batch"] if same else None)
-    return gone
+    stand = [
+        row
+        for row in corrections
+        if row["before"] and not (row["undone"] and row["now"] not in gone)
+    ]
+    of_one = _of_one(stand, recorded)
+    outdone = {
+        (row["now"], row["batch"])
+        for rows in of_one
+        for row in rows
+        if row["now"] != rows[-1]["now"]
+    }
+    return Corrected(gone, of_one, frozenset(outdone))
 
 
-def may_count(gone: Corrected, mark: str, batch: int | None) -> bool:
+def _of_one(
+    stand: list[dict[str, Any]], recorded: Callable[[str], Iterable[int]]
+) -> list[list[dict[str, Any]]]:
+    """Return corrections that were not taken back, those of one inspection together."""
+    found: dict[int, list[dict[str, Any]]] = {}
+    known: dict[str, tuple[list[dict[str, Any]], int | None]] = {}  # and since when corrected
+    for row in sorted(stand, key=lambda row: int(row["batch"])):
+        was, made, batch = as_it_was(row["before"])["digest"], row["now"], row["batch"]
+        if was is None:
+            continue
+        own, since = known.get(was, ([], None))
+        # what was recorded anew once it had been corrected is another inspection
+        if since is not None and any(since < one < batch for one in recorded(was)):
+            own = []
+        found.setdefault(id(own), own)
+        known[was] = own, batch
+        if made is not None:
+            known[made] = own, None
+        if not row["undone"]:
+            own.append(row)
+    return [own for own in found.values() if own]
+
+
+def may_count(of: Corrected, mark: str, batch: int | None) -> bool:
     """Return whether an inspection of a batch counts where no other of its digest does."""
-    return mark not in gone or (batch is not None and gone[mark] == batch)
+    gone = mark in of.gone and (batch is None or of.gone[mark] != batch)
+    return not gone and (mark, batch) not in of.outdone
 
 
 def as_it_was(before: str) -> dict[str, Any]:
@@ -90,6 +149,16 @@ def as_it_was(before: str) -> dict[str, Any]:
         return {"digest": None, **json.loads(before, strict=False)}
     except (ValueError, TypeError):  # another program wrote it
         return {"digest": None}
+
+
+def corrected_in(db: sqlite3.Connection, redone: int | None = None) -> Corrected:
+    """Return which inspections of a season stand back for a correction.
+
+    Or would, if those of the batch `redone` stood again.
+    """
+    held = "SELECT batch FROM inspections WHERE digest = ? AND batch NOTNULL"
+    rows = [{**row, "undone": 0} if row["batch"] == redone else row for row in _corrections(db)]
+    return corrected(rows, lambda mark: [batch for (batch,) in db.execute(held, (mark,))])
 
 
 def _corrections(db: sqlite3.Connection) -> list[dict[str, Any]]:
@@ -142,17 +211,20 @@ _HELD = "SELECT fid, batch FROM inspections WHERE digest = ? AND undone = 0"
 def not_as_before(db: sqlite3.Connection, batch: int, but: Sequence[str] = ()) -> list[str]:
     """Return the digests that corrections of a batch were of, and that do not count any more.
 
-    Those that were taken back are meant, `but` for those to these digests.
+    Those that were taken back are meant, `but` for those to these digests, and for those that would
+    hold in place of what another copy made of the same inspection.
     """
     rows = db.execute(
         "SELECT before, now FROM outside_changes WHERE batch = ? AND before NOTNULL AND undone = 1",
         (batch,),
     ).fetchall()
-    gone, missing = corrected(_corrections(db)), []
+    now, then, missing = corrected_in(db), corrected_in(db, batch), []
     for before, made in rows:
         was = as_it_was(before)["digest"]
         # what was corrected once more still stands back for that
-        if was is None or made in but or made in gone:
+        if was is None or made in but or made in now.gone:
+            continue
+        if was in now.gone and (made, batch) not in then.outdone:
             continue
         if db.execute(_HELD, (was,)).fetchone() is None:
             missing.append(was)
@@ -187,7 +259,20 @@ def redo_corrections(
         (new,) = db.execute(_MADE, (made, batch)).fetchone()
         if new is not None and held[0] < new:
             _exchange(db, new, held[0])
-    return {held[1] for _, _, held in found if held is not None}
+    return {held[1] for _, _, held in found if held is not None} | _let_outdone_stand_back(db)
+
+
+def _let_outdone_stand_back(db: sqlite3.Connection) -> set[int]:
+    """Let what was made of inspections that were corrected again stand back; return its batches."""
+    of = "FROM inspections WHERE digest = ? AND batch = ? AND undone = 0"
+    found = [
+        row
+        for one in corrected_in(db).outdone
+        for row in db.execute(f"SELECT fid, batch {of}", one)
+    ]
+    stands_back = "UPDATE inspections SET undone = ? WHERE fid = ?"
+    db.executemany(stands_back, [(STANDS_BACK, fid) for fid, _ in found])
+    return {batch for _, batch in found}
 
 
 def _exchange(db: sqlite3.Connection, one: int, other: int) -> None:

@@ -11,6 +11,7 @@ from fieldmon.monitoring.inspecting.batches import close_if_empty, more_in_words
 from fieldmon.monitoring.merging import (
     merged_batches,
     merged_choices,
+    merged_corrections,
     merged_inspections,
     merged_routes,
     merged_rows,
@@ -22,6 +23,7 @@ from fieldmon.monitoring.treating import treatments
 if TYPE_CHECKING:
     import sqlite3
 
+    from fieldmon.monitoring.merging.merged_corrections import CorrectedTwice
     from fieldmon.monitoring.merging.merged_rows import Numbers
 
 
@@ -34,9 +36,10 @@ class Merged:
     new
         Inspections that count now and did not before.
     contradictions
-        A sentence for each result that the copies tell differently, for each setting, for the table
-        of labels, for treatments that are alike but for what a label may add, and for each
-        treatment that counted in one copy and was undone in the other.
+        A sentence for each result that the copies tell differently, for each inspection that both
+        corrected otherwise, for each setting, for the table of labels, for treatments that are
+        alike but for what a label may add, and for each treatment that counted in one copy and was
+        undone in the other.
     taken_back
         Inspections that counted before and do not now: the other copy undid or corrected them.
     moved
@@ -84,12 +87,15 @@ class MergedCopy(NamedTuple):
         alone, and (by their numbers here) in both.
     alike
         Numbers of each two treatments that count, one of each copy alone, of one day and product.
+    twice
+        Inspections that both copies corrected otherwise.
     """
 
     merged: Merged
     numbers: Numbers
     gone: tuple[set[int], set[int], set[int]]
     alike: tuple[tuple[int, int], ...]
+    twice: tuple[CorrectedTwice, ...]
 
 
 def merge_copies(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCopy:
@@ -108,7 +114,8 @@ def merge_copies(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCop
     before = _Standing.of(db, stay)
     unnamed = (*same_season.of_no_pest(db, other), *same_season.of_no_pest(other, db))
     applied = [treatments.counting_of(copied["treatments"]) for copied in copies]
-    gone = merged_batches.merge_changes(db, copies, numbers)
+    gone = merged_batches.merge_changes(both, copies, numbers)
+    twice = merged_corrections.corrected_twice(copies, gone)
     merged_inspections.merge(both, numbers, gone, stay)
     treated, held = merged_treatments.merge(db, copies, numbers)
     merged_batches.write(db, batches)
@@ -140,7 +147,7 @@ def merge_copies(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCop
         ),
     )
     alike = tuple(merged_treatments.of_one_product(treated, held))
-    return MergedCopy(merged, renumbered, undone, alike)
+    return MergedCopy(merged, renumbered, undone, alike, twice)
 
 
 class _Standing(NamedTuple):

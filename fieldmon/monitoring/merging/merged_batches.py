@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: what a batch is known by in every copy
 _KNOWN_BY = ("at", "source", "who", "kind")
+#: and what another program changed, or a correction
+CHANGE_KNOWN_BY = tuple(name for name in schema.OUTSIDE_CHANGES.names if name != "undone")
 
 
 def of_both(copies: list[TableRows]) -> dict[Hashable, Row]:
@@ -66,9 +68,11 @@ def _count(db: sqlite3.Connection, batches: dict[Hashable, Row]) -> None:
 
 
 def merge_changes(
-    db: sqlite3.Connection, copies: list[TableRows], numbers: list[Numbers]
+    both: tuple[sqlite3.Connection, sqlite3.Connection],
+    copies: list[TableRows],
+    numbers: list[Numbers],
 ) -> Corrected:
-    """Let `db` have what other programs changed in either copy; return what was corrected.
+    """Let the first have what other programs changed in either copy; return what was corrected.
 
     `numbers` says how the batches of each copy are numbered now.
     """
@@ -76,14 +80,21 @@ def merge_changes(
         for row in copied["outside_changes"]:
             row["batch"] = batch_of.get(row["batch"])
     changes = _changes_of_both(copies)
-    merged_rows.write(db, schema.OUTSIDE_CHANGES, changes)
-    return rows_that_count.corrected([row for row in changes if row["batch"] is not None])
+    merged_rows.write(both[0], schema.OUTSIDE_CHANGES, changes)
+    held = "SELECT batch FROM inspections WHERE digest = ? AND batch NOTNULL"
+    return rows_that_count.corrected(
+        [row for row in changes if row["batch"] is not None],
+        lambda mark: [
+            batch_of.get(batch, batch)
+            for one, batch_of in zip(both, numbers, strict=True)
+            for (batch,) in one.execute(held, (mark,))
+        ],
+    )
 
 
 def _changes_of_both(copies: list[TableRows]) -> list[Row]:
     """Return what other programs changed in either copy; what one of them took back is so."""
-    known_by = tuple(name for name in schema.OUTSIDE_CHANGES.names if name != "undone")
-    merged = merged_rows.once(copies, "outside_changes", known_by, "at")
-    undone = {key_of(row, known_by) for one in copies for row in one["outside_changes"]
+    merged = merged_rows.once(copies, "outside_changes", CHANGE_KNOWN_BY, "at")
+    undone = {key_of(row, CHANGE_KNOWN_BY) for one in copies for row in one["outside_changes"]
               if row["undone"]}  # fmt: skip
-    return [{**row, "undone": int(key_of(row, known_by) in undone)} for row in merged]
+    return [{**row, "undone": int(key_of(row, CHANGE_KNOWN_BY) in undone)} for row in merged]

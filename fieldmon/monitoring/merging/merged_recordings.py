@@ -74,6 +74,9 @@ def _let_first_count(rows: list[Row], counting: set[str], gone: Corrected) -> No
         stands_back = row["undone"] == STANDS_BACK
         if stands_back and not rows_that_count.may_count(gone, row["digest"], row["batch"]):
             continue
+        if row["undone"] == COUNTS and (row["digest"], row["batch"]) in gone.outdone:
+            row["undone"] = STANDS_BACK
+            continue
         if row["digest"] is not None and row["undone"] != TAKEN_BACK:
             row["undone"] = STANDS_BACK if row["digest"] in counting else COUNTS
             counting.add(row["digest"])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.decisions.labels import plain_name
 from fieldmon.monitoring.file import schema
-from fieldmon.monitoring.file.rows_that_count import COUNTS, TAKEN_BACK
+from fieldmon.monitoring.file.rows_that_count import COUNTS, NOTHING_CORRECTED, TAKEN_BACK
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merged_recordings import recordings_of_both
 from fieldmon.monitoring.treating import treatments
@@ -32,7 +32,7 @@ def merge(
 ) -> tuple[list[Row], list[Held]]:
     """Let `db` have the treatments of both; return them, and which each copy had."""
     own = [copied["treatments"] for copied in copies]
-    treated = recordings_of_both(own, numbers, set(), {})
+    treated = recordings_of_both(own, numbers, set(), NOTHING_CORRECTED)
     treatments.settle(treated)
     merged_rows.write(db, schema.TREATMENTS, treated)
     held = [{(row["digest"], batch_of.get(row["batch"])) for row in rows}

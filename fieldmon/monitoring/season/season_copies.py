@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.kinds import checked
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.file import label_table
 from fieldmon.monitoring.inspecting.contradictions import contradictions
+from fieldmon.monitoring.merging import merged_corrections
 from fieldmon.monitoring.merging.merge import merge_copies
 from fieldmon.monitoring.phones import scouts
 from fieldmon.monitoring.season.open_season import OpenSeason
@@ -54,9 +55,10 @@ class SeasonCopies(OpenSeason):
             # what either copy took back or corrected contradicts nothing
             contradict = contradict.still(self._inspections(db))
             ended = _ended(here, there, taken)
+            corrected = tuple(merged_corrections.sentences(db, taken.twice, self.plot.grid))
             states, labels = season_log.states(db), label_table.read(db)
             if states != was:
-                _log_merged(db, states, told, taken, ended)
+                _log_merged(db, states, told, taken, (ended, corrected))
             kept = treatments.by_vine(treatments.kept(db, self._inside, clock), self.plot.grid)
             twice = _recorded_twice(kept, taken)
             overlaps = scouts.overlaps(db, int(self.plant_numbers.line.max()))
@@ -67,6 +69,7 @@ class SeasonCopies(OpenSeason):
             taken.merged,
             contradictions=(
                 *contradict.sentences(self.plot.grid),
+                *corrected,
                 *taken.merged.contradictions,
                 *twice,
                 *no_more,
@@ -92,9 +95,14 @@ def _log_merged(
     states: dict[str, str],
     told: list[dict[str, str]],
     taken: MergedCopy,
-    ended: list[tuple[KeptTreatment, str]],
+    came: tuple[list[tuple[KeptTreatment, str]], tuple[str, ...]],
 ) -> None:
-    """Note that another copy was taken in, with the entries that its log `told` beside ours."""
+    """Note that another copy was taken in, with the entries that its log `told` beside ours.
+
+    `came` is which treatments do not count any more, and what both corrected, in words.
+    """
+    ended, corrected = came
+    both: dict[str, Any] = {"corrected": corrected} if corrected else {}
     undone = [
         f"{one.application.product or 'a product that nobody named'} on {one.on}"
         for one, why in ended
@@ -112,6 +120,7 @@ def _log_merged(
         undone=undone,
         chosen=taken.merged.chosen,
         more=str(taken.merged.more),
+        **both,
     )
 
 

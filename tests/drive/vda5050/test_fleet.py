@@ -137,7 +137,7 @@ def test_a_battery_that_is_too_low_is_never_rounded_to_one_that_would_do(charge,
 def test_at_a_stop_it_is_said_once_until_when_a_lost_robot_is_waited_for(plot, monkeypatch):
     monkeypatch.setattr("fieldmon.drive.vda5050.fleet._POLL_S", 0.0)
     said, heard = [], queue.Queue()
-    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT, heard=heard), "lost", said.append)
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT, heard=heard, cut_off=0), "lost", said.append)
     driver.begin(plot.aisles, np.zeros(2), 0.0)
     driver._has_order, driver._state = True, {}
     lost = encoded("connection", header_of(*ROBOT), {"connectionState": "CONNECTIONBROKEN"})
@@ -148,6 +148,42 @@ def test_at_a_stop_it_is_said_once_until_when_a_lost_robot_is_waited_for(plot, m
     assert [driver._wait() for _ in range(3)] == ["", "", ""]
     (told,) = said[1:]
     assert re.match(r"It is not heard, and is waited for until \d\d:\d\d:\d\d, as it may", told)
+
+
+def test_orders_of_another_program_and_a_connection_that_it_takes_are_each_said_once(
+    plot, monkeypatch
+):
+    for name, so_long in {"_POLL_S": 0.0, "_AGAIN_S": -1.0, "_MOST_TRIES": 6}.items():
+        monkeypatch.setattr(f"fieldmon.drive.vda5050.fleet.{name}", so_long)
+    said, heard = [], queue.Queue()
+    wire = SimpleNamespace(robot=ROBOT, heard=heard, cut_off=2)
+    driver = Vda5050Robot(wire, "day", said.append)
+    driver.begin(plot.aisles, np.zeros(2), 0.0)
+
+    header = header_of(*ROBOT)
+
+    def report(order_id):
+        state = STATE | {"orderId": order_id, "errors": []}
+        heard.put(("state", encoded("state", header, state)))
+
+    report("day")
+    assert driver._wait() == ""
+    assert said == []
+    numbers = iter(range(100))
+    why = driver._had(
+        lambda _: report(f"other-{next(numbers)}"), "taken its order", lambda: False, lambda _: None
+    )
+    assert re.fullmatch(
+        r"The robot has not taken its order: it has the order other-\d, which is not ours\.", why
+    )
+    wire.cut_off = 3
+    driver._wait()
+    driver._wait()
+    assert [one.partition(":")[0] for one in said] == [
+        "The robot had our order, but reports the order other-0 now",
+        "The robot has not taken its order",
+        "Our connection to the broker is lost as soon as it is made, again and again",
+    ]
 
 
 def test_a_low_battery_ends_the_day_after_the_plant_in_hand(broker, plot, robot, monitor):
@@ -454,7 +490,7 @@ def test_what_is_no_message_is_passed_by_and_said(broker, plot, robot, monitor, 
 def test_the_first_stop_after_going_on_takes_as_long_as_by_the_robots_own_clock(plot):
     """Also of one that is faster than ours."""
     heard, header = queue.Queue(), header_of(*ROBOT)
-    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT, heard=heard), "day")
+    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT, heard=heard, cut_off=0), "day")
     driver.begin(plot.aisles, np.zeros(2), 3600.0)
     information = [{"infoType": "day_s", "infoLevel": "INFO", "infoDescription": "12.5"}]
     heard.put(("state", encoded("state", header, STATE | {"information": information})))

@@ -3,6 +3,7 @@
 import builtins
 import queue
 import socket
+from types import SimpleNamespace
 
 import pytest
 
@@ -120,6 +121,21 @@ def test_a_broker_that_says_nothing_is_said(monkeypatch):
         broker = Broker("127.0.0.1", mute.getsockname()[1])
         with pytest.raises(SettingError, match="it said nothing for 0 s"):
             Wire(broker, "a", ROBOT, ())
+
+
+def test_connections_that_are_lost_as_soon_as_they_are_made_are_counted(monkeypatch):
+    wire, now = object.__new__(Wire), [0.0]
+    shown = SimpleNamespace(monotonic=lambda: now[0])
+    monkeypatch.setattr("fieldmon.drive.vda5050.mqtt.time", shown)
+    wire._hears, wire._answer, wire.connected = [], lambda _: None, lambda: None
+    wire.cut_off = 0
+    counted = []
+    for so_long, lost in ((9000.0, True), (1.0, True), (2.0, True), (1.0, True), (60.0, True)):
+        wire._on_connect(None, None, None, SimpleNamespace(is_failure=False))
+        now[0] += so_long
+        wire._on_disconnect(None, None, None, SimpleNamespace(is_failure=lost))
+        counted.append(wire.cut_off)
+    assert counted == [0, 1, 2, 3, 0]
 
 
 def test_what_is_sent_while_the_line_is_cut_arrives(broker):

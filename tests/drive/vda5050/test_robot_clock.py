@@ -32,3 +32,19 @@ def test_the_clock_of_a_robot_that_was_started_anew_is_counted_on_and_said():
     assert first >= 3600.0
     assert [clock.result_s(told) - first for told in ("70.5", "95.0", None)][:2] == [30.5, 55.0]
     assert ["behind the last result" in one for one in said] == [True]
+
+
+def test_a_clock_that_goes_back_within_the_day_is_counted_on_each_time_and_said_once():
+    said = []
+    clock = RobotClock(said.append)
+    clock.begin(0.0)
+    assert [clock.result_s(told) for told in (40, 85, 1478.7)] == [40.0, 85.0, 1478.7]
+    for told, later in ((5, (50, 95)), (3, (63, 1400))):
+        before = clock.result_s(None)
+        there = clock.state_s({"information": [{"infoType": "day_s", "infoDescription": "2"}]})
+        first = clock.result_s(told)
+        assert before <= there <= first < before + 60.0
+        assert [clock.result_s(one) - first for one in later] == pytest.approx(
+            [one - told for one in later]
+        )
+    assert ["went back" in one for one in said] == [True]

@@ -37,7 +37,7 @@ gc.disable()
 # the first example of a property pays for compiling; a landing must not depend on luck
 settings.register_profile(
     "fieldmon",
-    max_examples=25,
+    max_examples=12,
     deadline=None,
     derandomize="CI" in os.environ,
     suppress_health_check=[HealthCheck.too_slow],

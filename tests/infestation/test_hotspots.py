@@ -4,7 +4,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binom, false_discovery_control, hypergeom
 
@@ -22,6 +22,7 @@ from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN, Records
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.planting import Planting
 from tests.crooked import crooked_grids
+from tests.thorough import times
 
 GRID = rectangle(30, 40)
 MIDDLE = 15 * 40 + 20
@@ -76,7 +77,7 @@ def test_a_window_counts_every_way_to_lay_the_finds():
 @pytest.mark.parametrize("share", [0.01, 0.05, 0.2, 0.5])
 @pytest.mark.parametrize("inspected", [1.0, 0.4])
 def test_finds_strewn_at_random_seldom_make_a_hot_spot(share, inspected):
-    trials, level = 200, 0.05
+    trials, level = times(50, 200), 0.05
     loud = HotSpotSettings(false_share=level, least_finds=2)
     fields = (strewn(np.random.default_rng(s), len(GRID), share, inspected) for s in range(trials))
     false = sum(len(hot_spots(GRID, state, loud)) > 0 for state in fields)
@@ -190,7 +191,6 @@ def test_the_columns_say_what_stands_in_each_hot_spot(grid, seed):
     assert not (set(range(len(spots))) ^ set(np.unique(spots.of_plant)) - {-1})
 
 
-@settings(max_examples=25, deadline=None)
 @given(crooked_grids(50.0, faces=(1,), max_plants=1500), st.integers(0, 2**32 - 1))
 def test_hot_spots_are_the_windows_that_survive_the_false_discovery_rate(grid, seed):
     rng = np.random.default_rng(seed)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pyproj import Geod
 
@@ -52,7 +52,6 @@ def test_rows_know_their_extent_across():
         assert (rows.low_m[r], rows.high_m[r]) == (y_m.min(), y_m.max())
 
 
-@settings(max_examples=30, deadline=None)
 @given(st.floats(0.0, 360.0), st.floats(200.0, 5_000.0))
 def test_the_distance_outside_a_plot_is_the_geodesic_one(bearing_deg, metres):
     plot = rectangle(1, 1, Planting(row_spacing_m=0.1, plant_spacing_m=0.1, headland_m=0.05))
@@ -74,7 +73,6 @@ def test_positions_on_another_continent_are_far_to_the_kilometre():
     assert off_m[0] == pytest.approx(true_m, rel=0.01)
 
 
-@settings(max_examples=20)
 @given(bent_grids(), st.integers(0, 1000))
 def test_where_rows_bend_the_same_distances_are_found_in_level_strips(grid, seed):
     rng = np.random.default_rng(seed)

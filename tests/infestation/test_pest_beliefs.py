@@ -21,10 +21,12 @@ from fieldmon.plot.travel import Aisles
 from fieldmon.samplers import sampler
 from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
+from tests.thorough import seeds
 
 GRID = rectangle(24, 24)
 N = len(GRID)
 EGG = Stage("egg", 12.5, 40.0, visible=False, mobile=False)
+RUNS = seeds(60, 150)
 
 
 def pest(**movement):
@@ -49,15 +51,15 @@ def believed(pest_in_weather, infested, nights):
     return belief
 
 
-def simulated(pest_in_weather, infested, nights, runs=150):
+def simulated(pest_in_weather, infested, nights):
     total = np.zeros(N)
-    for seed in range(runs):
+    for seed in RUNS:
         colonies = Colonies.grown(GRID, pest_in_weather.pest, infested)
         for number in range(nights):
             key = RandomStreams(seed).key("spread", number)
             colonies = colonies.after(pest_in_weather.night(number, GRID.frame), key)
         total += colonies.infested
-    return total / runs
+    return total / len(RUNS)
 
 
 def some():

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
@@ -49,7 +49,6 @@ def test_the_route_is_the_day_as_charged(name, grid, seed):
 
 
 @given(field=crooked_fields(), seed=st.integers(0, 1000))
-@settings(max_examples=25)
 def test_on_crooked_fields_too(field, seed):
     try:
         scene = scene_on(lay(field, Planting()), hours=2.0, seed=seed)

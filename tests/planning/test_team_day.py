@@ -6,7 +6,7 @@ from itertools import pairwise, product
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from shapely import LineString, MultiPolygon, Polygon
 
@@ -94,7 +94,6 @@ def test_a_team_shares_a_plot_and_nobody_meets(name, teamwork):
     day.check(day.work(teamwork, name))
 
 
-@settings(max_examples=15, deadline=None)
 @given(
     crooked_fields(max_radius_m=60.0), st.integers(2, 4), st.booleans(), st.floats(0.1, 1.5),
     st.sampled_from(["adaptive", "naive"]),

@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 
 from fieldmon.plot.bent_ways import off_steps, row_end_places, row_steps
 from fieldmon.plot.road_network import find_roads
 from tests.bent import bent_grids
 
 
-@settings(max_examples=25)
 @given(bent_grids())
 def test_a_way_is_off_the_rows_just_as_it_is_away_from_them(grid):
     clearance_m = 0.3
@@ -29,7 +28,6 @@ def test_a_way_is_off_the_rows_just_as_it_is_away_from_them(grid):
     assert off[sure].tolist() == (away_m > clearance_m)[sure].tolist()
 
 
-@settings(max_examples=25)
 @given(bent_grids())
 def test_ways_are_as_long_as_their_corners_say(grid):
     roads = find_roads(grid)
@@ -41,7 +39,6 @@ def test_ways_are_as_long_as_their_corners_say(grid):
             assert roads.length_m[e] == pytest.approx(length_m, abs=1e-6)
 
 
-@settings(max_examples=25)
 @given(bent_grids(faces=(1,)))
 def test_at_a_row_end_the_aisles_lie_on_either_side(grid):
     places, _ = row_end_places(grid)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from shapely import LineString, MultiLineString, MultiPolygon, Polygon
 
@@ -112,7 +112,6 @@ def test_both_faces_of_rows_in_blocks_are_inspected(in_blocks):
     assert (two.twin >= 0).all()
 
 
-@settings(max_examples=15)
 @given(crooked_fields(), plantings(), st.floats(0.0, 180.0), st.integers(0, 2**32))
 def test_what_is_driven_on_a_cut_plot_is_as_long_as_charged_and_crosses_no_row(
     field, planting, turn_deg, seed

@@ -26,6 +26,7 @@ from tests.cut_lanes import (
     perhaps_reachable,
     surely_reachable,
 )
+from tests.thorough import seeds
 
 AREA = box(-6, -6, 34, 26)
 ROWS, PLANTS = 4, 15
@@ -131,7 +132,7 @@ def test_the_plants_of_a_stretch_that_is_cut_at_both_ends_are_said_to_be_out_of_
 
 
 @pytest.mark.parametrize("faces", [1, 2])
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", seeds(4, 12))
 def test_a_wide_robot_gets_to_all_plants_to_which_a_free_way_leads_and_to_no_others(seed, faces):
     aisles, point, shed_m = cut_plot(seed, faces=faces)
     hidden = aisles.too_narrow

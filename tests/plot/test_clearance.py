@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError, SettingError
@@ -66,7 +66,6 @@ def test_half_the_width_the_canopy_and_a_little_are_kept_off_plants():
 
 
 @pytest.mark.parametrize("grids", [crooked_grids, bent_grids])
-@settings(max_examples=15)
 @given(data=st.data())
 def test_no_way_comes_nearer_to_a_plant_than_the_robot_can(grids, data):
     grid = data.draw(grids())

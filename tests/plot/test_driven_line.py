@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.plot.driven_line import _plain
@@ -12,7 +12,6 @@ from tests.bent import bent_grids
 from tests.crossing import crosses_rows
 
 
-@settings(max_examples=15)
 @given(bent_grids(), st.integers(0, 2**32))
 def test_legs_end_at_their_stops_and_are_as_long_as_charged(grid, seed):
     aisles = Aisles.of(grid)

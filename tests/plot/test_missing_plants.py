@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.errors import PlotError
@@ -77,7 +77,6 @@ def test_a_grid_with_gaps_has_the_neighbours_of_plants_measured_so():
         np.testing.assert_array_equal(ours, anew)
 
 
-@settings(max_examples=15)
 @given(crooked_grids(), SEEDS, SHARES)
 def test_robots_reach_what_is_left_without_crossing_a_row(grid, seed, share):
     _, left = thinned(grid, seed, share)

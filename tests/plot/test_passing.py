@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon
 
@@ -65,7 +65,6 @@ def test_a_way_to_a_part_in_line_lies_in_the_aisles_of_all_parts_before(parts):
     assert inside(aisles, line) <= {*through, int(grid.corridor[grid.row[last]])}
 
 
-@settings(max_examples=15, deadline=None)
 @given(crooked_fields(max_radius_m=60.0), st.data())
 def test_a_leg_is_as_long_as_the_way_and_knows_every_aisle_that_its_line_lies_in(field, data):
     try:

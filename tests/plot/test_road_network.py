@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from shapely import MultiPolygon, box
@@ -93,7 +93,6 @@ def test_the_plot_is_left_only_for_what_cannot_be_reached_on_it(field, planting)
 
 
 @given(crooked_grids(max_radius_m=50))
-@settings(max_examples=30)
 def test_every_way_can_be_driven_both_ways_and_has_the_length_of_its_line(grid):
     net = find_roads(grid)
     start = np.repeat(np.arange(len(net.xy_m)), np.diff(net.start))

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
@@ -63,7 +63,6 @@ def test_what_lies_behind_is_driven_to_backwards():
     assert not piece.forward
 
 
-@settings(max_examples=25)
 @given(
     corners=st.lists(st.tuples(st.integers(-2, 2), st.integers(-2, 2)), min_size=2, max_size=5),
     yaw=st.sampled_from([0.0, math.pi / 2, math.pi, -1.0]),

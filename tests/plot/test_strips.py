@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Polygon
 
@@ -11,7 +11,6 @@ from fieldmon.plot.strips import free_intervals
 from tests.crooked import areas
 
 
-@settings(max_examples=30)
 @given(areas(30.0), st.floats(1.0, 8.0), st.floats(0.0, 1.0))
 @example(MultiPolygon([shapely.box(-5, -4, 5, 4)]), 4.0, 0.0)
 @example(Polygon([(0, 0), (9, 0), (9, 9), (5, 2), (0, 9)]), 3.0, 0.0)

@@ -7,7 +7,7 @@ import numba as nb
 import numpy as np
 import pytest
 import shapely
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
@@ -184,7 +184,6 @@ def test_paths_on_crooked_plots_are_as_long_as_said_and_cross_no_row(grid, seed)
     tilt_m=st.floats(-0.5, 0.5),
     n_rows=st.sampled_from((1, 5, 9)),
 )
-@settings(max_examples=20)
 def test_paths_between_rows_measured_roughly_cross_none(jitter_m, tilt_m, n_rows):
     planting = Planting(row_spacing_m=2.5, plant_spacing_m=1.4, headland_m=2.0)
     grid = rectangle(n_rows, 90 // n_rows, planting)
@@ -195,7 +194,6 @@ def test_paths_between_rows_measured_roughly_cross_none(jitter_m, tilt_m, n_rows
 
 
 @given(seed=st.integers(0, 10_000), row_spacing_m=st.floats(1.8, 5.0), skew=st.floats(-1.5, 1.5))
-@settings(max_examples=12)
 def test_paths_between_plants_taken_from_gps_cross_no_row(seed, row_spacing_m, skew):
     rng = np.random.default_rng(seed)
     row, place = np.nonzero(rng.random((12, 30)) < 0.85)
@@ -257,7 +255,6 @@ def notched_beside_another():
 
 
 @given(crooked_grids(max_radius_m=40))
-@settings(max_examples=25)
 @example(notched_beside_another())
 def test_lane_ends_are_never_nearer_than_the_shortest_way_there(grid):
     between_m = Aisles.of(grid).travel.between_m[:-1, :-1]
@@ -355,7 +352,6 @@ def test_the_way_from_part_to_part_crosses_the_gap_squarely():
 
 
 @given(st.floats(-60.0, 60.0), st.floats(-60.0, 60.0))
-@settings(max_examples=20)
 def test_work_can_start_anywhere(x, y):
     grid = SHAPES["hole"]
     aisles = Aisles.of(grid, tuple(grid.frame.xy_m(FRAME.lonlat([[x, y]]))[0].tolist()))

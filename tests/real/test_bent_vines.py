@@ -50,7 +50,7 @@ def check(vines, least):
     [(1000.0, 0.3), (400.0, 0.0), (200.0, 0.3), (100.0, 0.05), (60.0, 0.3), (60.0, 0.0)],
 )
 def test_vines_in_bent_rows_are_found_in_their_own(survey, radius_m, noise_m):
-    size = (20, 48) if radius_m < 100 else (30, 96)
+    size = 12, 48 if radius_m < 100 else 96
     check(measured(bent(tiled(survey, *size), radius_m, 20.0), noise_m), NOISES[noise_m])
 
 
@@ -78,7 +78,7 @@ def test_vines_of_four_blocks_some_of_them_bent_are_found(survey, noise_m):
 
 @pytest.mark.parametrize("noise_m", NOISES)
 def test_straight_vines_of_one_block_stay_straight(survey, noise_m):
-    _, plot, _ = found(measured(bent(tiled(survey, 30, 96), None, 20.0), noise_m))
+    _, plot, _ = found(measured(bent(tiled(survey, 12, 96), None, 20.0), noise_m))
     assert plot.grid.aisles_m is None
     # with 30 cm of noise some stand more than a quarter of 2.5 m beside their row
     assert len(plot.rows.doubts) == (noise_m == 0.3)

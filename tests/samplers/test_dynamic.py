@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.planning.workday import plan_work, work_day
@@ -47,7 +47,6 @@ def seconds_to(scene, at, plants):
     return seconds + scene.robot.row_change_s * other + scene.robot.turn_180_s * turned
 
 
-@settings(max_examples=15)
 @given(st.one_of(bent_grids(), crooked_grids()), st.integers(0, 1000))
 def test_wherever_rows_bend_or_are_cut_the_nearest_open_plant_is_next(grid, seed):
     scene = scene_on(grid, hours=24.0, seed=2 * seed)
@@ -102,7 +101,6 @@ def suspicious_of(scene, share, closed, room):
     return set(sorted(left, key=lambda plant: (-levels[plant], plant))[:room])
 
 
-@settings(max_examples=20)
 @given(
     st.one_of(bent_grids(), crooked_grids()),
     st.integers(0, 1000),

@@ -2,27 +2,31 @@
 
 import logging
 import os
+import shlex
 import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
+from contextlib import suppress
 
 import psutil
 import pytest
 
-from fieldmon.cli import study_run
+from fieldmon.cli.study_run import StudyOptions
 from fieldmon.errors import SettingError
 from fieldmon.simulation import design, executor, results
 from fieldmon.simulation.design import Design, study_of
 from fieldmon.simulation.experiment import Experiment, Memory, run
 from fieldmon.simulation.results import StudyFolder
 from tests.parcels import write_geojson
-from tests.simulation.study_plots import SMALL, area, plot
+from tests.simulation.study_plots import area
 
-# a short study has many chunks to lose: twelve of a few seasons each
-CHUNK_S = 0.006
-SHORT = replace(SMALL, n_seeds=8)
+# a short study has many chunks to lose: CHUNKS of a few seasons each
+CHUNK_S, CHUNKS = 0.003, 10
+SHORT = Design(("dynamic", "naive"), infested=(0.05,), n_days=4, n_seeds=12)
+#: the same for the command
+ON = "2026-11-02"
+WORDS = "--sampler dynamic --sampler naive --infested 0.05 --days 4 --seeds 12 --date " + ON
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -32,10 +36,24 @@ def short_chunks():
         yield
 
 
+@pytest.fixture(scope="module")
+def plot_file(tmp_path_factory):
+    """Return the file of the small plot."""
+    file = tmp_path_factory.mktemp("plot") / "plot.geojson"
+    write_geojson(file, [area(40.0)])
+    return file
+
+
+@pytest.fixture(scope="module")
+def plots(plot_file):
+    """Return the small plot as the command reads it."""
+    return StudyOptions(plot_file, on=ON).plots()
+
+
 def simulated(folder, plots, asked, workers, progress=None):
     store = StudyFolder(folder, plots, asked)
     run(study_of(plots, asked), workers, store, progress)
-    return store
+    assert store.refused == {}
 
 
 @pytest.fixture(scope="module")
@@ -46,10 +64,11 @@ def two_workers():
 
 
 @pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory):
-    """Return the folder of the small study, simulated in this thread."""
+def undisturbed(plots, tmp_path_factory):
+    """Return the folder of the short study, simulated in this thread."""
     folder = tmp_path_factory.mktemp("undisturbed")
-    simulated(folder, [plot()], SHORT, executor.here())
+    simulated(folder, plots, SHORT, executor.here())
+    assert len(list(folder.glob("*/*.parquet"))) == CHUNKS
     return folder
 
 
@@ -60,11 +79,6 @@ def same_files(one, other):
     ]
     assert parts[0].keys() == parts[1].keys()
     assert parts[0] == parts[1]
-
-
-def test_the_seasons_do_not_depend_on_the_number_of_workers(undisturbed, two_workers, tmp_path):
-    assert simulated(tmp_path, [plot()], SHORT, two_workers).refused == {}
-    same_files(tmp_path, undisturbed)
 
 
 def _pid(setting, seeds):  # noqa: ARG001
@@ -100,13 +114,15 @@ def test_workers_say_nothing_of_their_own_at_the_terminal(two_workers):
     assert set(made.values()) == {logging.CRITICAL}
 
 
-def test_threads_make_the_same_files(undisturbed, tmp_path):
+def test_threads_make_the_same_files(plots, undisturbed, tmp_path):
     with executor.threads(2) as workers:
-        simulated(tmp_path, [plot()], SHORT, workers)
+        simulated(tmp_path, plots, SHORT, workers)
     same_files(tmp_path, undisturbed)
 
 
-def test_a_killed_worker_costs_only_what_it_had_in_hand(undisturbed, two_workers, tmp_path):
+def test_the_seasons_do_not_depend_on_how_many_work_nor_on_one_who_dies(
+    plots, undisturbed, two_workers, tmp_path
+):
     from distributed import default_client
 
     killed = []
@@ -120,33 +136,50 @@ def test_a_killed_worker_costs_only_what_it_had_in_hand(undisturbed, two_workers
             os.kill(pid, signal.SIGKILL)
             killed.append(pid)
 
-    simulated(tmp_path, [plot()], SHORT, two_workers, kill_one)
+    simulated(tmp_path, plots, SHORT, two_workers, kill_one)
     assert killed
     same_files(tmp_path, undisturbed)
 
 
-def test_a_killed_client_costs_only_unfinished_chunks(two_workers, tmp_path):
-    write_geojson(tmp_path / "plot.geojson", [area(60.0)])
-    command = f"from fieldmon.simulation import design; design._CHUNK_S = {CHUNK_S}; "
-    command += "from fieldmon.cli.main import main; main()"
-    words = [sys.executable, "-c", command, "study", "run", "plot.geojson", "--seeds", "12"]
-    words += ["--days", "10", "--workers", "1", "--date", "2026-11-02"]
-    command = subprocess.Popen([*words, "-o", "killed"], cwd=tmp_path, stderr=subprocess.DEVNULL)
-    until = time.monotonic() + 200
-    while not list(tmp_path.glob("killed/*/*.parquet")) and time.monotonic() < until:
-        time.sleep(0.02)
-    children = psutil.Process(command.pid).children(recursive=True)
-    os.kill(command.pid, signal.SIGKILL)
-    command.wait()
-    _, alive = psutil.wait_procs(children, timeout=60)
+#: the command, which prints the processes that it started and dies as it has kept two chunks
+_DIES = f"""
+import os, psutil, signal
+from fieldmon.cli.main import main
+from fieldmon.simulation import design, results
+
+def keep_two(folder, key, result):
+    keep(folder, key, result)
+    if len(list(folder.folder.glob("*/*.parquet"))) == 2:
+        print(*[child.pid for child in psutil.Process().children(recursive=True)], flush=True)
+        os.kill(os.getpid(), signal.SIGKILL)
+
+design._CHUNK_S = {CHUNK_S}
+keep, results.StudyFolder.keep = results.StudyFolder.keep, keep_two
+main()
+"""
+
+
+def still_there(pids):
+    for pid in pids:
+        with suppress(psutil.NoSuchProcess):
+            yield psutil.Process(pid)
+
+
+def test_a_killed_client_costs_only_unfinished_chunks(plot_file, plots, undisturbed, tmp_path):
+    folder, said = tmp_path / "killed", tmp_path / "said"
+    words = [sys.executable, "-c", _DIES, "study", "run", str(plot_file), *shlex.split(WORDS)]
+    words += ["--workers", "1", "-o", str(folder)]
+    with said.open("w") as out:  # no pipe: one would be open as long as its workers are
+        died = subprocess.run(words, stdout=out, stderr=subprocess.DEVNULL, check=False)
+    assert died.returncode == -signal.SIGKILL
+    children = [int(pid) for pid in said.read_text().splitlines()[-1].split()]
+    assert children
+    _, alive = psutil.wait_procs(list(still_there(children)), timeout=60)
     assert not alive, "workers outlive the client that started them"
-    half = {path: path.stat().st_mtime_ns for path in tmp_path.glob("killed/*/*.parquet")}
-    plots = study_run.StudyOptions(tmp_path / "plot.geojson", on="2026-11-02").plots()
-    asked = Design(n_days=10, n_seeds=12)
-    simulated(tmp_path / "killed", plots, asked, two_workers)
-    simulated(tmp_path / "whole", plots, asked, executor.here())
-    assert 0 < len(half) < len(list(study_of(plots, asked).chunks()))
-    same_files(tmp_path / "killed", tmp_path / "whole")
+    half = {path: path.stat().st_mtime_ns for path in folder.glob("*/*.parquet")}
+    assert len(half) == 2
+    simulated(folder, plots, SHORT, executor.here())
+    same_files(folder, undisturbed)
     assert all(path.stat().st_mtime_ns == written for path, written in half.items())
 
 
@@ -157,14 +190,14 @@ def test_no_scheduler_is_a_sentence(monkeypatch):
 
 
 @pytest.mark.usefixtures("two_workers")
-def test_a_cluster_that_is_there_already_is_used(tmp_path):
+def test_a_cluster_that_is_there_already_is_used(plots, tmp_path):
     from distributed import default_client
 
     there = default_client().scheduler.address
     short = Design(samplers=("naive",), n_days=1, n_seeds=2)
     with executor.cluster(there) as workers:
         assert default_client().scheduler.address == there
-        simulated(tmp_path, [plot()], short, workers)
+        simulated(tmp_path, plots, short, workers)
     assert results.seasons(tmp_path).num_rows == 2
 
 

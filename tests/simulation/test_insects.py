@@ -25,6 +25,7 @@ from fieldmon.simulation.season import (
     simulated_days,
 )
 from fieldmon.simulation.start import Start
+from tests.thorough import seeds
 
 AISLES = Aisles.of(rectangle(12, 12))
 GRID, N = AISLES.grid, 144
@@ -111,7 +112,7 @@ def found_at(second):
     pest = Pest("fast", movement=Movement("adjacent", 0.9, hours=(8.0, 10.0), by_hour=True))
     settings = SimulationSettings(n_days=1, pest=PestInWeather(pest))
     found = []
-    for seed in range(40):
+    for seed in seeds(20, 40):
         start = Start(at(40), np.full(N, 0.01))
         who, streams = _Waits(41, second), RandomStreams(seed)
         (day,) = simulated_days(AISLES, Robot(), who, start, settings, streams)

@@ -25,11 +25,13 @@ from fieldmon.simulation.season import SimulationSettings, simulated_days
 from fieldmon.simulation.start import Start
 from fieldmon.simulation.team_season import ONE, Team, simulated_team_days
 from tests.second_by_second import nobody_head_on, nobody_together
+from tests.thorough import seeds
 
 GRID = rectangle(20, 20)
 PLOT = Plot(Field("even", GRID.frame.geometry_lonlat(GRID.drivable_m)), Aisles.of(GRID))
 ROBOT = Robot(hours=1.0)
-SETTINGS = SimulationSettings(n_days=5, spread=Spread(0.2))
+SETTINGS = SimulationSettings(n_days=3, spread=Spread(0.2))
+LONGER = replace(SETTINGS, n_days=5)
 SECTIONS = Teamwork(together=False)
 
 
@@ -38,11 +40,11 @@ def start(seed=3):
     return Start(infested, np.full(len(GRID), 0.02))
 
 
-def season(name="adaptive", members=2, teamwork=None, seed=3):
+def season(name="adaptive", members=2, teamwork=None, seed=3, settings=SETTINGS):
     team = team_of(members, ROBOT) if isinstance(members, int) else members
     works = team, teamwork or Teamwork()
     streams = RandomStreams(seed)
-    return list(simulated_team_days(PLOT, works, sampler(name), start(), SETTINGS, streams))
+    return list(simulated_team_days(PLOT, works, sampler(name), start(), settings, streams))
 
 
 @cache
@@ -115,10 +117,10 @@ def test_those_without_prior_information_keep_to_their_sections_all_season():
 
 
 def test_more_robots_leave_less_behind():
-    losses = [
-        np.mean([season_metrics(season(members=n, seed=s)).infested_plant_days for s in range(4)])
-        for n in (1, 3)
-    ]
+    def lost(n, seed):
+        return season_metrics(season(members=n, seed=seed, settings=LONGER)).infested_plant_days
+
+    losses = [np.mean([lost(n, seed) for seed in seeds(2, 4)]) for n in (1, 3)]
     assert losses[1] < 0.7 * losses[0]
 
 
@@ -187,7 +189,7 @@ def test_one_of_a_kind_works_as_ever_and_none_is_no_team():
 
 @pytest.mark.parametrize("teamwork", [Teamwork(), SECTIONS])
 def test_between_visits_none_of_a_team_works(teamwork):
-    settings, streams = replace(SETTINGS, visit_every=3), RandomStreams(3)
+    settings, streams = replace(LONGER, visit_every=3), RandomStreams(3)
     team = team_of(2, ROBOT), teamwork
     days = list(simulated_team_days(PLOT, team, sampler("adaptive"), start(), settings, streams))
     assert [day.visit for day in days] == [0, None, None, 1, None]

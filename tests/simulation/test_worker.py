@@ -22,6 +22,7 @@ from fieldmon.simulation.start import Start
 from fieldmon.simulation.study_plot import Combination
 from fieldmon.simulation.worker import LaidPlot, RefusedPlot, simulate_chunk, simulated_season
 from tests.simulation.study_plots import DAY, plot
+from tests.thorough import seeds
 
 LEVELS = Combination("dynamic", 3.0, 40.0, 0.05, 0.1)
 
@@ -62,7 +63,7 @@ def test_all_combinations_of_a_seed_start_with_the_same_insects():
     for name in ("naive", "bouncy", "dynamic"):
         for hours in (1.0, 3.0):
             for row in simulate_chunk(
-                (plot(), Combination(name, hours, 40.0, 0.05, 0.1)), range(20), 1
+                (plot(), Combination(name, hours, 40.0, 0.05, 0.1)), range(8), 1
             ):
                 before = row["found_by_day"][0] + row["left_by_day"][0]
                 assert first.setdefault(row["seed"], before) == before
@@ -92,7 +93,7 @@ def test_records_raise_the_chance_where_they_are():
     made = np.array(
         [
             simulated_season(LaidPlot(one, chance), Robot(), LEVELS, s, (1, 1)).new[0]
-            for s in range(60)
+            for s in seeds(20, 60)
         ]
     )
     assert abs(made.mean() / len(one.grid) - 0.05) < 0.01

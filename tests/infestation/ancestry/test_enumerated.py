@@ -27,9 +27,11 @@ from tests.infestation.ancestry.enumerated import (
     chance_within,
     together,
 )
+from tests.thorough import times
 
 PLOTS = {"row": rectangle(1, 6), "block": rectangle(3, 4), "lone": rectangle(1, 1)}
 SPREADS = [Spread(0.3, "each", 0.01), Spread(0.5, "one"), Spread(0.4, "all", 0.02)]
+EACH, ONE, ALL = SPREADS
 
 
 def chances(grid):
@@ -51,7 +53,7 @@ def test_the_enumeration_itself_is_what_a_pencil_says():
 @pytest.mark.parametrize("name", PLOTS)
 @pytest.mark.parametrize("spread", SPREADS, ids=lambda spread: spread.to)
 def test_simulated_insects_do_in_a_night_what_the_rule_says_and_nothing_else(name, spread):
-    grid, drawn = PLOTS[name], 2000
+    grid, drawn = PLOTS[name], times(500, 2000)
     begin = np.arange(len(grid)) % 3 == 0
     truth = Enumerated.of(begin.astype(float))
     truth = truth.overnight(by_adjacency(grid, spread), spread.arrivals_per_day)
@@ -170,8 +172,11 @@ def a_night_by_pencil(belief, truth, spread):
     return truth.overnight(infects, nobody.overnight(spread).chance)
 
 
-@pytest.mark.parametrize("spread", SPREADS, ids=lambda spread: spread.to)
-@pytest.mark.parametrize("sick", [(0,), (5,), (2, 9)])
+@pytest.mark.parametrize(
+    ("spread", "sick"),
+    [(EACH, (0,)), (EACH, (2, 9)), (ONE, (5,)), (ALL, (2, 9))],
+    ids=lambda it: getattr(it, "to", None),
+)
 def test_from_plants_known_to_be_infested_kernels_reach_each_plant_with_its_true_chance(
     spread, sick
 ):

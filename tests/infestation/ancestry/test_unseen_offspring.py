@@ -43,26 +43,23 @@ def test_as_many_are_unseen_as_on_simulated_plots_of_which_nothing_was_seen(cour
     active = np.zeros((3, N))
     active[0, 30] = 1.0
     so_far = unseen_now(unseen, active, roots, (sends, SHARES), LANDING, course)
-    kept, there, on = 0, np.zeros(N), np.zeros(3)
     grows = np.append(course.grown, 3)
-    for _ in range(12_000):
-        infested, since = np.zeros(N, bool), np.full(N, 3)
-        shown, numbers = False, []
-        for morning in range(3):
-            new = rng.random(N) < roots[morning]
-            if morning:
-                senders = (infested & (grows[since] < morning)).astype(float)
-                senders[30] += active[morning - 1, 30]
-                new |= rng.random(N) < -np.expm1(-sends[morning - 1] * (senders @ lands))
-            since[new & ~infested] = morning
-            infested |= new
-            numbers.append(infested.sum())
-            seen = infested & looks[morning] & (rng.random(N) > missed)
-            shown = shown or seen.any()
-        if not shown:
-            kept, there, on = kept + 1, there + infested, on + numbers
-    assert kept > 4_000
-    expected = so_far[-1]
-    assert expected.sum() == pytest.approx(there.sum() / kept, rel=0.05)
-    assert expected == pytest.approx(there / kept, abs=0.012)
-    assert so_far.sum(axis=1) == pytest.approx(on / kept, rel=0.06)
+    plots = 12_000, N
+    infested, since = np.zeros(plots, bool), np.full(plots, 3)
+    shown, numbers = np.zeros(len(infested), bool), []
+    for morning in range(3):
+        new = rng.random(plots) < roots[morning]
+        if morning:
+            senders = (infested & (grows[since] < morning)).astype(float)
+            senders[:, 30] += active[morning - 1, 30]
+            new |= rng.random(plots) < -np.expm1(-sends[morning - 1] * (senders @ lands))
+        since[new & ~infested] = morning
+        infested |= new
+        numbers.append(infested.sum(axis=1))
+        shown |= (infested & looks[morning] & (rng.random(plots) > missed)).any(axis=1)
+    assert np.count_nonzero(~shown) > 4_000
+    expected, there = so_far[-1], infested[~shown].mean(axis=0)
+    assert expected.sum() == pytest.approx(there.sum(), rel=0.05)
+    assert expected == pytest.approx(there, abs=0.012)
+    on = np.array(numbers)[:, ~shown].mean(axis=1)
+    assert so_far.sum(axis=1) == pytest.approx(on, rel=0.06)

@@ -11,6 +11,7 @@ from fieldmon.infestation.insects.pest_in_weather import Spell
 from fieldmon.infestation.insects.spread import Spread, night
 from fieldmon.pests.pest import Entry, Movement, Pest, Stage
 from fieldmon.plot.layout import rectangle
+from tests.thorough import seeds
 
 EGG = Stage("egg", 10.0, 30.0, visible=False, mobile=False)
 YOUNG = Stage("young", 10.0, 30.0, mobile=False)
@@ -71,13 +72,13 @@ def test_the_adjacent_kernel_infests_as_often_as_the_thesis_s_rule_says():
     """Each plant next to an infested one with the chance, whoever else infests it."""
     pest = Pest("rule", movement=Movement("adjacent", 0.3))
     start, grid = at(40, 42), GRID
-    sends = -np.log1p(-0.3)
+    sends, drawn = -np.log1p(-0.3), seeds(500, 1500)
     ours = [Colonies.grown(grid, pest, start).after(Spell(1.0, (), sends), key(s)).infested
-            for s in range(1500)]  # fmt: skip
-    rule = [night(grid, start, Spread(0.3), key(s)) for s in range(1500)]
+            for s in drawn]  # fmt: skip
+    rule = [night(grid, start, Spread(0.3), key(s)) for s in drawn]
     one, other = np.mean(ours, axis=0), np.mean(rule, axis=0)
     assert (np.flatnonzero(one) == np.flatnonzero(other)).all()
-    assert np.abs(one - other).max() < 4.5 * np.sqrt(2 * 0.25 / 1500)
+    assert np.abs(one - other).max() < 4.5 * np.sqrt(2 * 0.25 / len(drawn))
     assert one[41] == pytest.approx(1 - 0.7**2, abs=0.05)
 
 
@@ -91,14 +92,14 @@ def test_a_hotter_day_and_the_same_coins_infest_the_same_plants_and_others_besid
 
 def test_hours_come_to_the_same_number_as_the_day():
     pest = Pest("disease", latency_days=2.0, movement=Movement("exponential", 2.0, reach_m=6.0))
-    by_day, by_hour = [], []
-    for seed in range(400):
+    by_day, by_hour, drawn = [], [], seeds(130, 400)
+    for seed in drawn:
         start = colonies = Colonies.grown(GRID, pest, at(40))
         by_day.append(start.after(Spell(1.0, (), 2.0), key(seed)).infested.sum())
         for hour in range(24):
             colonies = colonies.after(Spell(1 / 24, (), 2.0 / 24), key(seed), hour)
         by_hour.append(colonies.infested.sum())
-    error = np.sqrt((np.var(by_day) + np.var(by_hour)) / 400)
+    error = np.sqrt((np.var(by_day) + np.var(by_hour)) / len(drawn))
     assert abs(np.mean(by_day) - np.mean(by_hour)) < 4 * error
 
 

@@ -1,7 +1,7 @@
 """Days without inspections make a number more doubtful; inspections tell it again."""
 
 from dataclasses import replace
-from itertools import pairwise
+from itertools import accumulate, repeat
 
 import numpy as np
 import pytest
@@ -34,23 +34,24 @@ def evening():
     return inspected(TracedPairs.of(GRID, np.full(400, 0.05)), 8)
 
 
+@pytest.fixture(scope="module")
+def mornings(evening):
+    """Return what is believed after no night without inspections, after one, and so on."""
+    return after_each(evening, 90)
+
+
 def width(interval, night=...):
     low, high = np.asarray(interval.low)[night], np.asarray(interval.high)[night]
     return float(np.log((high + 3.0) / (low + 3.0)))
 
 
+def after_each(belief, number):
+    """Return what is believed at first, after a night, and so on."""
+    return [*accumulate(repeat(NIGHT, number), type(belief).overnight, initial=belief)]
+
+
 def nights(belief, number):
-    for _ in range(number):
-        belief = belief.overnight(NIGHT)
-    return belief
-
-
-def after_each(belief, numbers):
-    """Return what is believed after so many nights and so many, from the fewest on."""
-    passed = [belief]
-    for before, number in pairwise((0, *numbers)):
-        passed.append(nights(passed[-1], number - before))
-    return passed[1:]
+    return after_each(belief, number)[-1]
 
 
 def test_a_season_that_is_inspected_daily_is_in_no_more_doubt(evening):
@@ -68,8 +69,8 @@ def test_nothing_is_learnt_from_no_inspections(evening):
     assert morning.learn(*nobody, Learning(0.8, treated=True)) is morning
 
 
-def test_each_day_without_inspections_makes_the_number_more_doubtful(evening):
-    mornings = after_each(evening, range(1, 6))
+def test_each_day_without_inspections_makes_the_number_more_doubtful(mornings):
+    mornings = mornings[1:6]
     more = [one.uninspected.variance() for one in mornings]
     grown = [np.log(one.chance.sum() / mornings[0].chance.sum()) for one in mornings]
     assert more[0] == 0.0
@@ -95,8 +96,8 @@ def test_inspections_take_the_doubt_as_far_as_finds_were_to_be_expected(found, l
     assert after.overnight(2.0, 3.0).variance() == after.left
 
 
-def test_a_look_at_one_plant_hardly_narrows_the_interval_and_a_day_does(evening):
-    morning = nights(evening, 6)
+def test_a_look_at_one_plant_hardly_narrows_the_interval_and_a_day_does(mornings):
+    morning = mornings[6]
     one = morning.learn(EVERY_PLANT[:1], np.zeros(1, np.bool_), Learning(0.8, treated=True))
     day = inspected(morning, 14)
     wide = [width(told(each)) for each in (morning, one, day)]
@@ -105,9 +106,11 @@ def test_a_look_at_one_plant_hardly_narrows_the_interval_and_a_day_does(evening)
 
 
 @pytest.mark.parametrize("idle", [3, 7])
-def test_days_without_inspections_come_as_doubtful_as_the_forecast_had_them(evening, idle):
+def test_days_without_inspections_come_as_doubtful_as_the_forecast_had_them(
+    evening, mornings, idle
+):
     ahead = forecast(evening, GRID, [NIGHT] * 10, now=told(evening.in_hindsight(NIGHT)))
-    morning = nights(evening, idle)
+    morning = mornings[idle]
     now = told(morning)
     assert now.expected == pytest.approx(ahead.expected[idle], rel=1e-3)
     assert width(now) == pytest.approx(width(ahead, idle), rel=0.2)
@@ -149,8 +152,8 @@ def test_of_a_plot_that_is_told_to_be_infested_nothing_is_in_doubt():
     assert verdict(TracedPairs.of(GRID, np.ones(400)), 0.9).chance_above == 1.0
 
 
-def test_it_is_kept_with_a_morning(evening):
-    morning = nights(evening, 3)
+def test_it_is_kept_with_a_morning(mornings):
+    morning = mornings[3]
     again = replace(morning, uninspected=UninspectedDays.of_array(morning.uninspected.array))
     assert told(again) == told(morning)
     assert again.since_inspected is not None
@@ -169,11 +172,11 @@ def test_on_a_plot_that_was_clean_it_may_be_that_nothing_came():
     assert now.chance_clean > 0.05
 
 
-def test_while_nobody_inspects_the_plot_becomes_no_cleaner(evening):
-    few = inspected(TracedPairs.of(GRID, np.full(400, 0.002)), 0)
-    for belief in (evening, few):
-        each = [belief.in_hindsight(NIGHT)]
-        each += after_each(belief, (1, 2, 3, 5, 8, 30, 90))
+def test_while_nobody_inspects_the_plot_becomes_no_cleaner(mornings):
+    few = after_each(inspected(TracedPairs.of(GRID, np.full(400, 0.002)), 0), 30)
+    for after in (mornings, few):
+        each = [after[0].in_hindsight(NIGHT)]
+        each += [after[number] for number in (1, 2, 3, 5, 8, 30, 90) if number < len(after)]
         clean, low = zip(*((one.chance_clean, one.low) for one in map(told, each)), strict=True)
         assert np.all(np.diff(clean) <= 1e-3)
         assert np.all(np.diff(low) >= -1)
@@ -184,8 +187,8 @@ def verdict(belief, level=0.5):
 
 
 @pytest.mark.parametrize("idle", [2, 7, 30])
-def test_a_verdict_on_days_without_inspections_is_as_sure_as_the_number(evening, idle):
-    morning = nights(evening, idle)
+def test_a_verdict_on_days_without_inspections_is_as_sure_as_the_number(evening, mornings, idle):
+    morning = mornings[idle]
     now, then, said = told(morning), verdict(evening), verdict(morning)
     # of rates alone, and so a little surer than the number; but nothing heals
     assert now.low - 1 <= 400 * said.low
@@ -196,8 +199,8 @@ def test_a_verdict_on_days_without_inspections_is_as_sure_as_the_number(evening,
     assert verdict(morning, said.low - 0.01).chance_above >= 0.95
 
 
-def test_of_its_zones_it_is_in_the_same_doubt(evening):
-    morning = nights(evening, 7)
+def test_of_its_zones_it_is_in_the_same_doubt(mornings):
+    morning = mornings[7]
     asked = AskedVerdict.on(morning, 0.1)
     believed = morning.chance, morning.pair_chance
     (all_of_it,) = zone_verdicts(GRID, believed, np.zeros(400, np.int64), asked, 0.8).zones
@@ -228,8 +231,8 @@ def test_where_hardly_any_is_expected_it_is_hardly_likely_that_there_is_one():
         assert now.chance_clean >= 1.0 - now.expected
 
 
-def test_a_month_without_inspections_brings_no_jump(evening):
-    each = [told(one) for one in after_each(evening, range(26, 36))]
+def test_a_month_without_inspections_brings_no_jump(mornings):
+    each = [told(one) for one in mornings[26:36]]
     low, clean = zip(*((one.low, one.chance_clean) for one in each), strict=True)
     assert np.all(np.diff(low) >= 0)
     assert np.all(np.diff(clean) <= 1e-9)

@@ -55,7 +55,6 @@ def test_without_records_the_ways_of_being_infested_are_independent():
     np.testing.assert_allclose(chance, expected, rtol=0, atol=2e-4)
 
 
-@settings(max_examples=30, deadline=None)
 @given(crooked_grids(50.0), st.floats(1.0, 30.0))
 def test_the_edge_is_the_boundary_of_every_part_and_hole(grid, depth_m):
     chance = edge_chance(grid, PriorSettings(edge_chance=1.0, edge_depth_m=depth_m))

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fieldmon.compute.wording import estimate
@@ -26,6 +26,7 @@ from fieldmon.samplers.without_prior import RandomShare
 from tests.crooked import crooked_grids
 from tests.cut_lanes import WIDE, cut_plot
 from tests.planning.routes.tiny import best_of_all, earliest_of_each
+from tests.thorough import seeds
 
 ROBOTS = st.builds(
     Robot,
@@ -142,7 +143,6 @@ def test_a_route_that_holds_more_than_its_bound_proves_nothing(monkeypatch):
     assert not route.proved
 
 
-@settings(max_examples=12)
 @given(st.data())
 def test_no_sampler_expects_more_than_the_bound(data):
     aisles = data.draw(crooked_aisles(max_radius_m=60.0, max_plants=1500))
@@ -290,7 +290,7 @@ def drives(seed):
     return Drives(3.0 * seconds**0.6 * rng.uniform(0.5, 1.0, 30), seconds)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", seeds(4, 12))
 def test_the_least_bound_of_all_prices_is_the_highest_line_between_two_drives(seed):
     below = drives(seed)
     seconds = float(np.random.default_rng(seed).uniform(100.0, 3900.0))

@@ -17,7 +17,7 @@ from fieldmon.studies.samplers.scenarios import Scenario
 @pytest.fixture(scope="module")
 def made():
     return {
-        name: calibration([Scenario("B")], Naive(), BELIEFS[name], seeds=3, n_days=8)
+        name: calibration([Scenario("B")], Naive(), BELIEFS[name], seeds=2, n_days=8)
         for name in ("independent plants", "pairs", "traced pairs")
     }
 

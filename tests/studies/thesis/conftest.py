@@ -23,4 +23,4 @@ def no_prior() -> Path:
 @pytest.fixture(scope="session")
 def everything() -> NoPriorStudy:
     """Return all tables, made once for the tests of studies and report."""
-    return run_no_prior("all", 30, 1)
+    return run_no_prior("all", 12, 1)

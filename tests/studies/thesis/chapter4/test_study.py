@@ -92,7 +92,7 @@ def test_detection_curves_come_with_the_tables_of_scenarios(everything):
 
 
 def test_one_table_alone_is_the_same_as_among_all(everything):
-    alone = run_no_prior("everywhere", 30, 1)
+    alone = run_no_prior("everywhere", everything.replicates, 1)
     assert [repr(cell) for cell in alone.cells] == [
         repr(cell) for cell in table(everything, "everywhere").cells
     ]

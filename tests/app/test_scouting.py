@@ -9,7 +9,7 @@ import random
 import re
 import shutil
 from dataclasses import replace
-from datetime import date, timedelta
+from datetime import date
 
 import numpy as np
 import pytest
@@ -36,7 +36,7 @@ from tests.monitoring.seasons import BEGINS, a_plot, a_season
 PLANTS = int(os.environ.get("FIELDMON_DAY", "8"))
 PHOTOS = int(os.environ.get("FIELDMON_PHOTOS", "2"))
 CUTS = int(os.environ.get("FIELDMON_CUTS", "12"))
-KILLS = int(os.environ.get("FIELDMON_KILLS", "2"))
+KILLS = int(os.environ.get("FIELDMON_KILLS", "1"))
 #: what a page would run, draw or follow if it were not text
 HARM = " ".join(NAMES[:5])
 SENT = "#sync[data-state=sent][data-left='0']"
@@ -57,21 +57,33 @@ def season(planned_file, tmp_path):
     return Season(shutil.copy(planned_file, folder))
 
 
+@pytest.fixture(scope="module")
+def one_port():
+    """Return a line whose address stays: a phone keeps the page by it."""
+    return Line()
+
+
 @pytest.fixture
-def line(season, monkeypatch):
+def line(season, one_port, monkeypatch):
     monkeypatch.setenv("FIELDMON_SEASONS", str(season.path.parent))
-    line = Line()
-    line.come()
-    yield line
-    line.go()
+    one_port.come()
+    yield one_port
+    one_port.go()
+
+
+@pytest.fixture(scope="module")
+def window(browser):
+    """Return a phone that lasts: a window that shares nothing but the browser's processes."""
+    window = PhoneWindow(browser)
+    yield window
+    window.close()
 
 
 @pytest.fixture
-def phone(browser):
-    """Return a phone that lasts: a window that shares nothing but the browser's processes."""
-    phone = PhoneWindow(browser)
-    yield phone
-    phone.close()
+def phone(window, one_port):
+    """Return that phone, which has the page, but knows nobody and no season."""
+    window.forget(one_port.address)
+    return window
 
 
 @pytest.fixture
@@ -98,8 +110,10 @@ def plant_of(page):
 
 def news(page):
     """Let the page ask what is new: 90 s later, as the network comes."""
-    page.clock.set_system_time(utc_now() + timedelta(seconds=90))
-    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    page.evaluate(
+        "() => { const { now } = Date; Date.now = () => now() + 90000;"
+        " dispatchEvent(new Event('online')); }"
+    )
 
 
 def told_now(page, result, count=None):
@@ -248,9 +262,9 @@ _SENT_AGAIN = """async (times) => {
 
 
 @pytest.mark.timeout(3600)
-def test_a_line_that_breaks_at_any_byte_loses_and_doubles_nothing(season, line, phone):
+def test_a_line_that_breaks_at_any_byte_loses_and_doubles_nothing(season, line, phone, monkeypatch):
     broken, said = BrokenLine(line.port, seed=5), []
-    line.address = broken.address
+    monkeypatch.setattr(line, "address", broken.address)
     invited(phone, line, season, "Eve")
     page, rng = phone.page, random.Random(6)
     broken.is_broken, photos_taken = True, 0
@@ -524,19 +538,11 @@ _BARS = """() => {
 }"""
 
 
-def test_what_a_scout_does_in_the_field(season, line, browser):
+def test_what_a_scout_does_in_the_field(season, line, phone):
     season = a_season(season.path.parent / "Faces 2026.gpkg", plot=a_plot(faces=2))
     start = route_ahead(season, BEGINS).plant[0]
     lon, lat = season.plot.grid.lonlat([start])[0]
-    here = {"longitude": lon, "latitude": lat, "accuracy": 4}
-    phone = PhoneWindow(browser, geolocation=here)
-    try:
-        _in_the_field(phone, line, season)
-    finally:
-        phone.close()
-
-
-def _in_the_field(phone, line, season):
+    phone.window.set_geolocation({"longitude": lon, "latitude": lat, "accuracy": 4})
     numbered, plot = season.plant_numbers, season.plot
     key = invited(phone, line, season, "Ben")
     page = phone.page
@@ -623,17 +629,38 @@ def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone)
     key, other = (scouts.let_in(season, name) for name in ("Cem", "Dan"))
     for one, result in ((key, FOUND), (other, CLEAN)):
         take(season, one, [a_finding(40, result, on=BEGINS)], utc_now())
-    for language in ("he", "en"):
-        phone.page.goto("about:blank")
-        phone.page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), language))
-        _is_for_thumbs(phone.page, language)
+    page = phone.page
+    for language, reads in (("en", "ltr"), ("he", "rtl")):
+        page.goto("about:blank")
+        page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), language))
+        page.locator(f"html[dir={reads}]").wait_for()
+        page.locator(SENT).wait_for()
+        page.goto(page.url.partition("#")[0])  # as from the home screen: the language stays
+        page.locator(f"html[dir={reads}]").wait_for()
+        _is_for_thumbs(page)
+    page.locator("#open_menu").click()
+    page.locator("fieldset").first.locator("button").first.click()  # the left hand
+    page.locator("#close").click()
+    clean, found = page.evaluate(LEFTS)
+    assert clean < found, "under the left thumb"
+    page.locator("#open_menu").click()
+    page.evaluate(  # the other hand, and closed before that is kept
+        "document.querySelectorAll('fieldset button')[1].click();"
+        "document.getElementById('close').click(); document.getElementById('menu').id = 'old_menu'"
+    )
+    page.locator("#menu").wait_for(state="attached")
+    assert not page.locator("#menu").evaluate("(menu) => menu.open")
+    clean, found = page.evaluate(LEFTS)
+    assert clean > found, "under the right thumb again"
 
 
-def _is_for_thumbs(page, language):
-    page.locator(SENT).wait_for()
-    page.goto(page.url.partition("#")[0])  # as from the home screen: the language stays
+#: where the two most pressed buttons begin
+LEFTS = "['clean', 'found'].map((one) => document.getElementById(one).getBoundingClientRect().x)"
+
+
+def _is_for_thumbs(page):
+    """Hold all buttons to be large and on the screen, and the most pressed one to the right."""
     page.locator(SENT).wait_for()  # till then, the page may draw its buttons anew
-    assert page.locator("html").get_attribute("dir") == ("rtl" if language == "he" else "ltr")
     said = page.locator(".contradiction[data-plant='40']").inner_text()
     assert "Cem" in said
     assert "Dan" in said
@@ -643,25 +670,8 @@ def _is_for_thumbs(page, language):
     )
     assert all(width >= 56 and height >= 56 and fits for width, height, fits in sizes)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    lefts = (
-        "['clean', 'found'].map((one) => document.getElementById(one).getBoundingClientRect().x)"
-    )
-    clean, found = page.evaluate(lefts)
+    clean, found = page.evaluate(LEFTS)
     assert clean > found, "under the right thumb"
-    page.locator("#open_menu").click()
-    page.locator("fieldset").first.locator("button").first.click()  # the left hand
-    page.locator("#close").click()
-    clean, found = page.evaluate(lefts)
-    assert clean < found, "under the left thumb"
-    page.locator("#open_menu").click()
-    page.evaluate(  # the other hand, and closed before that is kept
-        "document.querySelectorAll('fieldset button')[1].click();"
-        "document.getElementById('close').click(); document.getElementById('menu').id = 'old_menu'"
-    )
-    page.locator("#menu").wait_for(state="attached")
-    assert not page.locator("#menu").evaluate("(menu) => menu.open")
-    clean, found = page.evaluate(lefts)
-    assert clean > found, "under the right thumb again"
 
 
 def test_texts_that_do_harm_are_text_on_the_page_too(season, line, phone):

@@ -703,19 +703,11 @@ def record_eight(page):
 
 
 def drawn_by_clicks(page):
-    """Draw an area and take it back, then a path and the gate; return the clicks, gate first."""
-    plants = page.get_by_test_id("stMetric").filter(has_text="Plants").first
-    before = plants.inner_text()
+    """Draw a path and the gate; return the clicks, gate first.
+
+    That areas are drawn and taken back, see `actions/test_editing_plot`.
+    """
     open_drawing(page)
-    draw_by_click(page, "corners of a no-go area")
-    for number, corner in enumerate([(0.4, 0.4), (0.6, 0.4), (0.5, 0.65)], start=1):
-        at_share(page, corner, says=f"Points: {number}")
-    page.get_by_role("button", name="Finish").click()
-    page.get_by_text("corners of a no-go area: 3").wait_for(timeout=180_000)
-    rest(page)
-    assert plants.inner_text() != before
-    page.get_by_role("button", name="Undo the last one").click()
-    page.get_by_text("corners of a no-go area: 3").wait_for(state="detached", timeout=180_000)
     draw_by_click(page, "points of a path")
     path = [at_share(page, share) for share in ((0.2, 0.2), (0.5, 0.25), (0.8, 0.2))]
     page.get_by_text("Points: 3").wait_for()
@@ -725,7 +717,6 @@ def drawn_by_clicks(page):
     draw_by_click(page, "the gate")
     gate = at_share(page, (0.3, 0.3), says="the gate: 1")
     rest(page)
-    assert plants.inner_text() == before
     draw_by_click(page, "nothing")
     return gate, *path
 

@@ -681,7 +681,7 @@ def test_on_a_phone_corners_are_walked_to_and_two_taps_cut_the_plot_into_blocks(
     page.get_by_role("img", name="Map of plot My plot").wait_for(timeout=240_000)
     open_drawing(page)
     draw_by_click(page, "a cut into blocks")
-    across = [(34.9015, lat) for lat in (31.4999, 31.5021)]
+    across = [(lon, 31.501) for lon in (34.9005, 34.90215)]
     for number, place in enumerate(pixels(view(page), across), start=1):
         click(page, place, says=f"Points: {number}")
     bar, sheet = page.locator(".drawbar").bounding_box(), page.locator(".st-key-panel")
@@ -1062,7 +1062,8 @@ def test_on_a_phone_in_hebrew_lists_keep_apart_undo_is_beside_its_line_and_the_m
     title.wait_for()
     gap = """(one) => { const words = document.createRange(); words.selectNodeContents(one);
       return one.getBoundingClientRect().right - words.getBoundingClientRect().right; }"""
-    assert title.evaluate(gap) < 5, "a heading of Latin letters begins where the others do"
+    # a heading of Latin letters begins where the others do
+    until(lambda: title.evaluate(gap) < 5, 60.0)
 
 
 # tools whose middle another thing lies over or that cannot be pressed, as a press would find them:

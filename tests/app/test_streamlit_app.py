@@ -57,7 +57,8 @@ def test_every_part_of_a_season_opens_marks_another_day_and_folds_away_who_inspe
     """On the season's first day all open in another language: see `words/test_languages.py`."""
     begins = MonitoringSettings(date(2026, 11, 16))
     Season.create(seasons_folder / "Gate 2026.gpkg", a_small_plot(), Records.none(), begins)
-    app = opened("Gate 2026", day="2026-11-20")
+    app = opened("Gate 2026")
+    app.date_input(key="day Gate 2026").set_value(date(2026, 11, 20)).run()
     for page in PAGES:
         go(app, page)
         assert not app.exception, page

@@ -350,6 +350,8 @@ def states_tab(new_tab, address, served_seasons):
 def states(states_tab):
     """Return that tab, with states and the whole plot on its map."""
     with awake(states_tab) as page:
+        if not page.locator(".st-key-item_season").count():
+            open_item(page, texts.MENU["season"])
         only_states(page)
         page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
         yield page
@@ -980,9 +982,9 @@ def world():
 
 
 def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_than_that(
-    record_page, world
+    states, world, served_seasons
 ):
-    page, (url, asked) = record_page, world
+    page, (url, asked) = states, world
     open_item(page, texts.MENU["plot"])
     page.get_by_text(texts.GROUND, exact=True).click()
     rest(page)
@@ -1005,14 +1007,19 @@ def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_tha
     n = len(asked)
     zoomed(page)
     assert len(asked) == n, "what is switched off is not asked for"
+    switch(page, texts.MAP_LAYERS["ground"], on=True)
+    becomes(page, lambda now: (np.abs(now - GREY).max(axis=2) < 6).mean() > 0.15, "it again")
+    assert len(asked) > n, "nearer by, there are other pictures"
     page.get_by_role("button", name=re.compile("^Stop asking")).click()
     again = agree.or_(page.get_by_role("combobox", name=texts.WEB_MAP)).first
     again.wait_for(timeout=180_000)
     still(page)
     assert again.is_visible(), "the box is not folded under the hand"
+    n = len(asked)
     zoomed(page)
     assert len(asked) == n
-    assert kept_ground.agreement(page.kept) is None, "nor is anything asked after a reload"
+    kept = kept_ground.agreement(served_seasons / "States.gpkg")
+    assert kept is None, "nor is anything asked after a reload"
 
 
 @pytest.mark.parametrize("page", [PHONE], indirect=True)

@@ -982,10 +982,12 @@ def world():
 
 
 def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_than_that(
-    states, world, served_seasons
+    page, address, world, served_seasons
 ):
-    page, (url, asked) = states, world
-    open_item(page, texts.MENU["plot"])
+    season(served_seasons / "World.gpkg", sample()[0])
+    url, asked = world
+    page.goto(f"{address}/plot?season=World")
+    rest(page)
     page.get_by_text(texts.GROUND, exact=True).click()
     rest(page)
     choose(page, texts.WEB_MAP, texts.WEB_MAPS["other"])
@@ -1018,7 +1020,7 @@ def test_a_map_of_the_world_is_asked_only_once_it_is_agreed_to_and_no_longer_tha
     n = len(asked)
     zoomed(page)
     assert len(asked) == n
-    kept = kept_ground.agreement(served_seasons / "States.gpkg")
+    kept = kept_ground.agreement(served_seasons / "World.gpkg")
     assert kept is None, "nor is anything asked after a reload"
 
 

@@ -113,6 +113,18 @@ class PhoneWindow:
         self.window.set_default_timeout(180_000)  # others may have the machine
         self.page = self.window.new_page()
 
+    def forget(self, address):
+        """Forget where it is and what was done on the page at an address, which alone it keeps."""
+        for page in self.window.pages:
+            page.close()
+        self.window.set_offline(False)
+        self.window.set_geolocation(None)
+        self.page = self.window.new_page()
+        devtools = self.window.new_cdp_session(self.page)
+        kept = {"origin": address, "storageTypes": "indexeddb,local_storage"}
+        devtools.send("Storage.clearDataForOrigin", kept)
+        devtools.detach()
+
     def close(self):
         self.window.close()
 

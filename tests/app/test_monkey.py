@@ -1,6 +1,6 @@
 """A thousand clicks by somebody who reads nothing: no page may fail.
 
-The suite clicks 40 times; ``FIELDMON_MONKEY=1000`` clicks as often as it says (seeded alike, or
+The suite clicks 20 times; ``FIELDMON_MONKEY=1000`` clicks as often as it says (seeded alike, or
 as ``FIELDMON_MONKEY_SEED`` says). Languages are among what is chosen. What was recorded must stay:
 batches are taken back, never lost.
 """
@@ -20,7 +20,7 @@ from app.words.language import LANGUAGES
 from fieldmon.monitoring import Season
 from tests.app.driving import PAGES, begun, go, opened
 
-CLICKS = int(os.environ.get("FIELDMON_MONKEY", "40"))
+CLICKS = int(os.environ.get("FIELDMON_MONKEY", "20"))
 SEED = int(os.environ.get("FIELDMON_MONKEY_SEED", "20261121"))
 TAPS = {f"click scout_{name}" for name in ("clean", "found", "skip")}
 # a comparison of 500 seasons or a table of the thesis takes minutes, as it should

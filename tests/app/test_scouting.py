@@ -9,7 +9,7 @@ import random
 import re
 import shutil
 from dataclasses import replace
-from datetime import date, timedelta
+from datetime import date
 
 import numpy as np
 import pytest
@@ -33,10 +33,10 @@ from tests.monitoring.phone import a_finding, told
 from tests.monitoring.rules import keeps_the_rules
 from tests.monitoring.seasons import BEGINS, a_plot, a_season
 
-PLANTS = int(os.environ.get("FIELDMON_DAY", "12"))
-PHOTOS = int(os.environ.get("FIELDMON_PHOTOS", "3"))
+PLANTS = int(os.environ.get("FIELDMON_DAY", "8"))
+PHOTOS = int(os.environ.get("FIELDMON_PHOTOS", "2"))
 CUTS = int(os.environ.get("FIELDMON_CUTS", "12"))
-KILLS = int(os.environ.get("FIELDMON_KILLS", "2"))
+KILLS = int(os.environ.get("FIELDMON_KILLS", "1"))
 #: what a page would run, draw or follow if it were not text
 HARM = " ".join(NAMES[:5])
 SENT = "#sync[data-state=sent][data-left='0']"
@@ -57,21 +57,33 @@ def season(planned_file, tmp_path):
     return Season(shutil.copy(planned_file, folder))
 
 
+@pytest.fixture(scope="module")
+def one_port():
+    """Return a line whose address stays: a phone keeps the page by it."""
+    return Line()
+
+
 @pytest.fixture
-def line(season, monkeypatch):
+def line(season, one_port, monkeypatch):
     monkeypatch.setenv("FIELDMON_SEASONS", str(season.path.parent))
-    line = Line()
-    line.come()
-    yield line
-    line.go()
+    one_port.come()
+    yield one_port
+    one_port.go()
+
+
+@pytest.fixture(scope="module")
+def window(browser):
+    """Return a phone that lasts: a window that shares nothing but the browser's processes."""
+    window = PhoneWindow(browser)
+    yield window
+    window.close()
 
 
 @pytest.fixture
-def phone(browser):
-    """Return a phone that lasts: a window that shares nothing but the browser's processes."""
-    phone = PhoneWindow(browser)
-    yield phone
-    phone.close()
+def phone(window, one_port):
+    """Return that phone, which has the page, but knows nobody and no season."""
+    window.forget(one_port.address)
+    return window
 
 
 @pytest.fixture
@@ -96,6 +108,14 @@ def plant_of(page):
     return int(page.locator("#place").get_attribute("data-plant"))
 
 
+def news(page):
+    """Let the page ask what is new: 90 s later, as the network comes."""
+    page.evaluate(
+        "() => { const { now } = Date; Date.now = () => now() + 90000;"
+        " dispatchEvent(new Event('online')); }"
+    )
+
+
 def told_now(page, result, count=None):
     """Say what was found at the next plant; return it once the page has gone on."""
     plant = plant_of(page)
@@ -114,6 +134,7 @@ def told_now(page, result, count=None):
 
 @pytest.mark.timeout(1800)
 def test_a_day_without_a_network_among_kills_loses_and_doubles_nothing(season, line, mortal_phone):
+    """Killed in the moment of a tap, it is whole or asked for again."""
     phone = mortal_phone
     invited(phone, line, season)
     line.go()
@@ -137,6 +158,8 @@ def test_a_day_without_a_network_among_kills_loses_and_doubles_nothing(season, l
             assert (page.locator("#photos").count() == 1) == (k in pictured)
         result = rng.choice(["clean", "clean", "clean", "found", "skipped"])
         said.append(told_now(page, result, 3 if result == "found" else None))
+    for k in range(KILLS):
+        said += _killed_at_a_tap(phone, line, [plant for plant, _ in said], drawn=k % 2)
     there = kept(phone.page)
     assert sorted((one["plant"], one["result"]) for one in there.records) == sorted(said)
     assert len(there.photos) == PHOTOS
@@ -145,6 +168,27 @@ def test_a_day_without_a_network_among_kills_loses_and_doubles_nothing(season, l
     phone.page.locator(SENT).wait_for(timeout=120_000)
     holds(season, there, said)
     assert kept(phone.page).photos == {}, "what the season has needs no room on the phone"
+
+
+def _killed_at_a_tap(phone, line, told_before, *, drawn):
+    """Kill the browser in the moment of a tap; return what it has of it, if anything."""
+    before = plant_of(phone.page)
+    phone.page.locator("#answers:not([data-resting])").wait_for()
+    at_once = phone.page.evaluate(
+        "() => { document.querySelector('#clean').click();"
+        " return Number(document.querySelector('#place').dataset.plant); }"
+    )
+    assert at_once != before, "the next plant is there with the tap"
+    if drawn:  # the disk may have it by then, or not
+        phone.page.evaluate("() => new Promise((done) => requestAnimationFrame(done))")
+    phone.kill()
+    phone.page.goto(f"{line.address}/scouting/")
+    phone.page.locator("#clean").wait_for()
+    records = [one["plant"] for one in kept(phone.page).records]
+    is_kept = before in records
+    assert is_kept or plant_of(phone.page) == before, "what was not kept is asked for again"
+    assert sorted(records) == sorted([*told_before, before] if is_kept else told_before)
+    return [(before, "clean")] if is_kept else []
 
 
 def test_what_a_phone_was_planned_to_find_holds_though_another_robot_is_set_meanwhile(
@@ -165,44 +209,6 @@ def test_what_a_phone_was_planned_to_find_holds_though_another_robot_is_set_mean
     assert detection_of(now, BEGINS) == 0.5
     assert now.history.detections.tolist() == [0.84, 0.84]
     assert [(one.who, one.n, one.own) for one in now.other_detections(BEGINS)] == [("Ann", 2, 0.5)]
-
-
-def test_a_scout_says_that_a_plant_is_gone_and_takes_it_back(season, line, phone):
-    invited(phone, line, season)
-    page = phone.page
-    kept_one, _ = told_now(page, "gone")
-    told_now(page, "gone")
-    page.locator("#last", has_text="Plant is gone").wait_for()
-    page.locator("#undo").click()
-    page.locator(f"#last[data-plant='{kept_one}']").wait_for()
-    page.locator(SENT).wait_for(timeout=120_000)
-    history = Season(season.path).history
-    assert np.flatnonzero(history.gone(0)).tolist() == [kept_one]
-
-
-def test_killed_in_the_moment_of_a_tap_it_is_whole_or_asked_for_again(season, line, mortal_phone):
-    phone = mortal_phone
-    invited(phone, line, season, "Dan")
-    line.go()
-    said = []
-    for k in range(KILLS):
-        before = plant_of(phone.page)
-        at_once = phone.page.evaluate(
-            "() => { document.querySelector('#clean').click();"
-            " return Number(document.querySelector('#place').dataset.plant); }"
-        )
-        assert at_once != before, "the next plant is there with the tap"
-        if k % 2:  # the disk may have it by then, or not
-            phone.page.evaluate("() => new Promise((done) => requestAnimationFrame(done))")
-        phone.kill()
-        phone.page.goto(f"{line.address}/scouting/")
-        phone.page.locator("#clean").wait_for()
-        records = [one["plant"] for one in kept(phone.page).records]
-        if before in records:
-            said.append(before)
-        else:
-            assert plant_of(phone.page) == before, "what was not kept is asked for again"
-        assert sorted(records) == sorted(said)
 
 
 _NO_DISK = """() => {
@@ -256,9 +262,9 @@ _SENT_AGAIN = """async (times) => {
 
 
 @pytest.mark.timeout(3600)
-def test_a_line_that_breaks_at_any_byte_loses_and_doubles_nothing(season, line, phone):
+def test_a_line_that_breaks_at_any_byte_loses_and_doubles_nothing(season, line, phone, monkeypatch):
     broken, said = BrokenLine(line.port, seed=5), []
-    line.address = broken.address
+    monkeypatch.setattr(line, "address", broken.address)
     invited(phone, line, season, "Eve")
     page, rng = phone.page, random.Random(6)
     broken.is_broken, photos_taken = True, 0
@@ -316,8 +322,7 @@ def test_a_tap_is_of_the_plant_in_large_print_whoever_records_it_meanwhile(seaso
     other.locator("#clean").wait_for()
     theirs = a_finding(plant, FOUND, on=BEGINS, at=utc_now())
     take(season, scouts.let_in(season, "Ann"), [theirs], utc_now())
-    page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
-    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    news(page)
     page.locator("#place", has_text="Ann").wait_for()
     assert plant_of(page) == plant
     told_now(page, "clean")
@@ -335,8 +340,7 @@ def test_a_newer_plan_is_said_and_loaded_by_whoever_wants_it(season, line, phone
     plan = planned_again(season, BEGINS, WorkPart(name="Dan"))
     closed = [{"rows": [1, int(season.plant_numbers.line.max())], "until": "2999-04-06T07:00"}]
     monkeypatch.setattr(documents, "_closed", lambda *_: closed)
-    page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
-    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    news(page)
     page.locator("#newer").wait_for()
     assert plant_of(page) == plant
     page.locator("#newer").click()
@@ -347,7 +351,9 @@ def test_a_newer_plan_is_said_and_loaded_by_whoever_wants_it(season, line, phone
     page.locator("#menu .bad", has_text="Rows 1 to ").wait_for()
 
 
-def test_a_phone_learns_what_the_season_took_back_and_sends_it_again(season, line, phone):
+def test_a_phone_says_what_waits_and_what_the_season_took_back_and_takes_no_half_pests(
+    season, line, phone
+):
     invited(phone, line, season)
     page = phone.page
     page.locator(SENT).wait_for()
@@ -360,8 +366,7 @@ def test_a_phone_learns_what_the_season_took_back_and_sends_it_again(season, lin
     page.locator("#undo").wait_for()
     page.locator(SENT).wait_for()
     season.undo()
-    page.clock.set_system_time(utc_now() + timedelta(seconds=90))  # news is due
-    page.evaluate("() => { dispatchEvent(new Event('online')); }")
+    news(page)
     page.locator("#taken_back").click()
     numbered = season.plant_numbers
     name = f"Row {numbered.line[plant]}, plant {numbered.number[plant]}: Clean"
@@ -370,12 +375,12 @@ def test_a_phone_learns_what_the_season_took_back_and_sends_it_again(season, lin
     page.locator("#taken_back").wait_for(state="hidden")
     until(lambda: plant in season.history.inspections.plant)
     page.locator(SENT).wait_for()
+    _without_a_network(phone, numbered)
 
 
-def test_the_page_says_what_waits_and_takes_no_half_pests(season, line, phone):
-    invited(phone, line, season, "Dan")
-    page, numbered = phone.page, season.plant_numbers
-    page.locator(SENT).wait_for()
+def _without_a_network(phone, numbered):
+    """Find pests at a plant, and come back to it, while nothing can be sent."""
+    page = phone.page
     phone.window.set_offline(True)
     page.locator("#sync[data-state=offline]").wait_for()
     plant = plant_of(page)
@@ -446,18 +451,24 @@ def test_a_phone_handed_over_and_taken_to_another_plot_mixes_nothing(season, lin
     assert first[0] in {one["plant"] for one in kept(page).records}
 
 
-def test_a_glove_that_bounces_says_nothing_of_the_next_plant(season, line, phone):
-    invited(phone, line, season, "Fay")
-    plant = plant_of(phone.page)
-    phone.page.evaluate("() => [1, 2, 3].forEach(() => document.querySelector('#clean').click())")
-    phone.page.locator(f"#last[data-plant='{plant}'][data-kept=true]").wait_for()
-    assert [one["plant"] for one in kept(phone.page).records] == [plant]
-
-
-def test_nothing_is_called_sent_between_the_tap_and_the_sending(season, line, phone):
+def test_taps_count_once_and_are_sent_when_they_say_so_by_keys_and_by_a_glove_that_bounces(
+    season, line, phone
+):
     invited(phone, line, season, "Hal")
     page = phone.page
     page.locator(SENT).wait_for()
+    first = plant_of(page)
+    page.evaluate("() => [1, 2, 3].forEach(() => document.querySelector('#clean').click())")
+    page.locator(f"#last[data-plant='{first}'][data-kept=true]").wait_for()
+    assert [one["plant"] for one in kept(page).records] == [first]
+    page.locator(SENT).wait_for()
+    _is_sent_when_it_says_so(page)
+    _by_keys_alone(page)
+    _is_gone_and_taken_back(page, season)
+
+
+def _is_sent_when_it_says_so(page):
+    """Tap: nothing is called sent between the tap and the sending."""
     page.evaluate(_BARS)
     told_now(page, "clean")
     page.wait_for_function("() => bars.some(([state]) => state === 'sending')")
@@ -468,18 +479,9 @@ def test_nothing_is_called_sent_between_the_tap_and_the_sending(season, line, ph
     page.locator(SENT).wait_for()
 
 
-#: what the bar says, each time that it is drawn
-_BARS = """() => {
-  window.bars = [];
-  const sync = document.querySelector("#sync");
-  const drawn = new MutationObserver(() => bars.push([sync.dataset.state, sync.dataset.left]));
-  drawn.observe(sync, { attributes: true });
-}"""
-
-
-def test_by_keyboard_alone(season, line, phone):
-    invited(phone, line, season, "Gil")
-    page = phone.page
+def _by_keys_alone(page):
+    """Tap and find, and open and close the menu, by the keyboard."""
+    page.locator("#answers:not([data-resting])").wait_for()
 
     def to(name):
         for _ in range(40):
@@ -488,7 +490,7 @@ def test_by_keyboard_alone(season, line, phone):
             page.keyboard.press("Tab")
         pytest.fail(f"{name} was not reached")
 
-    first = plant_of(page)
+    before, first = kept(page).records, plant_of(page)
     to("clean")
     page.keyboard.press("Enter")
     page.locator(f"#last[data-plant='{first}'][data-kept=true]").wait_for()
@@ -508,24 +510,39 @@ def test_by_keyboard_alone(season, line, phone):
     page.locator("#close").wait_for()
     page.keyboard.press("Escape")
     page.locator("#close").wait_for(state="hidden")
-    records = [(one["plant"], one["result"], one.get("count")) for one in kept(page).records]
-    assert set(records) == {(first, "clean", None), (second, "found", 4)}
-    assert len(records) == 2
+    said = [(one["plant"], one["result"], one.get("count")) for one in kept(page).records]
+    assert {one for one in said if one[0] in {first, second}} == {
+        (first, "clean", None), (second, "found", 4),
+    }  # fmt: skip
+    assert len(said) == len(before) + 2
 
 
-def test_what_a_scout_does_in_the_field(season, line, browser):
+def _is_gone_and_taken_back(page, season):
+    """Say of two plants that they are gone, and take the second back."""
+    kept_one, _ = told_now(page, "gone")
+    told_now(page, "gone")
+    page.locator("#last", has_text="Plant is gone").wait_for()
+    page.locator("#undo").click()
+    page.locator(f"#last[data-plant='{kept_one}']").wait_for()
+    page.locator(SENT).wait_for(timeout=120_000)
+    history = Season(season.path).history
+    assert np.flatnonzero(history.gone(0)).tolist() == [kept_one]
+
+
+#: what the bar says, each time that it is drawn
+_BARS = """() => {
+  window.bars = [];
+  const sync = document.querySelector("#sync");
+  const drawn = new MutationObserver(() => bars.push([sync.dataset.state, sync.dataset.left]));
+  drawn.observe(sync, { attributes: true });
+}"""
+
+
+def test_what_a_scout_does_in_the_field(season, line, phone):
     season = a_season(season.path.parent / "Faces 2026.gpkg", plot=a_plot(faces=2))
     start = route_ahead(season, BEGINS).plant[0]
     lon, lat = season.plot.grid.lonlat([start])[0]
-    here = {"longitude": lon, "latitude": lat, "accuracy": 4}
-    phone = PhoneWindow(browser, geolocation=here)
-    try:
-        _in_the_field(phone, line, season)
-    finally:
-        phone.close()
-
-
-def _in_the_field(phone, line, season):
+    phone.window.set_geolocation({"longitude": lon, "latitude": lat, "accuracy": 4})
     numbered, plot = season.plant_numbers, season.plot
     key = invited(phone, line, season, "Ben")
     page = phone.page
@@ -608,17 +625,42 @@ def _neighbours(plot, plant):
     return others[start[plant] : start[plant + 1]]
 
 
-@pytest.mark.parametrize("language", ["he", "en"])
-def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone, language):
+def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone):
     key, other = (scouts.let_in(season, name) for name in ("Cem", "Dan"))
     for one, result in ((key, FOUND), (other, CLEAN)):
         take(season, one, [a_finding(40, result, on=BEGINS)], utc_now())
     page = phone.page
-    page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), language))
-    page.locator(SENT).wait_for()
-    page.goto(page.url.partition("#")[0])  # as from the home screen: the language stays
+    for language, reads in (("en", "ltr"), ("he", "rtl")):
+        page.goto("about:blank")
+        page.goto(invitation(line.address, season.path.stem, key, str(BEGINS), language))
+        page.locator(f"html[dir={reads}]").wait_for()
+        page.locator(SENT).wait_for()
+        page.goto(page.url.partition("#")[0])  # as from the home screen: the language stays
+        page.locator(f"html[dir={reads}]").wait_for()
+        _is_for_thumbs(page)
+    page.locator("#open_menu").click()
+    page.locator("fieldset").first.locator("button").first.click()  # the left hand
+    page.locator("#close").click()
+    clean, found = page.evaluate(LEFTS)
+    assert clean < found, "under the left thumb"
+    page.locator("#open_menu").click()
+    page.evaluate(  # the other hand, and closed before that is kept
+        "document.querySelectorAll('fieldset button')[1].click();"
+        "document.getElementById('close').click(); document.getElementById('menu').id = 'old_menu'"
+    )
+    page.locator("#menu").wait_for(state="attached")
+    assert not page.locator("#menu").evaluate("(menu) => menu.open")
+    clean, found = page.evaluate(LEFTS)
+    assert clean > found, "under the right thumb again"
+
+
+#: where the two most pressed buttons begin
+LEFTS = "['clean', 'found'].map((one) => document.getElementById(one).getBoundingClientRect().x)"
+
+
+def _is_for_thumbs(page):
+    """Hold all buttons to be large and on the screen, and the most pressed one to the right."""
     page.locator(SENT).wait_for()  # till then, the page may draw its buttons anew
-    assert page.locator("html").get_attribute("dir") == ("rtl" if language == "he" else "ltr")
     said = page.locator(".contradiction[data-plant='40']").inner_text()
     assert "Cem" in said
     assert "Dan" in said
@@ -628,25 +670,8 @@ def test_it_reads_from_the_right_and_its_targets_are_thumbs(season, line, phone,
     )
     assert all(width >= 56 and height >= 56 and fits for width, height, fits in sizes)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    lefts = (
-        "['clean', 'found'].map((one) => document.getElementById(one).getBoundingClientRect().x)"
-    )
-    clean, found = page.evaluate(lefts)
+    clean, found = page.evaluate(LEFTS)
     assert clean > found, "under the right thumb"
-    page.locator("#open_menu").click()
-    page.locator("fieldset").first.locator("button").first.click()  # the left hand
-    page.locator("#close").click()
-    clean, found = page.evaluate(lefts)
-    assert clean < found, "under the left thumb"
-    page.locator("#open_menu").click()
-    page.evaluate(  # the other hand, and closed before that is kept
-        "document.querySelectorAll('fieldset button')[1].click();"
-        "document.getElementById('close').click(); document.getElementById('menu').id = 'old_menu'"
-    )
-    page.locator("#menu").wait_for(state="attached")
-    assert not page.locator("#menu").evaluate("(menu) => menu.open")
-    clean, found = page.evaluate(lefts)
-    assert clean > found, "under the right thumb again"
 
 
 def test_texts_that_do_harm_are_text_on_the_page_too(season, line, phone):

@@ -6,7 +6,10 @@ import sys
 from datetime import date
 
 from app.words import texts
+from fieldmon.infestation.records import Records
+from fieldmon.monitoring import MonitoringSettings, Season
 from tests.app.driving import PAGES, go, map_of, opened, press, texts_of
+from tests.monitoring.seasons import a_small_plot
 from tests.paths import ROOT
 
 
@@ -48,33 +51,38 @@ def test_every_part_asks_for_a_plot_where_nothing_was_brought(app):
         assert app.get("bidi_component") == [], page
 
 
-def test_every_part_of_a_season_opens_marks_another_day_and_folds_away_who_inspects(season_app):
+def test_every_part_of_a_season_opens_marks_another_day_and_folds_away_who_inspects(
+    seasons_folder,
+):
     """On the season's first day all open in another language: see `words/test_languages.py`."""
-    season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 20)).run()
+    begins = MonitoringSettings(date(2026, 11, 16))
+    Season.create(seasons_folder / "Gate 2026.gpkg", a_small_plot(), Records.none(), begins)
+    app = opened("Gate 2026")
+    app.date_input(key="day Gate 2026").set_value(date(2026, 11, 20)).run()
     for page in PAGES:
-        go(season_app, page)
-        assert not season_app.exception, page
-        assert not season_app.error, page
-        assert idle_digits(season_app) == [], page
+        go(app, page)
+        assert not app.exception, page
+        assert not app.error, page
+        assert idle_digits(app) == [], page
         # unfolded where a day is planned
-        who = [box for box in season_app.expander if box.label == texts.WHO]
+        who = [box for box in app.expander if box.label == texts.WHO]
         assert [box.proto.expanded for box in who] == [page == "today"] * len(who), page
         if page == "plots":
             continue  # each plot has a today of its own there
-        assert "**Fri 20 Nov**" in season_app.warning[0].value, page
-        assert "not today (Mon 16 Nov)" in season_app.warning[0].value
+        assert "**Fri 20 Nov**" in app.warning[0].value, page
+        assert "not today (Mon 16 Nov)" in app.warning[0].value
         records = page in {"today", "scout", "record", "decide"}
-        assert ("is recorded for" in season_app.warning[0].value) == records, page
-    assert "2026-11-20" in season_app.query_params["day"]
-    press(season_app, texts.BACK_TO_TODAY)
-    assert not season_app.warning
-    assert season_app.date_input(key="day Gate 2026").value == date(2026, 11, 16)
-    assert "day" not in season_app.query_params
+        assert ("is recorded for" in app.warning[0].value) == records, page
+    assert "2026-11-20" in app.query_params["day"]
+    press(app, texts.BACK_TO_TODAY)
+    assert not app.warning
+    assert app.date_input(key="day Gate 2026").value == date(2026, 11, 16)
+    assert "day" not in app.query_params
 
 
 def test_a_box_for_files_speaks_the_language_of_the_page():
     for code, upload in (("en", None), ("he", "להעלות קובץ"), ("es", "Subir archivo")):
-        styles = "".join(one.proto.body for one in opened(lang=code).get("html"))
+        styles = "".join(one.proto.body for one in opened(texts.UPLOAD, lang=code).get("html"))
         assert ("--upload:" in styles) == (code != "en")
         assert upload is None or f'--upload:"{upload}"' in styles
         assert upload is None or "200 MB" in styles

@@ -52,38 +52,45 @@ def lines_of(path, words):
     return next(block.split("\n") for block in blocks if f'msgid "{words}"' in block.split("\n"))
 
 
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("Take back: {what}", "Take it back: {what}"),  # the app's own, by its place
-        ("turning radius", "turning radius of it"),  # a sentence of the library, by its words
-    ],
-)
 def test_a_text_whose_english_changed_keeps_its_translation_until_somebody_looked_at_it(
-    tmp_path, monkeypatch, old, new
+    tmp_path, monkeypatch
 ):
     path = tmp_path / "he.po"
     path.write_bytes(catalogues.path_of("he").read_bytes())
     monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
     monkeypatch.setattr(translations, "FOLDER", tmp_path)
-    own = next(entry for entry in entries() if entry.words == old)
-    changed = catalogues.TextEntry(own.context, new)
-    wanted = [changed if entry == own else entry for entry in entries()]
+    news = {
+        "Take back: {what}": "Take it back: {what}",  # the app's own, by its place
+        "turning radius": "turning radius of it",  # a sentence of the library, by its words
+    }
+    before = catalogues.read("he")
+    own = {old: next(entry for entry in entries() if entry.words == old) for old in news}
+    kept = {old: before.get(old, entry.context).string for old, entry in own.items()}
+    lines = {old: lines_of(path, old) for old in news}
+    changed = {old: catalogues.TextEntry(own[old].context, new) for old, new in news.items()}
+    instead = {own[old]: entry for old, entry in changed.items()}
+    wanted = [instead.get(entry, entry) for entry in entries()]
     monkeypatch.setattr(catalogues, "entries", lambda: wanted)
-    kept, before = catalogues.read("he").get(old, own.context).string, lines_of(path, old)
-    assert catalogues.update("he") == catalogues.update("he") == [changed]  # as often as it is run
-    written = lines_of(path, new)
-    assert written[0].startswith("#, fuzzy")
-    assert written[1] == f'#| msgid "{old}"'
-    assert before[-1] == written[-1] == f'msgstr "{kept}"'
-    assert translations.catalogue_of.__wrapped__("he").pgettext(own.context, new) == ""
-    # whoever looked at it takes the marks out
-    mark = "#, python-brace-format\n" if "{" in new else ""
-    text = path.read_text().replace("\n".join(written[:2]) + "\n", mark)
+    open_ = catalogues.update("he")
+    assert {*open_} == {*changed.values()}
+    assert catalogues.update("he") == open_  # as often as it is run
+    spoken = translations.catalogue_of.__wrapped__("he")
+    text = path.read_text()
+    for old, new in news.items():
+        written = lines_of(path, new)
+        assert written[0].startswith("#, fuzzy")
+        assert written[1] == f'#| msgid "{old}"'
+        assert lines[old][-1] == written[-1] == f'msgstr "{kept[old]}"'
+        assert spoken.pgettext(own[old].context, new) == ""
+        # whoever looked at it takes the marks out
+        mark = "#, python-brace-format\n" if "{" in new else ""
+        text = text.replace("\n".join(written[:2]) + "\n", mark)
     path.write_text(text)
     assert catalogues.update("he") == []
     assert path.read_text() == text
-    assert translations.catalogue_of.__wrapped__("he").pgettext(own.context, new) == kept
+    spoken = translations.catalogue_of.__wrapped__("he")
+    for old, new in news.items():
+        assert spoken.pgettext(own[old].context, new) == kept[old]
 
 
 def test_what_was_long_and_counted_is_kept_whole(tmp_path, monkeypatch):

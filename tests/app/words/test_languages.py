@@ -16,6 +16,7 @@ import fieldmon
 from app.state import chosen_language
 from app.words import catalogues, language, texts, translations
 from tests.app.driving import PAGES, go, map_of, opened, texts_of
+from tests.app.test_hostile_texts import EVERY, harm_shown, hostile_season
 from tests.app.words.known_texts import catalogue, entries
 
 OTHERS = tuple(code for code in language.LANGUAGES if code != language.ENGLISH)
@@ -138,16 +139,16 @@ def test_a_draft_is_spoken_by_its_address_with_english_where_it_has_no_words(
         shutil.copy(catalogues.path_of(code), tmp_path)
     (tmp_path / "de.po").write_text("\n".join([lines, "", *more]), encoding="utf-8")
     monkeypatch.setattr(translations, "FOLDER", tmp_path)
-    assert opened(lang="de").selectbox(key=chosen_language.KEY).value == "en"
+    assert not language.is_spoken("de")
     monkeypatch.setattr(language, "DRAFTS", {"de": "Deutsch"})
-    app = opened(lang="de")
+    app = opened(texts.UPLOAD, lang="de")
     speaking("de")
     box = app.selectbox(key=chosen_language.KEY)
     assert not app.exception
     assert (box.label, box.value, box.options[-1]) == ("Sprache", "de", "Deutsch")
     assert texts.DRAFT in [one.value for one in app.caption]
     assert texts.CHANGED_TREATED.format(n=1, day="x") == "1 plant was treated on x."
-    assert "Deutsch" not in opened().selectbox(key=chosen_language.KEY).options
+    assert "Deutsch" not in opened(texts.UPLOAD).selectbox(key=chosen_language.KEY).options
 
 
 # -- the library's sentences
@@ -172,17 +173,22 @@ def test_pages_speak_the_language_of_the_address(code, speaking):
         assert english_left(app, code) == [], part
 
 
-def test_every_page_speaks_another_language(season_app, speaking):
+def test_every_page_speaks_another_language_and_shows_what_does_harm_as_text(
+    seasons_folder, speaking
+):
+    """In a season whose every text field is full of it."""
+    hostile_season(seasons_folder / "Harm.gpkg", f"{EVERY} {'x' * 10_000}")
     left = {}
     for code in SPOKEN:
-        season_app.session_state[chosen_language.KEY] = code
-        season_app.run()
         speaking(code)  # see above
+        app, shown = opened("Harm", lang=code), 0
         for part in PAGES:
-            go(season_app, part)
-            assert not season_app.exception, (code, part)
-            assert not season_app.error, (code, part)
-            left[code, part] = english_left(season_app, code)
+            go(app, part)
+            assert not app.exception, (code, part)
+            assert not app.error, (code, part)
+            left[code, part] = english_left(app, code)
+            shown += harm_shown(app)
+        assert shown >= 3
     assert {where: lines for where, lines in left.items() if lines} == {}
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from fieldmon.plot.robot import Robot
 
-    from ..state.told_team import TeamChoice, TeamDraft, MemberRow
+    from ..state.told_team import MemberRow, TeamChoice, TeamDraft
 
 _PROBLEM = "team table problem "
 # more rows than these take a page too long

@@ -72,7 +72,8 @@ def _wrong(name: str, given: object) -> ObservationError:
 def _first_wrong(name: str, given: Any) -> str | None:  # noqa: ANN401 - it is looked at here
     """Return which value of a column of numbers is none, or None where that cannot be told."""
     kind = np.dtype(_TYPES[name])
-    if kind.kind not in "if" or np.ndim(given) != 1:
+    is_row = hasattr(given, "__len__") and getattr(given, "ndim", 1) == 1
+    if kind.kind not in "if" or not is_row or isinstance(given, (str, bytes)):
         return None
     limits = np.iinfo(kind) if kind.kind == "i" else None
     for k, one in enumerate(given):

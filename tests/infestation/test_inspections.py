@@ -153,6 +153,7 @@ def test_columns_of_another_length_are_refused_by_name():
         ({"result": [1, 300]}, "inspection 2 of 2 is 300"),
         ({"second": [None, time(7, 0)]}, "seconds since local midnight, but that of inspection 2"),
         ({"count": [None, "a"]}, "numbers, but that of inspection 2 of 2 is 'a'"),
+        ({"count": [1, [2, 3]]}, "numbers, but that of inspection 2 of 2 is a list"),
     ],
 )
 def test_of_a_column_that_is_refused_the_first_wrong_value_is_named(wrong, said):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -77,7 +78,7 @@ def _first_wrong(name: str, given: Any) -> str | None:  # noqa: ANN401 - it is l
         return None
     limits = np.iinfo(kind) if kind.kind == "i" else None
     for k, one in enumerate(given):
-        fits = isinstance(one, (int, float, np.number, np.bool_))
+        fits = isinstance(one, (Real, np.bool_))
         if limits:
             fits = fits and one == one // 1 and limits.min <= one <= limits.max
         elif one is None:

@@ -152,7 +152,7 @@ _FINE: dict[str, dict[str, set[str]]] = {
 _CALLED = {
     "at_s": ("clock",), "area": ("no area",), "as_format": ("can be written as",),
     "belief_settings": ("BeliefSettings",), "batch": ("number", "nothing to take back"),
-    "bearing_deg": ("bearing",),
+    "bearing_deg": ("bearing",), "begins": ("Days and times",), "meaning": ("risk raster means",),
     "chance": ("chance map",), "copy": ("author", "file of a season"), "efficacy": ("works",),
     "feature": ("plot",), "found": ("What was seen", "hot spots"), "frame": ("GeoDataFrame",),
     "gate": ("Everything on a plot",), "inspection": ("number", "inspection"),

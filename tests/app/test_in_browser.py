@@ -215,8 +215,8 @@ _COUNT_SENT = """() => {
 }"""
 
 
-def test_over_a_slow_line_a_page_is_shown_again_and_what_is_pressed_twice_is_done_once(
-    page, address, served_seasons
+def test_a_page_is_shown_again_over_a_line_so_slow_that_another_was_turned_to_meanwhile(
+    page, address
 ):
     on_the_way, done, line = [], [], []
 
@@ -244,14 +244,16 @@ def test_over_a_slow_line_a_page_is_shown_again_and_what_is_pressed_twice_is_don
     is_slow = True
     for name in ("season", "today"):
         turn(name, len(done) + 1)
-    while on_the_way:
-        line[0].send(on_the_way.pop(0))
-    is_slow = False
+    for message in on_the_way:
+        line[0].send(message)
     broken = page.get_by_role("dialog")
     page.get_by_text("Keep this season").or_(broken).first.wait_for()
     assert broken.count() == 0
-    rest(page)
+
+
+def test_a_double_press_begins_one_season_and_keeps_one_plan(page, address, served_seasons):
     before = {*served_seasons.glob("*.gpkg")}
+    shown(page, address)
     page.locator(".st-key-do_begin button").dblclick()
     page.get_by_text("has begun").wait_for(timeout=180_000)
     rest(page)

@@ -12,7 +12,7 @@ from app.show.maps import deck
 from app.state.map_store import STORE
 from app.words import texts
 from app.words.units import UnitsInLanguage
-from fieldmon.drive.vda5050.watcher import FAILED, LIVE, LOST, PAUSED, WAITING
+from fieldmon.drive.vda5050 import watcher
 from tests.app.chosen import a_plot
 from tests.app.driving import go, map_of
 from tests.paths import ROOT
@@ -165,9 +165,17 @@ def test_every_word_of_the_map_is_one_that_its_script_shows():
     source = "".join(path.read_text(encoding="utf-8") for path in sorted(folder.glob("*.js")))
     asked = set(re.findall(r"\b(?:words|said)\.([a-z_]+)\b(?!\()", source))
     # how a robot stands is shown by its own word: the watcher's, the page's, the script's
-    assert "words[heard.standing]" in source
-    standings = {*(WAITING, LIVE, PAUSED, FAILED, LOST), "ended", "away"}
-    assert asked | standings == set(texts.MAP_WORDS)
+    assert 'words[standing === "lost" && lag === null ? "lost_before" : standing]' in source
+    stands = {watcher.WAITING, watcher.LIVE, watcher.PAUSED, watcher.FAILED, watcher.LOST}
+    stands |= {watcher.IDLE, watcher.HELD, watcher.DONE, watcher.OFF}
+    stands |= {watcher.ELSEWHERE, watcher.DOUBLE, "lost_before"}
+    # beside its name on the map, where there is room for a word
+    assert "this.words[`robot_${robot.heard?.standing}`]" in source
+    in_short = {"robot_paused", "robot_lost", "robot_failed", "robot_held", "robot_done",
+                "robot_off", "robot_double"}  # fmt: skip
+    assert in_short <= {f"robot_{one}" for one in stands}
+    link = {"ended", "away", "unheard"}
+    assert asked | stands | in_short | link == set(texts.MAP_WORDS)
 
 
 def test_the_browser_is_sent_the_same_in_few_bytes():

@@ -22,6 +22,12 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.settings.settings import MonitoringSettings
     from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
+# what tells corrections that were taken from others, whatever their numbers are in a copy
+_TAKEN = (
+    "SELECT at, before, now FROM outside_changes WHERE layer = 'inspections' AND before NOTNULL "
+    "AND batch NOTNULL"
+)
+
 
 def waiting(theirs: sqlite3.Connection) -> tuple[OutsideChange, ...]:
     """Return what another program changed of a copy's inspections."""
@@ -30,6 +36,22 @@ def waiting(theirs: sqlite3.Connection) -> tuple[OutsideChange, ...]:
         for one in outside_changes.waiting(theirs)
         if one.layer == INSPECTIONS.name and one.what in {"update", "delete"}
     )
+
+
+def n_alone(db: sqlite3.Connection, theirs: sqlite3.Connection) -> int:
+    """Return how many inspections that count here a copy alone has corrected to others, or deleted.
+
+    What other programs changed there, and nobody took yet, is `waiting`.
+    """
+    known = set(db.execute(_TAKEN))
+    counts = "SELECT 1 FROM inspections WHERE digest = ? AND undone = 0"
+    n = 0
+    for one in theirs.execute(f"{_TAKEN} AND undone = 0"):
+        _, before, now = one
+        was = rows_that_count.as_it_was(before)["digest"]
+        if one not in known and was is not None and was != now:
+            n += db.execute(counts, (was,)).fetchone() is not None
+    return n
 
 
 def take(

@@ -66,6 +66,26 @@ def corrections_in(season: OpenSeason, copy: Path) -> tuple[OutsideChange, ...]:
         return copy_corrections.waiting(theirs)
 
 
+def refuse_corrected_there(season: OpenSeason, copy: Path) -> None:
+    """Raise `FileProblem` where inspections of this season were corrected in a copy of it alone.
+
+    Recorded from there, they would count twice, and what was deleted would still count.
+    """
+    if not is_copy(season, copy):
+        return
+    with season.store.reading() as db, Store(copy).reading() as theirs:
+        n = copy_corrections.n_alone(db, theirs)
+    if n:
+        raise FileProblem(
+            worded(
+                "A copy of a season whose findings are recorded must have no corrections of its "
+                "own, but {n} {n:inspection of this one was|inspections of this one were} "
+                "corrected or deleted there. Take all that it holds with: fieldmon merge",
+                n=n,
+            )
+        )
+
+
 def is_of_another_pest(season: OpenSeason, file: Path) -> bool:
     """Return whether this and the season in a file name pests that differ."""
     with season.store.reading() as db, Store(file).reading() as theirs:

@@ -20,6 +20,7 @@ from fieldmon.monitoring.merging.other_seasons import (
     is_copy,
     own_names,
     refuse_another_pest,
+    refuse_corrected_there,
     treatments_alone_in,
 )
 from fieldmon.monitoring.phones import findings
@@ -111,7 +112,8 @@ def read_brought(
     Raises
     ------
     FileProblem
-        If it is a season that looks for another pest, among others.
+        If it is a season that looks for another pest, or a copy of this one in which inspections
+        were corrected, among others.
     """
     # what reads files is half a second to import
     from fieldmon.io.read import read_inspection_rows, read_phone_file  # noqa: PLC0415
@@ -124,6 +126,7 @@ def read_brought(
     copy = season_copied(source, folder)
     if copy is not None:
         refuse_another_pest(season, copy)
+        refuse_corrected_there(season, copy)
     corrected = [] if copy is None else [one.row for one in corrections_in(season, copy)]
     treated = [] if copy is None else _about_treatments(season, copy)
     if copy is not None:

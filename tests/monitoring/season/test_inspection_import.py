@@ -6,13 +6,14 @@ import sqlite3
 import uuid
 from contextlib import closing
 from dataclasses import replace
+from datetime import timedelta
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from fieldmon.errors import ContradictionError, ObservationError
-from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.errors import ContradictionError, FileProblem, ObservationError
+from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.monitoring import Season
@@ -59,6 +60,27 @@ def test_where_no_record_says_a_day_all_are_of_the_day_of_the_work(season, tmp_p
     assert read.findings.date.tolist() == [BEGINS] * 2
     assert read.findings.second[0] == 7.5 * 3600
     assert (read.name, read.saved, read.copy, read.corrections) == ("day.csv", None, None, 0)
+
+
+def test_a_copy_in_which_inspections_of_this_season_were_corrected_is_for_merge(path, tmp_path):
+    season, copy = Season(path), Season(shutil.copy(path, tmp_path / "copy.gpkg"))
+    new = Inspections.of([250], [FOUND], BEGINS)
+    added = copy.record(new, "phone", "Ann")
+    (own,) = [one.number for one in copy.numbered(plant=250)]
+    copy.correct_time(own, None, "Ann", BEGINS + timedelta(days=1))
+    (tmp_path / "own").mkdir()
+    # what was recorded there, too, is new here as it was corrected
+    read = read_brought(season, copy.path, OPTIONS, tmp_path / "own")
+    assert added.new == 1
+    assert BEGINS + timedelta(days=1) in read.findings.date.tolist()
+    first = copy.numbered(plant=int(season.history.inspections.plant[0]))[0].number
+    copy.correct_time(first, None, "Ann", BEGINS + timedelta(days=2), confirmed=True)
+    (tmp_path / "again").mkdir()
+    with pytest.raises(FileProblem, match="but 1 inspection of this one was corrected or deleted"):
+        read_brought(season, copy.path, OPTIONS, tmp_path / "again")
+    season.merge(copy)
+    (tmp_path / "merged").mkdir()
+    assert read_brought(season, copy.path, OPTIONS, tmp_path / "merged").corrections == 0
 
 
 @pytest.mark.parametrize("kind", [Path, lambda path: Upload("copy.gpkg", path.read_bytes())])

@@ -66,6 +66,23 @@ def test_what_was_taken_back_and_recorded_again_at_once_counts_in_the_merged_sea
         assert one.verify() == ()
 
 
+def test_what_stands_back_here_and_was_taken_back_there_does_not_count_again(path, other):
+    season = Season(path)
+    there = Season(shutil.copy(path, other))
+    ann, bob = (one.record(result(30, FOUND), "taps", who) for one, who in
+                ((season, "Ann"), (there, "Bob")))  # fmt: skip
+    season.merge(there)
+    there.merge(season)
+    there.undo(max(one.number for one in there.batches()))  # Bob's: it stands back for Ann's
+    for first, second in ((season, there), (there, season)):
+        first.merge(second)
+    assert ann.new == bob.new == 1
+    for one in (season, there):
+        assert 30 in one.history.inspections.plant
+        one.undo(max(batch.number for batch in one.batches() if not batch.undone))
+        assert 30 not in one.history.inspections.plant, "what both took back counts again"
+
+
 @pytest.mark.parametrize("way", ["ours", "theirs"])
 def test_a_note_written_in_either_copy_is_kept(path, other, way):
     noted, bare = (path, other) if way == "ours" else (other, path)

@@ -12,6 +12,7 @@ import streamlit as st
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.monitoring.settings.settings import seconds
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ, person_key
 from fieldmon.planning.stated_team import usual_kind
 
@@ -69,8 +70,7 @@ class MemberRow:
     def starts(self) -> float:
         """Return the seconds of the day at which whoever it is starts."""
         start: time = self.said("start")
-        unsaid = start == self.first("start")
-        return self.starts_s if unsaid else 3600.0 * start.hour + _MIN_S * start.minute
+        return self.starts_s if start == self.first("start") else seconds(start)
 
     def worker(self) -> Robot:
         """Return the robot or scout that the row says; raise `SettingError` for no such one."""
@@ -217,8 +217,7 @@ def _begun(seen: TeamChoice, choice: TeamChoice) -> TeamDraft:
 
 
 def _rows(team: Iterable[TeamMember], starts: time) -> tuple[MemberRow, ...]:
-    first_s = 3600.0 * starts.hour + _MIN_S * starts.minute + starts.second
-    return tuple(MemberRow(_next(), one, first_s + one.starts_s) for one in team)
+    return tuple(MemberRow(_next(), one, seconds(starts) + one.starts_s) for one in team)
 
 
 def _choice(

@@ -16,11 +16,13 @@ from fieldmon.drive.vda5050.crossing import Crossing
 from fieldmon.drive.vda5050.messages import (
     FASTER,
     LATE_S,
+    OVER,
     at_once,
     decoded,
     encoded,
     header_of,
     home_order,
+    is_stopped,
     order_of,
     result_of,
     sent_at,
@@ -52,7 +54,6 @@ _MOST_TRIES = 24
 _MOST_CUT_OFF = 3
 # how far from a node it may pass where nobody said how wide it is, and nothing more is known
 _FREE_M = 0.3
-_OVER = {"FINISHED", "FAILED"}
 # errors with which a robot cannot go on with its order; 2.1 has only the last
 _ENDS = {"CRITICAL", "FATAL"}
 
@@ -290,7 +291,7 @@ class Vda5050Robot:
             lambda _: self._ask("cancelOrder", "cancel"),
             "ended its order of before",
             lambda: self._status("cancel") is not None or not self._is_busy(),
-            lambda state: state if self._status("cancel") in _OVER or not self._is_busy() else None,
+            lambda state: state if self._status("cancel") in OVER or not self._is_busy() else None,
         )
         return why if isinstance(why, str) else ""
 
@@ -360,7 +361,7 @@ class Vda5050Robot:
     def _is_busy(self) -> bool:
         """Tell whether something is left of an order that is not of this run."""
         state = self._heard
-        left = [one for one in state["actionStates"] if one["actionStatus"] not in _OVER]
+        left = [one for one in state["actionStates"] if one["actionStatus"] not in OVER]
         others = state["orderId"] != self._known["orderId"]
         return others and bool(state["nodeStates"] or state["edgeStates"] or left)
 
@@ -448,7 +449,7 @@ class Vda5050Robot:
 
     def _finished(self, state: dict[str, Any], action: str) -> dict[str, Any] | None:
         """Return the state of an action that is over; one that a broken robot let go is not."""
-        over = {"FINISHED"} if self._broken() else _OVER
+        over = {"FINISHED"} if self._broken() else OVER
         for one in state["actionStates"]:
             if one["actionId"] == action and one["actionStatus"] in over:
                 done: dict[str, Any] = one
@@ -526,7 +527,7 @@ class Vda5050Robot:
 
     def _stands(self) -> bool:
         """Tell whether somebody has stopped the robot."""
-        return bool(self._heard.get("paused")) or self._heard["operatingMode"] != "AUTOMATIC"
+        return is_stopped(self._heard)
 
     def _late(self, message: dict[str, Any]) -> bool:
         """Tell whether a message came after one that was sent later, or twice; say a clock's jump.

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     Float = NDArray[np.float64]
 
 ACTION = "inspectPlant"
+#: how an action stands that is through
+OVER = frozenset({"FINISHED", "FAILED"})
 #: information of a robot that is simulated, faster than the clock: how many times
 FASTER = "faster"
 MAP = "map"
@@ -86,6 +88,11 @@ def decoded(kind: str, data: bytes) -> dict[str, Any]:
             f"A message {kind!r} must be as VDA 5050 {version} has it, but {'; '.join(wrong)}."
         )
     return as_heard(kind, message, version)
+
+
+def is_stopped(state: dict[str, Any]) -> bool:
+    """Return whether somebody has stopped the robot of a state, or drives it by hand."""
+    return bool(state.get("paused")) or state["operatingMode"] != "AUTOMATIC"
 
 
 def sent_at(message: dict[str, Any]) -> datetime:

@@ -15,7 +15,15 @@ import shapely
 from fieldmon.drive.trace import Trace, TracedStop, thinned
 from fieldmon.drive.track import Track
 from fieldmon.drive.vda5050.header_count import HeaderCount
-from fieldmon.drive.vda5050.messages import ACTION, LATE_S, decoded, result_of, sent_at
+from fieldmon.drive.vda5050.messages import (
+    ACTION,
+    LATE_S,
+    OVER,
+    decoded,
+    is_stopped,
+    result_of,
+    sent_at,
+)
 from fieldmon.errors import ObservationError
 
 if TYPE_CHECKING:
@@ -261,8 +269,11 @@ class RobotWatcher:
         for one in state["actionStates"]:
             name = one["actionId"]
             plant = self._plants.get(name, -1)
-            over = one["actionStatus"] in {"FINISHED", "FAILED"}
-            if over and name not in self._told and 0 <= plant < len(self._grid):
+            if (
+                one["actionStatus"] in OVER
+                and name not in self._told
+                and 0 <= plant < len(self._grid)
+            ):
                 seen = one["actionStatus"] == "FINISHED"
                 found = result_of(one, plant).found if seen else None
                 self._told[name] = TracedStop(at_s, plant, found)
@@ -300,13 +311,12 @@ class RobotWatcher:
 
 def _does(state: dict[str, Any]) -> str:
     """Return what a robot does by a state without a fatal error."""
-    if state.get("paused") or state["operatingMode"] != "AUTOMATIC":
+    if is_stopped(state):
         return PAUSED
     if not state["orderId"]:
         return IDLE
     nodes = state["nodeStates"]
-    over = {"FINISHED", "FAILED"}
-    acts = any(one["actionStatus"] not in over for one in state["actionStates"])
+    acts = any(one["actionStatus"] not in OVER for one in state["actionStates"])
     if acts or state["driving"] or (nodes and nodes[0]["released"]):
         return LIVE
     return HELD if nodes else DONE

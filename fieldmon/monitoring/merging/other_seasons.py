@@ -58,32 +58,23 @@ def is_copy(season: OpenSeason, file: Path) -> bool:
 def corrections_in(season: OpenSeason, copy: Path) -> tuple[OutsideChange, ...]:
     """Return what another program changed of inspections in a copy of this season.
 
-    A file that is no copy of it has none.
+    A file that is no copy of it has none. Raise `FileProblem` where a copy has taken corrections
+    that this season has not: recorded from there, what was corrected would count twice, and what
+    was deleted would still count.
     """
     if not is_copy(season, copy):
         return ()
-    with Store(copy).reading() as theirs:
-        return copy_corrections.waiting(theirs)
-
-
-def refuse_corrected_there(season: OpenSeason, copy: Path) -> None:
-    """Raise `FileProblem` where inspections of this season were corrected in a copy of it alone.
-
-    Recorded from there, they would count twice, and what was deleted would still count.
-    """
-    if not is_copy(season, copy):
-        return
     with season.store.reading() as db, Store(copy).reading() as theirs:
-        n = copy_corrections.n_alone(db, theirs)
-    if n:
-        raise FileProblem(
-            worded(
-                "A copy of a season whose findings are recorded must have no corrections of its "
-                "own, but {n} {n:inspection of this one was|inspections of this one were} "
-                "corrected or deleted there. Take all that it holds with: fieldmon merge",
-                n=n,
+        if n := copy_corrections.n_alone(db, theirs):
+            raise FileProblem(
+                worded(
+                    "A copy of a season whose findings are recorded must have no corrections of "
+                    "its own, but {n} {n:inspection of this one was|inspections of this one were} "
+                    "corrected or deleted there. Take all that it holds with: fieldmon merge",
+                    n=n,
+                )
             )
-        )
+        return copy_corrections.waiting(theirs)
 
 
 def is_of_another_pest(season: OpenSeason, file: Path) -> bool:

@@ -20,7 +20,6 @@ from fieldmon.monitoring.merging.other_seasons import (
     is_copy,
     own_names,
     refuse_another_pest,
-    refuse_corrected_there,
     treatments_alone_in,
 )
 from fieldmon.monitoring.phones import findings
@@ -126,7 +125,6 @@ def read_brought(
     copy = season_copied(source, folder)
     if copy is not None:
         refuse_another_pest(season, copy)
-        refuse_corrected_there(season, copy)
     corrected = [] if copy is None else [one.row for one in corrections_in(season, copy)]
     treated = [] if copy is None else _about_treatments(season, copy)
     if copy is not None:

@@ -322,9 +322,9 @@ class Wire(_End):
         said = None if will is None else (f"{self._topic}/{will[0]}", will[1])
         self._open(broker, name, [f"{self._topic}/{kind}" for kind in hears], said)
 
-    def send(self, kind: str, data: bytes, *, kept: bool = False) -> None:
-        """Send a message; `kept`: whoever comes later hears the last of its kind."""
-        self.client.publish(f"{self._topic}/{kind}", data, qos=1, retain=kept)
+    def send(self, kind: str, data: bytes, *, kept: bool = False) -> Any:  # noqa: ANN401 - paho's
+        """Send a message, and return its receipt; `kept`: whoever comes later hears the last."""
+        return self.client.publish(f"{self._topic}/{kind}", data, qos=1, retain=kept)
 
     def _on_message(self, _client: object, _data: object, message: Any) -> None:  # noqa: ANN401
         self._inbox.put(message.topic.rpartition("/")[2], message)

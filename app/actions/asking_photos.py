@@ -28,7 +28,7 @@ def show(choices: Choices) -> None:
     """Show what can be asked for, and what is."""
     if choices.season is None:
         return
-    plants = wishes.picked(choices.place) or plant_history.tapped(choices)
+    plants = wishes.picked(choices.laid) or plant_history.tapped(choices)
     asked = photos_asked.photos_asked(choices.season)
     if not plants and not asked:
         return
@@ -65,7 +65,7 @@ def _show_one(choices: Choices, one: AskedPhoto) -> None:
 def _ask(choices: Choices, plants: tuple[int, ...]) -> str:
     for plant in plants:
         photos_asked.ask_photo(choices.open_season, plant, st.session_state[_NOTE])
-    wishes.pick(choices.place, ())
+    wishes.pick(choices.laid, ())
     return ""
 
 

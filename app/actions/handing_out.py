@@ -41,7 +41,7 @@ def show(choices: Choices, plan: DayPlan) -> None:
 
 def give_out(choices: Choices) -> None:
     """Keep the day's route with the season as the one given out: stops are counted along it."""
-    anew = wishes.were_told(choices.place, choices.day)
+    anew = wishes.were_told(choices.laid, choices.day)
     day_ahead.planned(choices.open_season, choices.on, wishes=choices.wishes, keep=True, anew=anew)
 
 

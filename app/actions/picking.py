@@ -23,25 +23,25 @@ if TYPE_CHECKING:
 
 def take(choices: Choices, plants: tuple[int, ...]) -> None:
     """Take plants as picked (for callbacks)."""
-    wishes.pick(choices.place, tuple(k for k in plants if 0 <= k < len(choices.plot.grid)))
+    wishes.pick(choices.laid, tuple(k for k in plants if 0 <= k < len(choices.plot.grid)))
 
 
 def layers(choices: Choices) -> list[Layer]:
     """Return rings round the plants that are picked."""
-    some = wishes.picked(choices.place)
+    some = wishes.picked(choices.laid)
     return [plant_layers.picked(choices.plot.grid, np.array(some, np.intp))] if some else []
 
 
 def show(choices: Choices, plan: DayPlan) -> None:
     """Show what can be done with the plants that are picked, and what is wished for already."""
-    some = wishes.picked(choices.place)
+    some = wishes.picked(choices.laid)
     if some:
         st.markdown(texts.PICKED.format(plants=texts.PLANTS_COUNTED.format(n=len(some))))
         with st.container(horizontal=True):
             for key, label in (("also", texts.PICKED_ALSO), ("never", texts.PICKED_NEVER)):
                 st.button(label, key=f"picked_{key}", on_click=_wish, args=(choices, key, some))
             st.button(texts.PICKED_NONE, key="picked_none", on_click=take, args=(choices, ()))
-    wanted = wishes.of(choices.place, choices.day)
+    wanted = wishes.of(choices.laid, choices.day)
     if not wanted:
         return
     said = [
@@ -58,11 +58,11 @@ def show(choices: Choices, plan: DayPlan) -> None:
 
 
 def _wish(choices: Choices, kind: str, plants: tuple[int, ...]) -> None:
-    now = wishes.of(choices.place, choices.day)
+    now = wishes.of(choices.laid, choices.day)
     new = now.also(plants) if kind == "also" else now.never(plants)
-    wishes.want(choices.place, choices.day, new)
+    wishes.want(choices.laid, choices.day, new)
     take(choices, ())
 
 
 def _drop(choices: Choices) -> None:
-    wishes.want(choices.place, choices.day, Wishes())
+    wishes.want(choices.laid, choices.day, Wishes())

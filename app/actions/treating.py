@@ -81,7 +81,7 @@ def show(choices: Choices, zones: Callable[[], Zoned] | None = None) -> None:
 
 def _where(boxes: FreshBoxes) -> None:
     """Ask for the part of the plot that was treated: rows, or what is selected on the map."""
-    if some := wishes.picked(boxes.choices.place):
+    if some := wishes.picked(boxes.choices.laid):
         plants = texts.PLANTS_COUNTED.format(n=len(some))
         st.checkbox(texts.TREAT_SELECTED.format(plants=plants), value=True,
                     key=boxes.key(_SELECTED))  # fmt: skip
@@ -97,7 +97,7 @@ def _plants(boxes: FreshBoxes) -> NDArray[np.bool_] | None:
     if sum(ways) > 1:
         raise SettingError(texts.TREAT_TWICE)
     if boxes.said(_SELECTED):
-        return np.isin(np.arange(len(grid)), wishes.picked(boxes.choices.place))
+        return np.isin(np.arange(len(grid)), wishes.picked(boxes.choices.laid))
     return plants_in_rows(grid, rows) if rows else None
 
 
@@ -177,7 +177,7 @@ def _treat(choices: Choices, boxes: FreshBoxes, zones: Callable[[], Zoned] | Non
     done = season.treat(choices.on, works, area, application=said, plants=plants)
     boxes.empty()
     if plants is not None:
-        wishes.pick(choices.place, ())
+        wishes.pick(choices.laid, ())
     if done.batch is None:
         return texts.TREATED_BEFORE
     beware = [

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from datetime import date
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from fieldmon.infestation.prior.prior_settings import PriorSettings
 from fieldmon.io.writers.file_names import plain_name
 from fieldmon.monitoring.phones import photos_asked
@@ -135,9 +137,16 @@ class Choices:
         return " ".join([self.plot.field.name, *(f"{edge:.5f}" for edge in edges)])
 
     @property
+    def laid(self) -> str:
+        """Return the same of plants as they are laid: numbers of plants mean nothing elsewhere."""
+        grid = self.plot.grid
+        some = grid.lonlat(np.linspace(0, len(grid) - 1, 4).astype(np.intp))
+        return " ".join([self.place, str(len(grid)), *(f"{one:.5f}" for one in some.flat)])
+
+    @property
     def wishes(self) -> Wishes:
         """Return what people want of the day besides, the plants to be photographed among it."""
-        picked = wishes.of(self.place, self.day)
+        picked = wishes.of(self.laid, self.day)
         if self.season is None or self.is_past:
             return picked
         asked = {one.plant for one in photos_asked.photos_asked(self.season)}
@@ -185,7 +194,7 @@ class Choices:
         if self.season is not None:
             of = self.day, who
             now = cached.revision_on(self.season, self.on, who)
-            wished = self.wishes, wishes.were_told(self.place, self.day)
+            wished = self.wishes, wishes.were_told(self.laid, self.day)
             minute = f"{self.clock.now():%F %H:%M}" if self.is_today else ""
             return cached.season_plan_now(self.key, now, minute, of, self.season, wished)
         known = self.records, self.risk

@@ -1,4 +1,4 @@
-"""What a session brought, said of it, or typed and did not record yet, is kept on this machine.
+"""What a session brought, said of it, typed and did not record yet, or wants, is kept here.
 
 A reload finds it again.
 The way back is a long random word in the address. Whoever has it sees the files; who does not
@@ -26,7 +26,7 @@ import streamlit as st
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.options import Upload
 
-from . import brought_files, fresh_boxes, plot_edits, widget_memory
+from . import brought_files, fresh_boxes, plot_edits, widget_memory, wishes
 from .brought_files import File
 
 #: the word in the address that leads back to the files
@@ -108,6 +108,7 @@ def _restore(word: str) -> None:
     for key, value in said["boxes"].items():
         widget_memory.first(key, value)
     fresh_boxes.take(said.get("unfinished", {}))
+    wishes.take(said.get("wishes", {}))
     st.session_state[_CAME_BY], st.session_state[_SAVED] = word, _said(brought_files.brought())
     os.utime(here)
 
@@ -126,7 +127,7 @@ def _keep() -> None:
     if st.session_state.get(_SAVED) == said or not _can_keep():
         return
     word, came_by = st.session_state[_SESSION], st.session_state.pop(_CAME_BY, "")
-    if not files and not said["unfinished"]:
+    if not files and not said["unfinished"] and not said["wishes"]:
         if word:
             shutil.rmtree(folder() / word, ignore_errors=True)
         st.session_state[_SESSION], st.session_state[_SAVED] = "", said
@@ -165,7 +166,7 @@ def _said(files: dict[str, File]) -> dict[str, Any]:
     unfinished = fresh_boxes.unfinished()
     return {
         "files": named, "answers": answers, "edits": edits, "boxes": boxes,
-        "unfinished": unfinished,
+        "unfinished": unfinished, "wishes": wishes.said(),
     }  # fmt: skip
 
 

@@ -1,4 +1,7 @@
-"""What people want of a day besides: plants picked on the map, to be inspected too, or not."""
+"""What people want of a day besides: plants picked on the map, to be inspected too, or not.
+
+`laid` is of which plot and plants, see `Choices.laid`.
+"""
 
 from __future__ import annotations
 
@@ -6,35 +9,48 @@ import streamlit as st
 
 from fieldmon.planning.wishes import Wishes
 
-_PICKED = "plants picked"
+_PICKED, _WISHES = "plants picked", "wishes "
 
 
-def of(place: str, day: str) -> Wishes:
-    """Return what is wanted of a day (ISO) on a plot; kept as long as the session."""
-    wishes: Wishes = st.session_state.get(_key(place, day), Wishes())
+def of(laid: str, day: str) -> Wishes:
+    """Return what is wanted of a day (ISO)."""
+    wishes: Wishes = st.session_state.get(_key(laid, day), Wishes())
     return wishes
 
 
-def were_told(place: str, day: str) -> bool:
+def were_told(laid: str, day: str) -> bool:
     """Return whether anything was wished of a day, though it may be wished no more."""
-    return _key(place, day) in st.session_state
+    return _key(laid, day) in st.session_state
 
 
-def want(place: str, day: str, wishes: Wishes) -> None:
+def want(laid: str, day: str, wishes: Wishes) -> None:
     """Want this of a day."""
-    st.session_state[_key(place, day)] = wishes
+    st.session_state[_key(laid, day)] = wishes
 
 
-def picked(place: str) -> tuple[int, ...]:
+def picked(laid: str) -> tuple[int, ...]:
     """Return the plants that are picked on a plot."""
     where, plants = st.session_state.get(_PICKED, ("", ()))
-    return plants if where == place else ()
+    return plants if where == laid else ()
 
 
-def pick(place: str, plants: tuple[int, ...]) -> None:
+def pick(laid: str, plants: tuple[int, ...]) -> None:
     """Pick plants; whatever was picked before is not any more."""
-    st.session_state[_PICKED] = place, plants
+    st.session_state[_PICKED] = laid, plants
 
 
-def _key(place: str, day: str) -> str:
-    return f"wishes {place} {day}"
+def _key(laid: str, day: str) -> str:
+    return f"{_WISHES}{laid} {day}"
+
+
+def said() -> dict[str, tuple[tuple[int, ...], tuple[int, ...]]]:
+    """Return all that is wanted, as JSON can hold it."""
+    keys = [str(key) for key in st.session_state if str(key).startswith(_WISHES)]
+    told: dict[str, Wishes] = {key: st.session_state[key] for key in keys}
+    return {key: (of.wanted, of.unwanted) for key, of in told.items()}
+
+
+def take(said: dict[str, list[list[int]]]) -> None:
+    """Want what was wanted before a reload, as `said` returned it."""
+    for key, (wanted, unwanted) in said.items():
+        st.session_state[key] = Wishes(tuple(wanted), tuple(unwanted))

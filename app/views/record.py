@@ -20,7 +20,7 @@ def show(choices: Choices) -> None:
     """Take in what was found."""
     content = map_layers.day_map(choices, first="state", above=picking.layers(choices))
     tapped = partial(recording.take_plant, choices)
-    picked = wishes.picked(choices.place)
+    picked = wishes.picked(choices.laid)
     plant_history.want(choices, content, partial(picking.take, choices), tapped, picked=picked)
     if choices.season is None:
         st.markdown(texts.NEEDS_SEASON)

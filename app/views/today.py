@@ -64,7 +64,7 @@ def _work(choices: Choices, plan: DayPlan) -> None:
     morning_steps.show(choices, plan)
     bringing_files.show_doubts_of_records(choices)
     content = map_layers.day_map(choices, above=picking.layers(choices))
-    picked = wishes.picked(choices.place)
+    picked = wishes.picked(choices.laid)
     plant_history.want(choices, content, partial(picking.take, choices), picked=picked)
     picking.show(choices, plan)
     recording_here.show(choices)

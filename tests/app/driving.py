@@ -56,6 +56,12 @@ def opened(season=None, **address):
     return Session(({} if season is None else {"season": season}) | address)
 
 
+def word_of(app):
+    """Return the word in the address that leads back to what a session brought."""
+    word = app.query_params["files"]
+    return word[0] if isinstance(word, list) else word
+
+
 def go(app, page):
     """Turn to a page by its address: it says nothing else, the next run is its own.
 

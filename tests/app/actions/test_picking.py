@@ -4,16 +4,18 @@ import numpy as np
 import pytest
 import streamlit as st
 
+import fieldmon as fm
 from app.actions import picking
 from app.state import wishes
 from tests.app.chosen import a_plot, chosen
-from tests.app.driving import map_of, press, texts_of
+from tests.app.driving import go, map_of, opened, press, row_box, texts_of, word_of
+from tests.paths import ROOT
 
 
 def select(app, plants):
     """Select plants as the map's lasso does, which has no browser here."""
-    place = map_of(app)["place"]
-    app.session_state["plants picked"] = (place, tuple(plants))
+    gate = fm.read_plot(ROOT / "sample_data" / "paran_estate.zip", feature="Gate")
+    app.session_state["plants picked"] = (chosen(gate).laid, tuple(plants))
     return app.run()
 
 
@@ -34,6 +36,12 @@ def test_selected_plants_are_ringed_and_inspected_too_then_dropped(app):
     after = stops(app)
     assert {(40, 1), (40, 2)} <= set(zip(after["row"], after["plant"], strict=True))
     assert "2 plants to be inspected besides" in texts_of(app)
+    again = opened(files=word_of(app)).run()
+    assert stops(again).equals(after), "a reload finds what is wanted"
+    row_box(go(app, "plot"), "row_spacing").set_value(7.0).run()
+    assert "inspected besides" not in texts_of(go(app, "today")), "other plants have their numbers"
+    row_box(go(app, "plot"), "row_spacing").set_value(4.0).run()
+    go(app, "today")
     press(app, "As planned before")
     assert stops(app).equals(before)
 
@@ -52,9 +60,9 @@ def test_plants_left_out_are_not_on_the_route(app):
 def test_a_plant_that_is_not_there_is_not_selected():
     choices = chosen(a_plot(0.001))
     picking.take(choices, (0, len(choices.plot.grid)))
-    assert wishes.picked(choices.place) == (0,)
+    assert wishes.picked(choices.laid) == (0,)
     (ring,) = picking.layers(choices)
     assert ring.data == [{"p": np.round(choices.plot.grid.lonlat(np.array([0])), 7)[0].tolist()}]
     picking.take(choices, ())
     assert picking.layers(choices) == []
-    assert st.session_state["plants picked"] == (choices.place, ())
+    assert st.session_state["plants picked"] == (choices.laid, ())

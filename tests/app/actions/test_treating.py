@@ -127,7 +127,7 @@ def test_a_treatment_of_rows_is_of_their_plants_as_in_a_command(season_app, seas
 
 def test_a_treatment_of_what_is_selected_on_the_map_is_of_those_plants(season_app, season):
     some = (3, 4, 700)
-    season_app.session_state["plants picked"] = in_season(season()).place, some
+    season_app.session_state["plants picked"] = in_season(season()).laid, some
     go(season_app, "record")
     assert "3 plants" in boxed(season_app.checkbox, "treat selected").label
     part_noted(season_app, rows="20")

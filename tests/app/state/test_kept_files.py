@@ -22,15 +22,11 @@ from tests.app.driving import (
     square,
     texts_of,
     upload,
+    word_of,
     zipped,
 )
 
 MITES = b"lon,lat,date,count\n35.1505,30.3605,2026-11-10,4\n"
-
-
-def word_of(app):
-    word = app.query_params["files"]
-    return word[0] if isinstance(word, list) else word
 
 
 def reloaded(app):

@@ -9,6 +9,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from ..state.class_changes import ClassChanges
 from ..state.map_store import JSON, STORE
 from ..words import texts
 from . import field_map, map_layers
@@ -17,13 +18,12 @@ from .maps import colours, legends, plant_layers
 from .maps.plant_layers import PlantNotes
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from fieldmon.drive.trace import Trace
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Scene
 
     from ..state.choices import Choices
+    from ..state.class_changes import ClassChange
     from ..state.driving import DayInTime
     from ..state.live_drive import LiveDrive, SeenRobot
 
@@ -79,7 +79,7 @@ def as_live(live: LiveDrive) -> dict[str, object]:
         for k, one in enumerate(seen)
     ]
     link = "unheard" if live.is_cut_off else "live" if live.running else "ended"
-    return _data(scene, robots, live.believed(seen)) | {"link": link}
+    return _data(scene, robots, live.changes(seen, colours.classes)) | {"link": link}
 
 
 def _ordered(one: SeenRobot) -> dict[str, object]:
@@ -98,7 +98,10 @@ def published(scene: Scene, day: DayInTime) -> str:
 
 def as_data(scene: Scene, day: DayInTime) -> dict[str, object]:
     """Return a day as the browser plays it: of one robot, which needs no name."""
-    return _data(scene, [_robot(0, "", day.trace, scene.robot)], day.believed)
+    changes = ClassChanges(colours.classes(scene.chance))
+    for at_s, chance in day.believed:
+        changes.add(at_s, colours.classes(chance))
+    return _data(scene, [_robot(0, "", day.trace, scene.robot)], changes.so_far)
 
 
 def _robot(k: int, name: str, trace: Trace, robot: Robot) -> dict[str, Any]:
@@ -119,28 +122,19 @@ def _robot(k: int, name: str, trace: Trace, robot: Robot) -> dict[str, Any]:
 
 
 def _data(
-    scene: Scene, robots: list[dict[str, Any]], believed: list[tuple[float, NDArray[np.float64]]]
+    scene: Scene, robots: list[dict[str, Any]], changes: list[ClassChange]
 ) -> dict[str, object]:
     """Return the days of robots by one clock, and the changes of the chance classes."""
-    changes, before = [], _classes(scene.chance)
-    for second, chance in believed:
-        now = _classes(chance)
-        plants = np.flatnonzero(now != before)
-        changes.append([round(second, 1), plants.tolist(), now[plants].tolist()])
-        before = now
     spacing_m = min(scene.grid.plant_spacing_m, scene.grid.row_spacing_m)
     stops = [[*stop, k] for k, one in enumerate(robots) for stop in one["stops"]]
     return {
         "robots": [{name: one[name] for name in one if name not in {"stops", "end"}}
                    for one in robots],
         "stops": sorted(stops, key=lambda one: one[0]),
-        "changes": changes,
+        "changes": [[round(one.at_s, 1), one.plants.tolist(), one.classes.tolist()]
+                    for one in changes],
         "end": max([0.0, *(one["end"] for one in robots)]),
         "plant": [0.35 * spacing_m, _TALL_M],
         "found": list(colours.FOUND),
         "clean": list(colours.CLEAN),
     }  # fmt: skip
-
-
-def _classes(chance: NDArray[np.float64]) -> NDArray[np.int64]:
-    return colours.by_chance(chance).rank.astype(np.int64)

@@ -15,15 +15,18 @@ from fieldmon.drive.vda5050.watcher import HEARS, WAITING, Heard
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 
 from .background_work import BackgroundWork
+from .class_changes import ClassChanges
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from fieldmon.drive.errand import Float
     from fieldmon.drive.trace import TracedStop
     from fieldmon.drive.vda5050.mqtt import Broker, Watched
     from fieldmon.plot.robot import Robot
     from fieldmon.samplers.base import Scene
+
+    from .class_changes import ClassChange, Classes
 
 _EVERY_S = 0.25
 
@@ -73,7 +76,7 @@ class LiveDrive(BackgroundWork):
         self._where, self.scene, self._robots = (broker, watched), scene, robots or {}
         self._ear: Ear | None = None
         self._team: TeamWatcher | None = None
-        self._believed: list[tuple[float, Float]] = []
+        self._changes: ClassChanges | None = None
         self._known = 0
         self._lock = threading.Lock()
         #: when days are planned to end, by name, as of when it was begun; None: nobody asked yet
@@ -82,7 +85,7 @@ class LiveDrive(BackgroundWork):
     def start(self) -> None:
         """Begin to listen."""
         if not self.running:
-            self.problem, self._believed, self._known = None, [], 0
+            self.problem, self._changes, self._known = None, None, 0
             self._ear = self._team = self.ends = None
             self.begin()
 
@@ -125,29 +128,29 @@ class LiveDrive(BackgroundWork):
                 for name, one in team.robots.items()
             )
 
-    def believed(self, seen: tuple[SeenRobot, ...]) -> list[tuple[float, Float]]:
-        """Return what is believed by what robots have told, as of each time that somebody asked.
+    def changes(
+        self, seen: tuple[SeenRobot, ...], classes: Callable[[Float], Classes]
+    ) -> list[ClassChange]:
+        """Return how plants changed by what robots have told, as of each time that somebody asked.
 
-        Seconds, and chances ``(n,)``.
+        `classes` returns those of chances ``(n,)``; whoever asks has the same.
         """
         told = sorted(
             (stop, one.name) for one in seen for stop in one.trace.stops if stop.found is not None
         )
         with self._lock:
+            changes = self._changes = self._changes or ClassChanges(classes(self.scene.chance))
             if len(told) != self._known:
-                self._learn(told)
-            return [*self._believed]
+                self._known = len(told)
+                last_s = max([changes.last_s, *(one.done_s for one, _ in told)])
+                changes.add(last_s, classes(self._learnt(told)))
+            return changes.so_far
 
-    def _learn(self, told: list[tuple[TracedStop, str]]) -> None:
-        """Believe what was told by now."""
+    def _learnt(self, told: list[tuple[TracedStop, str]]) -> Float:
+        """Return the chances ``(n,)`` by what was told by now."""
         settings, morning = BeliefSettings(), self.scene
         before = settings.first_morning(morning.grid, morning.chance)
         plants = np.array([one.plant for one, _ in told], np.int32)
         found = np.array([one.found for one, _ in told], np.bool_)
         detects = np.array([self.works_as(name).detects for _, name in told])
-        now = settings.evening(before, plants, found, detects)
-        self._known = len(told)
-        last_s = max([0.0, *(one.done_s for one, _ in told), *(at_s for at_s, _ in self._believed)])
-        if self._believed and self._believed[-1][0] == last_s:  # what came late counts at once
-            self._believed.pop()
-        self._believed.append((last_s, now.chance))
+        return settings.evening(before, plants, found, detects).chance

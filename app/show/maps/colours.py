@@ -107,8 +107,12 @@ def of_chance(*, dark: bool = False) -> tuple[Colour, ...]:
 
 def by_chance(chance: NDArray[np.float64], *, dark: bool = False) -> Shade:
     """Return plants shaded by their chance of infestation, in the legend's classes."""
-    rank = np.searchsorted(CHANCE_FROM, chance, side="right") - 1
-    return Shade.of(of_chance(dark=dark), rank)
+    return Shade.of(of_chance(dark=dark), classes(chance))
+
+
+def classes(chance: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return in which of the legend's classes chances are, from 0 for the least."""
+    return np.searchsorted(CHANCE_FROM, chance, side="right") - 1
 
 
 def by_state(state: NDArray[np.int8]) -> Shade:

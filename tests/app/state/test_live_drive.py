@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app.show import drive_play
+from app.show.maps import colours
 from app.state import background_work
 from app.state.live_drive import LiveDrive, SeenRobot
 from app.state.map_store import STORE
@@ -41,7 +42,8 @@ def test_way_finds_and_chances_of_a_day_come_as_it_is_driven(broker, plot, robot
     seen = []
 
     def look(*_):
-        seen.append((live.seen()[0], live.believed(live.seen())))
+        seen.append(live.seen()[0])
+        live.changes(live.seen(), colours.classes)
 
     with Monitor(plot, robot=robot).day() as day, live_robot(broker, ROBOT, "d", print) as driver:
         drive_day(day, plot.aisles, (robot, driver), look)
@@ -51,17 +53,17 @@ def test_way_finds_and_chances_of_a_day_come_as_it_is_driven(broker, plot, robot
     assert [one.found for one in shown.trace.stops] == day.found.tolist()
     assert (shown.heard.standing, silent.heard.standing) == ("live", "waiting")
     # it grows, and what is believed with it
-    grown = [len(one.trace.stops) for one, _ in seen]
+    grown = [len(one.trace.stops) for one in seen]
     assert grown == sorted(grown)
     assert grown[0] < grown[-1]
-    believed = live.believed((shown, silent))
-    assert (believed[-1][1] != scene.chance).any()
-    seconds = [at_s for at_s, _ in believed]
+    changes = live.changes((shown, silent), colours.classes)
+    assert sum(len(one.plants) for one in changes) > 0
+    seconds = [one.at_s for one in changes]
     assert seconds == sorted(set(seconds))
     data = drive_play.as_live(live)
     assert data["end"] > 0
     assert data["link"] == "live"
-    assert len(data["changes"]) == len(believed)
+    assert len(data["changes"]) == len(changes)
     assert [len(one["at"]) > 0 for one in data["robots"]] == [True, False]
     other.stop()
     until(lambda: live.seen()[0].heard.standing == "off")
@@ -135,9 +137,10 @@ def test_each_of_a_team_finds_as_it_does_and_what_comes_late_counts(scene):
     for plant, second in ((5, 60.0), (40, 30.0)):
         chances = []
         for name in "ab":
-            (at_s, chance), *_ = live.believed(
-                (SeenRobot(name, trace((second, plant, False)), way, heard),)
-            )[-1:]
+            seen = (SeenRobot(name, trace((second, plant, False)), way, heard),)
+            # with chances for classes
+            last = live.changes(seen, lambda chance: chance)[-1]
+            at_s, chance = last.at_s, dict(zip(last.plants.tolist(), last.classes, strict=True))
             chances.append(chance[plant])
             live._known = 0
         assert at_s == 60.0

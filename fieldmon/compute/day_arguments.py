@@ -84,12 +84,27 @@ def _local(given: object) -> NDArray[Any]:
     """Return times as an array; raise `ObservationError` where one names a zone."""
     import numpy as np  # noqa: PLC0415 - as above
 
+    if (kind := _kind_of_zone(given)) is not None:
+        raise ObservationError(_no_plot(f"the column's type, {kind},"))
     array = np.asarray(given)
     if array.dtype.kind in "OU":
         for one in array.ravel().tolist():
             if _names_zone(one):
                 raise ObservationError(_no_plot(one))
     return array
+
+
+def _kind_of_zone(given: object) -> object | None:
+    """Return the type of a column whose times are of a zone; None: it is none.
+
+    Of polars' and pyarrow's numpy would make times of UTC.
+    """
+    dtype = getattr(given, "dtype", None)
+    kinds = dtype, getattr(dtype, "pyarrow_dtype", None), getattr(given, "type", None)
+    return next(
+        (kind for kind in kinds if getattr(kind, "tz", None) or getattr(kind, "time_zone", None)),
+        None,
+    )
 
 
 def _is_longer(kind: Any) -> bool:  # noqa: ANN401 - numpy's

@@ -1,13 +1,19 @@
 """Days that a program hands over, whatever says them."""
 
 from datetime import UTC, date, datetime, timedelta
+from types import SimpleNamespace
+from zoneinfo import ZoneInfo
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pytest
 
-from fieldmon.compute.day_arguments import day_in, day_of, days_of
-from fieldmon.errors import SettingError
+from fieldmon.compute.day_arguments import day_in, day_of, days_of, seconds_of
+from fieldmon.errors import ObservationError, SettingError
+
+#: still the day before in UTC
+AT = datetime(2026, 11, 30, 1, 30, tzinfo=ZoneInfo("Asia/Jerusalem"))
 
 
 def test_days_are_dates_texts_or_numpys_and_no_numbers():
@@ -65,3 +71,33 @@ def test_a_moment_is_the_day_on_the_plot_and_refused_where_none_is_known():
         assert day_in(said, lambda moment: moment + timedelta(hours=2)) == date(2026, 11, 19)
         with pytest.raises(SettingError, match="must be the plot's own, but 2026-11-18 23:30"):
             day_in(said)
+
+
+class OfPolars(np.ndarray):
+    """A column as polars has it: numpy would take it in UTC."""
+
+    dtype = SimpleNamespace(time_zone="Asia/Jerusalem")
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        pd.Series([AT]),
+        pd.DatetimeIndex([AT]),
+        pd.Series([AT]).astype("timestamp[us, tz=Asia/Jerusalem][pyarrow]"),
+        pa.array([AT]),
+        pa.chunked_array([[AT]]),
+        np.array(["2026-11-29T23:30"], "datetime64[us]").view(OfPolars),
+    ],
+    ids=lambda column: type(column).__name__,
+)
+def test_columns_whose_type_names_a_zone_are_refused(column):
+    for read in (days_of, seconds_of):
+        with pytest.raises(ObservationError, match=r"Jerusalem.* names a zone"):
+            read(column)
+
+
+def test_arrow_columns_of_local_times_are_taken():
+    local = pa.array([AT.replace(tzinfo=None)])
+    assert days_of(local).tolist() == [AT.date()]
+    assert seconds_of(pd.Series(local, dtype="timestamp[us][pyarrow]")).tolist() == [5400.0]

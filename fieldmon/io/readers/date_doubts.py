@@ -15,8 +15,10 @@ from fieldmon.io.import_report import (
     Severity,
     UnreadDates,
     doubtful,
+    dropped,
     guessed,
 )
+from fieldmon.io.readers.inspection_options import TAKE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,7 +27,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.compute.wording import Worded
+    from fieldmon.infestation.inspections import Inspections
+    from fieldmon.io.import_report import Imported
     from fieldmon.io.parse.dates import DatedColumn
+    from fieldmon.io.readers.inspection_options import InspectionOptions
 
 
 def read_day_first() -> ImportMessage:
@@ -78,6 +83,23 @@ def amid_past(day: NDArray[np.datetime64], today: date | None = None) -> dict[in
         i: worded("its day, {day}, has not come, but others of the file have", day=day[i])
         for i in np.flatnonzero(ahead).tolist()
     }
+
+
+def come(
+    read: Imported[Inspections], options: InspectionOptions, today: date
+) -> Imported[Inspections]:
+    """Leave out, and say so, inspections of days after today on the plot, unless they are taken."""
+    ahead = to_come(read.value.date, today)
+    if options.take_doubtful or not ahead.any():
+        return read
+    said = worded(
+        "{n} {n:result|results} of days that have not come, up to {latest}, {n:was|were} left out: "
+        "it is {today} on the plot.",
+        n=int(ahead.sum()),
+        latest=read.value.date[ahead].max(),
+        today=today,
+    )
+    return read.having(read.value.take(~ahead), (dropped(said, None, TAKE),))
 
 
 def in_future(day: NDArray[np.datetime64], where: str | None = None) -> list[ImportMessage]:

@@ -9,9 +9,13 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.io.import_report import Remedy
 from fieldmon.io.options import ZonedOptions
 from fieldmon.io.parse.clock import zone_of
 from fieldmon.io.parse.dates import dates
+
+#: takes what was left out as doubtful
+TAKE = Remedy("take_doubtful", "yes", worded("Take it all the same"))
 
 
 @dataclass(frozen=True)

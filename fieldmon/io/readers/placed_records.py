@@ -21,6 +21,7 @@ from fieldmon.infestation.nearby_plants import outside_m
 from fieldmon.io.import_report import Remedy, doubtful, dropped, guessed
 from fieldmon.io.readers.date_doubts import amid_past
 from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
+from fieldmon.io.readers.inspection_options import TAKE
 from fieldmon.io.readers.inspection_places import (
     below_first,
     by_label,
@@ -43,7 +44,6 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid
 
 _LISTED = 20  # doubtful records that are named one by one
-_TAKE = Remedy("take_doubtful", "yes", worded("Take it all the same"))
 
 
 class PlacedRecords(NamedTuple):
@@ -108,7 +108,7 @@ def about_places(
     doubts = {i: why for i, why in placed.doubts.items() if i not in problems}
     return [
         *_listed(rows, problems, dropped, None),
-        *_listed(rows, doubts, doubtful, None if options.take_doubtful else _TAKE),
+        *_listed(rows, doubts, doubtful, None if options.take_doubtful else TAKE),
         *_about_order(rows, grid),
         *_about_numbers(rows, grid, placed.numbered, taken),
         *placed.said,
@@ -255,4 +255,4 @@ def _too_coarse(
         n=n,
         apart=distance_figure(apart_m),
     )
-    return [doubtful(said, None, _TAKE)]
+    return [doubtful(said, None, TAKE)]

@@ -24,6 +24,7 @@ from fieldmon.monitoring.merging.other_seasons import (
 )
 from fieldmon.monitoring.phones import findings
 from fieldmon.monitoring.season.exported_inspections import edits_in, own_rows, read_exported
+from fieldmon.plot.local_clock import local_clock
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -94,8 +95,9 @@ def read_brought(
     """Read a file brought to a season: a table, positions, a copy of it, or what a phone saved.
 
     Inspections without a date are left out where others have one: they get the `work_day` of the
-    options only where the whole file names none. Of a copy, what was corrected there is no new
-    finding.
+    options only where the whole file names none. So are those of days that have not come, unless
+    the season has not begun either or they are taken (`take_doubtful`). Of a copy, what was
+    corrected there is no new finding.
 
     Parameters
     ----------
@@ -174,9 +176,13 @@ def read_findings(
 def _dated_on_plot(
     season: Season, rows: Imported[InspectionRows], options: InspectionOptions
 ) -> Imported[Inspections]:
+    from fieldmon.io.readers.date_doubts import come  # noqa: PLC0415 - as above
     from fieldmon.io.readers.inspections import dated, on_plot  # noqa: PLC0415 - as above
 
-    return dated(on_plot(rows, season.plot.grid, options, own_names(season)))
+    read = dated(on_plot(rows, season.plot.grid, options, own_names(season)))
+    today = local_clock(season.plot.field).today()
+    # before a season begins it is a rehearsal
+    return read if season.settings.begins > today else come(read, options, today)
 
 
 def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:

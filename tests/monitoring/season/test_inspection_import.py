@@ -20,7 +20,7 @@ from fieldmon.monitoring import Season
 from fieldmon.monitoring.season.inspection_import import counting_copy, read_brought, record_saved
 from fieldmon.monitoring.treating.applications import Application
 from tests.monitoring.changes.test_outside_changes import outside
-from tests.monitoring.seasons import BEGINS, a_season
+from tests.monitoring.seasons import BEGINS, a_season, clock_on, on
 
 OPTIONS = InspectionOptions(work_day=np.datetime64(BEGINS, "D"))
 
@@ -154,3 +154,24 @@ def test_treatments_of_another_season_are_said_to_stay_there(path, tmp_path):
             if not told:
                 other.treat(BEGINS, 0.5, application=Application("Acarol"))
         assert said[0].startswith(f"1 treatment {says} is not taken (Acarol on {BEGINS}), nor its")
+
+
+def test_results_of_days_to_come_are_left_out_once_the_season_has_begun_unless_taken(
+    season, tmp_path, monkeypatch
+):
+    days = [str(on(k)) for k in (1, 2)]
+    text = f"plant,result,date\n3,found,{days[0]}\n4,clean,{days[1]}\n"
+    for today, taken, options in (
+        (0, [], OPTIONS),
+        (0, [3, 4], replace(OPTIONS, take_doubtful=True)),
+        (1, [3], OPTIONS),
+        (2, [3, 4], OPTIONS),
+        (-1, [3, 4], OPTIONS),  # of a season that has not begun: a rehearsal
+    ):
+        clock_on(monkeypatch, today)
+        read = brought(season, text, tmp_path, options)
+        assert read.findings.plant.tolist() == taken
+        said = [one.sentence for one in read.messages if "have not come" in one.sentence]
+        assert [f"it is {on(today)} on the plot" in one for one in said] == [True] * (
+            len(taken) < 2
+        )

@@ -37,7 +37,7 @@ _KEY = np.uint64(0)
 # fields drawn side by side: a plant's neighbours are looked up once for all of them
 _SIDE_BY_SIDE = 16
 # of fewer plants one processor draws fields while threads would begin
-_ALONE = 1000
+_ALONE = 2000
 # steps of this spread evenly over [0, 1)
 _GOLDEN, _SILVER = 0.6180339887498949, 0.4142135623730950
 # degrees of freedom of the tails of doubt, and the most, in sigmas (chosen on 40 seasons in each of

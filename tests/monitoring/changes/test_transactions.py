@@ -25,6 +25,11 @@ SEASONS_OF_OLD = Path(__file__).parents[1] / "seasons_of_old"
 KILLS = int(os.environ.get("FIELDMON_KILLS", "4"))
 
 
+@pytest.fixture(autouse=True)
+def opened_once():
+    """Let files be opened for each thing that is done, as programs without pages do."""
+
+
 def n_recorded(path):
     with closing(sqlite3.connect(path, timeout=30.0)) as db:
         return db.execute("SELECT count(*) FROM inspections").fetchone()[0]

@@ -18,6 +18,11 @@ from tests.monitoring.seasons import BEGINS, state, three_results
 ENDLESS = "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT x FROM c"
 
 
+@pytest.fixture(autouse=True)
+def opened_once():
+    """Let files be opened for each thing that is done, as programs without pages do."""
+
+
 def test_a_file_held_by_another_program_is_a_sentence(path, monkeypatch):
     monkeypatch.setattr("fieldmon.monitoring.file.connections._PATIENCE_S", 0.2)
     season = Season(path)

@@ -87,7 +87,7 @@ def test_a_team_shares_a_plot_and_nobody_meets(n, faces):
 
 
 @settings(max_examples=2, deadline=None)
-@given(crooked_fields(max_radius_m=25.0), st.integers(2, 3), st.booleans(), st.data())
+@given(crooked_fields(max_radius_m=20.0), st.integers(2, 3), st.booleans(), st.data())
 def test_on_crooked_plots_nobody_meets_either(field, n, returns, data):
     try:
         plot = Plot.of(field)

@@ -12,6 +12,7 @@ from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import Background, SeasonFile, sampler_settings
 from fieldmon.cli.pest_options import SAYS_ITSELF, PestOptions, tell_half_life, tell_pest
 from fieldmon.cli.report_languages import Language, checked_language
+from fieldmon.cli.season_files import season_of
 from fieldmon.cli.team_files import members_of
 from fieldmon.cli.times import clock, day
 from fieldmon.cli.worker_options import RobotOptions, Robots, TeamworkOptions, WorkerOptions
@@ -192,10 +193,9 @@ def change(options: ChangeOptions) -> None:
     Example: fieldmon change season.gpkg --hours 6 --sampler naive
     Example: fieldmon change season.gpkg --pest spider-mite --weather station.csv
     """
-    from fieldmon.monitoring import Season
     from fieldmon.monitoring.estimates.told_anew import telling_anew
 
-    season = Season(options.season)
+    season = season_of(options.season)
     seen = season.settings
     new = options.changed(seen, season.plot.field)
     if new == seen:

@@ -11,6 +11,7 @@ import typer
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import SeasonFile
+from fieldmon.cli.season_files import season_of
 from fieldmon.cli.times import clock, day
 from fieldmon.compute.ranges import NUMBER
 from fieldmon.compute.working_folder import working_folder
@@ -92,9 +93,8 @@ def correct(season: SeasonFile, asked: Corrections, moved: CorrectedTime) -> Non
             "Either an --inspection or those of a file are corrected, but both are given. Give one "
             "of them."
         )
-    from fieldmon.monitoring import Season
 
-    kept = Season(season)
+    kept = season_of(season)
     try:
         if moved.inspection is not None:
             moment = None if moved.at is None else clock(moved.at, "--time")

@@ -12,7 +12,7 @@ from fieldmon.cli.messages import tell_found_again
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.season_files import default_date
+from fieldmon.cli.season_files import default_date, season_of
 from fieldmon.cli.times import day
 from fieldmon.compute.ranges import MOST_COUNTED, SURE, USUAL_SURE
 from fieldmon.decisions.sprayer import COSTS, SWITCHED, Sprayer, TreatmentCosts
@@ -234,7 +234,6 @@ def decide(
     Example: fieldmon decide season.gpkg --threshold 5% --per-ha 120 -o zones.xml.zip
     """
     from fieldmon.decisions.thresholds import threshold_of
-    from fieldmon.monitoring import Season
     from fieldmon.monitoring.days.advised import advise
     from fieldmon.monitoring.estimates.treatment_effect import learnt_efficacy
     from fieldmon.monitoring.settings.advice_settings import AdviceSettings
@@ -248,7 +247,7 @@ def decide(
         *leaves.idle(),
         *sprayer.idle(),
     )
-    kept = Season(asked.season)
+    kept = season_of(asked.season)
     when = default_date(kept, day(asked.on))
     learnt = learnt_efficacy(kept.effects(when), files.product) if costs.works is None else None
     settings = AdviceSettings(

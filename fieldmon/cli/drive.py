@@ -31,7 +31,7 @@ from fieldmon.cli.files_to_plot import prepared
 from fieldmon.cli.messages import tell_assumed, tell_past_midnight
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import sampler_of
-from fieldmon.cli.season_files import refuse_what_was_chosen
+from fieldmon.cli.season_files import refuse_what_was_chosen, season_of
 from fieldmon.cli.stopped import STOPPED_CODE
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.told_to_end import as_at_ctrl_c, told_to_end
@@ -137,7 +137,6 @@ def _season(options: DriveOptions, file: Path) -> None:
     from fieldmon.drive.day import DrivenDay, drive_day
     from fieldmon.drive.day_clock import time_results
     from fieldmon.drive.season_day import SeasonDay
-    from fieldmon.monitoring import Season
     from fieldmon.plot.local_clock import grid_clock
 
     if options.robot is not Drives.VDA5050 and not options.made_up:
@@ -145,7 +144,7 @@ def _season(options: DriveOptions, file: Path) -> None:
             f"A season takes what was found, but a {options.robot.value} robot makes its finds up. "
             "Drive a copy of the season with --made-up, or a robot with --robot vda5050."
         )
-    season = Season(file)
+    season = season_of(file)
     refuse_written_over(season, (options,))
     on = day_on(season.plot.field, day(options.on))
     settings = season.planned_by(on)

@@ -17,7 +17,7 @@ from fieldmon.cli.driven_files import (
     write_tables,
 )
 from fieldmon.cli.messages import tell_assumed, tell_past_midnight
-from fieldmon.cli.season_files import refuse_too_wide
+from fieldmon.cli.season_files import refuse_too_wide, season_of
 from fieldmon.cli.stopped import STOPPED_CODE
 from fieldmon.cli.times import day, day_on
 from fieldmon.errors import SettingError
@@ -36,9 +36,7 @@ if TYPE_CHECKING:
 
 def drive_as_team(context: typer.Context, options: DriveOptions, file: Path) -> bool:
     """Let a season's team drive its day by VDA 5050, a robot each; return whether it has one."""
-    from fieldmon.monitoring import Season
-
-    season = Season(file)
+    season = season_of(file)
     on = day_on(season.plot.field, day(options.on))
     settings = season.planned_by(on)
     if not settings.team:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from fieldmon.cli.outputs import refuse_what_is_read
+from fieldmon.cli.season_files import UNTIL_THE_END
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -35,7 +36,8 @@ class Commands(typer.Typer):
             @wraps(function)
             def called(**told: Any) -> Any:  # noqa: ANN401 - what a command is told is of any type
                 refuse_what_is_read(told)
-                return function(**told)
+                with UNTIL_THE_END:
+                    return function(**told)
 
             known = {"help": flowing(getdoc(function) or "")} | options
             known.setdefault("context_settings", _OLD_NAMES)

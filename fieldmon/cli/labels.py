@@ -9,6 +9,7 @@ import typer
 
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import SeasonFile
+from fieldmon.cli.season_files import season_of
 from fieldmon.decisions.labels import WAITS_DAYS
 from fieldmon.errors import SettingError
 
@@ -53,11 +54,10 @@ def labels(
     """
     from fieldmon.compute.wording import written
     from fieldmon.decisions.label_file import read_labels
-    from fieldmon.monitoring import Season
 
     if bool(product) != (waiting_days is not None):
         raise SettingError("Give --product and --waiting-days together, or neither.")
-    kept = Season(season)
+    kept = season_of(season)
     if table is not None:
         read = read_labels(table)
         for message in read.messages:

@@ -8,6 +8,7 @@ import typer
 
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.progress import counting
+from fieldmon.cli.season_files import season_of
 
 AllMornings = Annotated[
     bool,
@@ -29,13 +30,12 @@ def log(
 
     Example: fieldmon log season.gpkg
     """
-    from fieldmon.monitoring import Season
     from fieldmon.monitoring.changes.outside_changes import refuse_unlike_log
     from fieldmon.monitoring.changes.season_log import lines
     from fieldmon.monitoring.estimates.verifying import changed_maps, check_against_log, is_short
     from fieldmon.plot.local_clock import local_clock
 
-    kept = Season(season)
+    kept = season_of(season)
     typer.echo("\n".join(lines(kept.log(), local_clock(kept.plot.field))))
     refuse_unlike_log(check_against_log(kept))
     whole = mornings or is_short(kept)

@@ -24,6 +24,7 @@ from fieldmon.cli.season_files import (
     refuse_too_wide,
     refuse_unrecorded,
     refuse_what_was_chosen,
+    season_of,
 )
 from fieldmon.cli.team_files import files_of_each, tell_member, write_member
 from fieldmon.cli.times import clock, day, day_on
@@ -48,10 +49,8 @@ _OF_A_PLAN = {"plot", "output", "on", "now", "as_now", "enter_treated", "chance_
 
 def plan_season(context: typer.Context, options: PlanOptions, file: Path) -> None:
     """Plan a day of a season, keep the route in its file, and write it for whoever drives."""
-    from fieldmon.monitoring import Season
-
     refuse_what_was_chosen(context, _OF_A_PLAN)
-    season = Season(file)
+    season = season_of(file)
     tell_drafts(season.drafts)
     for sentence in season.settings.unlike_its_pest():
         typer.echo(f"doubtful: {sentence}", err=True)

@@ -14,6 +14,7 @@ from fieldmon.cli.messages import FLAGS, Terminal, tell_drafts, tell_found_again
 from fieldmon.cli.named_values import chosen
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import SeasonFile
+from fieldmon.cli.season_files import season_of
 from fieldmon.cli.status import lines
 from fieldmon.cli.times import day
 from fieldmon.compute.working_folder import working_folder
@@ -99,9 +100,8 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
     import numpy as np
 
     from fieldmon.io.readers.inspection_options import InspectionOptions
-    from fieldmon.monitoring import Season
 
-    kept = Season(season)
+    kept = season_of(season)
     work_day = None if flags.on is None else np.datetime64(day(flags.on), "D")
     options = InspectionOptions(work_day=work_day, take_doubtful=flags.take_doubtful)
     options = chosen(options, flags.finding_option).on(kept.plot.field)

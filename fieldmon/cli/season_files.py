@@ -6,7 +6,7 @@ import csv
 import json
 import shlex
 import sqlite3
-from contextlib import closing
+from contextlib import ExitStack, closing
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -26,8 +26,18 @@ if TYPE_CHECKING:
     from fieldmon.monitoring import Season
     from fieldmon.planning.members import TeamMember
 
+#: what is held until a command ends
+UNTIL_THE_END = ExitStack()
 # inspections of a day that has not come, of which the numbers are shown
 _NUMBERS_SHOWN = 5
+
+
+def season_of(file: Path) -> Season:
+    """Open a season; until the command ends its file is not opened again for each thing read."""
+    from fieldmon.monitoring import Season, kept_open
+
+    UNTIL_THE_END.enter_context(kept_open())
+    return Season(file)
 
 
 def opened(files: Iterable[Path]) -> list[Season]:
@@ -36,10 +46,9 @@ def opened(files: Iterable[Path]) -> list[Season]:
     Raise `SettingError` where two are copies of one: what both hold would stand there twice. Say
     where two seasons are of one plot.
     """
-    from fieldmon.monitoring import Season
     from fieldmon.monitoring.merging.other_seasons import is_copy, of_one_plot
 
-    seasons = [Season(file) for file in files]
+    seasons = [season_of(file) for file in files]
     for one, other in combinations(seasons, 2):
         if is_copy(one, other.path):
             raise SettingError(

@@ -14,7 +14,7 @@ from fieldmon.cli.messages import (
     tell_found_again,
 )
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.season_files import default_date, learnt_of_each
+from fieldmon.cli.season_files import default_date, learnt_of_each, season_of
 from fieldmon.cli.times import day
 
 if TYPE_CHECKING:
@@ -52,9 +52,7 @@ def status(
 
     Example: fieldmon status season.gpkg
     """
-    from fieldmon.monitoring import Season
-
-    kept = Season(season)
+    kept = season_of(season)
     tell_drafts(kept.drafts)
     with kept.store.one_moment():
         _show(kept, kept.status(default_date(kept, day(on))), batches=batches, rows=rows)

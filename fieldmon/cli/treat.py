@@ -13,6 +13,7 @@ from fieldmon.cli.messages import how_to_say_wait, tell_not_come
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import SeasonFile, TheDate
+from fieldmon.cli.season_files import season_of
 from fieldmon.cli.times import clock, day, day_on
 from fieldmon.compute.ranges import CHANCE
 from fieldmon.compute.wording import estimate
@@ -133,14 +134,13 @@ def treat(options: TreatOptions) -> None:
     Example: fieldmon treat season.gpkg --efficacy 0.8 --area zones.gpkg --product soap
     """
     from fieldmon.io.read import read_treated
-    from fieldmon.monitoring import Season
     from fieldmon.monitoring.estimates.day_figures import flagged_said
     from fieldmon.plot.named_rows import plants_in_rows
 
     if options.area is not None and options.rows is not None:
         raise SettingError("Give --area or --rows, not both.")
     told, said = day(options.on), options.application()
-    kept = Season(options.season)
+    kept = season_of(options.season)
     treated = None
     if options.area is not None:
         read = read_treated(options.area)

@@ -9,6 +9,7 @@ import typer
 
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import SeasonFile
+from fieldmon.cli.season_files import season_of
 from fieldmon.compute.ranges import NUMBER
 from fieldmon.errors import SettingError
 
@@ -50,18 +51,17 @@ def undo(
 
     if sum(one is not None for one in (batch, inspection, redo)) + change > 1:
         raise SettingError("Give --batch, --inspection, --redo or --change, not two of them.")
-    from fieldmon.monitoring import Season
 
     if change:
         from fieldmon.monitoring.estimates.told_anew import telling_anew
         from fieldmon.monitoring.settings.settings_words import taken_back
 
-        kept = Season(season)
+        kept = season_of(season)
         settings = kept.settings
         with telling_anew(kept, settings, before_change(kept) or settings, typer.echo):
             typer.echo(taken_back(settings, kept.undo_change(who)))
         return
-    kept = Season(season)
+    kept = season_of(season)
     if redo is not None:
         typer.echo(kept.redo(redo, who))
         return

@@ -12,6 +12,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.days.day_ahead import DayAhead, through
 from fieldmon.monitoring.estimates.asked_day import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.monitoring.file.connections import kept_open
 from fieldmon.monitoring.phones.scouts import codes_on, inside
 from fieldmon.monitoring.season.season_inspections import recorded
 from fieldmon.monitoring.settings.shift_work import Besides
@@ -58,6 +59,7 @@ class SeasonDay(AskedDay):
 
     late_s = REPLAN_AFTER_S
 
+    @kept_open()
     def __init__(
         self, season: Season, on: date, source: str = "robot", wishes: Wishes | None = None,
         name: str = "",
@@ -151,6 +153,7 @@ class SeasonDay(AskedDay):
         plants: list[int] = self._today.route.plant[self._next + 1 : self._next + 1 + n].tolist()
         return plants
 
+    @kept_open()
     def tell(self, found: bool | None, at_s: float | None = None) -> None:  # noqa: FBT001 - a result
         """Record what was seen at the plant that was asked for; None: it could not be inspected.
 

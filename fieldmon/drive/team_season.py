@@ -18,6 +18,7 @@ from fieldmon.drive.season_day import (
 )
 from fieldmon.errors import SettingError
 from fieldmon.monitoring.estimates.asked_day import AskedDay, PlantToInspect, plant_to_inspect
+from fieldmon.monitoring.file.connections import kept_open
 from fieldmon.monitoring.phones.scouts import codes_on
 from fieldmon.monitoring.season.season_inspections import recorded
 from fieldmon.plot.local_clock import grid_clock
@@ -99,6 +100,7 @@ class TeamSeason:
         """Return the day of one of the team."""
         return MemberDay(self, self.settings.member(name))
 
+    @kept_open()
     def plan(self) -> None:
         """Plan the rest of the day for all, each from where it was told of last; keep the plans."""
         with self.lock:
@@ -202,6 +204,7 @@ class MemberDay(AskedDay):
         with self._team.lock:
             return [plant for plant in self._left() if plant != self._errand][:n]
 
+    @kept_open()
     def tell(self, found: bool | None, at_s: float | None = None) -> None:  # noqa: FBT001 - a result
         """Record what was seen at the plant that was asked for, and when; see `SeasonDay.tell`."""
         with self._team.lock:

@@ -6,12 +6,14 @@ import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import gammaincinv, ndtri
 
+from fieldmon.compute.arrays import read_only
 from fieldmon.compute.jit import inlined, loop, routine
 from fieldmon.compute.random_streams import coin
 from fieldmon.compute.wording import chance_figure, worded
@@ -34,6 +36,8 @@ _DRAWS = 400
 _KEY = np.uint64(0)
 # fields drawn side by side: a plant's neighbours are looked up once for all of them
 _SIDE_BY_SIDE = 16
+# of fewer plants one processor draws fields while threads would begin
+_ALONE = 2000
 # steps of this spread evenly over [0, 1)
 _GOLDEN, _SILVER = 0.6180339887498949, 0.4142135623730950
 # degrees of freedom of the tails of doubt, and the most, in sigmas (chosen on 40 seasons in each of
@@ -260,6 +264,7 @@ def doubted(doubt: float) -> Floats:
     return factors
 
 
+@lru_cache(maxsize=8)
 def doubted_level(doubt: float) -> Floats:
     """Return what a plot's odds may have to be multiplied by, as the doubt itself may be off.
 
@@ -270,27 +275,24 @@ def doubted_level(doubt: float) -> Floats:
     wide = np.sqrt(_TAILS / (2.0 * gammaincinv(_TAILS / 2.0, places)))
     even = ndtri(((np.arange(_DRAWS) + 1) * _GOLDEN) % 1.0)
     off = np.clip(even * wide, -_MOST_OFF, _MOST_OFF)
-    factors: Floats = np.exp(np.sqrt(np.log1p(doubt**2)) * off)
-    return factors
+    return read_only(np.exp(np.sqrt(np.log1p(doubt**2)) * off))
 
 
 def _drawn(table: _Table, key: np.uint64, asked: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Return how many plants asked about are infested in each drawn field; all processors draw."""
     counts, n = np.empty(_DRAWS, np.int64), len(asked)
-    first = np.linspace(0, _DRAWS, (os.cpu_count() or 1) + 1).astype(np.int64)
+
+    def draw(a: int, b: int) -> None:
+        room = np.zeros((n, _SIDE_BY_SIDE), np.bool_)
+        _draw(table, key, (a, asked, room), counts[a:b])
+
+    if n < _ALONE:
+        draw(0, _DRAWS)
+        return counts
+    first = np.linspace(0, _DRAWS, (os.cpu_count() or 1) + 1).astype(np.int64).tolist()
     with ThreadPoolExecutor(len(first) - 1) as pool:
-        parts = [
-            pool.submit(
-                _draw,
-                table,
-                key,
-                (int(a), asked, np.zeros((n, _SIDE_BY_SIDE), np.bool_)),
-                counts[a:b],
-            )
-            for a, b in pairwise(first)
-        ]
-    for part in parts:
-        part.result()
+        for part in [pool.submit(draw, a, b) for a, b in pairwise(first)]:
+            part.result()
     return counts
 
 

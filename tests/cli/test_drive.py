@@ -38,7 +38,7 @@ def test_a_day_is_driven_with_wheels_and_kept_as_a_bag(run, tmp_path):
 @pytest.fixture
 def short(run, season):
     """Return the file of a season of short days: a robot's whole day is recorded stop by stop."""
-    assert run("change", season, "--hours", "0.2")[0] == 0
+    assert run("change", season, "--hours", "0.12")[0] == 0
     return season
 
 

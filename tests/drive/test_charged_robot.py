@@ -24,7 +24,7 @@ def test_a_season_driven_as_charged_is_the_simulated_one(plot, name, returns):
     robot = Robot(hours=0.4, returns=returns)
     chance = np.random.default_rng(1).uniform(0.005, 0.3, len(plot.grid))
     start = Start(np.random.default_rng(2).random(len(chance)) < chance, chance)
-    settings = SimulationSettings(n_days=4, spread=SPREAD)
+    settings = SimulationSettings(n_days=3, spread=SPREAD)
     simulated = simulated_days(
         plot.aisles, robot, sampler(name), start, settings, RandomStreams(SEED)
     )

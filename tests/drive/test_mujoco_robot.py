@@ -28,7 +28,7 @@ def driven(plot, robot):
     from fieldmon.monitoring.estimates.monitor import Monitor
 
     chance = np.random.default_rng(3).uniform(0.005, 0.3, len(plot.grid))
-    robot, track = replace(robot, hours=0.2, turn_180_s=0.0), Track()
+    robot, track = replace(robot, hours=0.14, turn_180_s=0.0), Track()
     aisles = plot.aisles.for_robot(robot)
     driver = MujocoRobot(robot, lambda stop: stop.plant % 4 == 0, Physics(gnss_m=0.02), track)
     with Monitor(plot, robot=robot, chance=chance).day() as day:
@@ -108,7 +108,7 @@ def test_a_steered_robot_takes_what_its_turns_are_charged():
     aisles = Aisles.of(grid)
     ways, worked = aisles.for_robot(robot), aisles.worked_by(robot)
     driver = MujocoRobot(robot, lambda stop: False, Physics(RobotBody.of(robot, "ackermann")))  # noqa: ARG005
-    turns = range(1, 5)
+    turns = range(1, 4)
     driver.begin(ways, ways.gate_m, 0.0)
     driver.home(ways.path(-1, 3))
     since_s = driver.home(ways.path(3, 3 + 6)).done_s

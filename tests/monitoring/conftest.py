@@ -6,9 +6,16 @@ from contextlib import closing
 
 import pytest
 
-from fieldmon.monitoring import Season
+from fieldmon.monitoring import Season, kept_open
 from fieldmon.monitoring.file import schema
 from tests.monitoring.seasons import BEGINS, a_season, some_results
+
+
+@pytest.fixture(autouse=True)
+def opened_once():
+    """Let a test open each season's file once, as pages and commands do."""
+    with kept_open():
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -44,7 +44,7 @@ def check(scene, work):
 @pytest.mark.parametrize("grid", GRIDS.values(), ids=GRIDS)
 @pytest.mark.parametrize("seed", range(2))
 def test_the_route_is_the_day_as_charged(name, grid, seed):
-    scene = scene_on(grid, hours=2.0, seed=seed)
+    scene = scene_on(grid, hours=1.0, seed=seed)
     check(scene, plan_work(scene, sampler(name)))
 
 

@@ -250,7 +250,7 @@ def test_in_narrow_headlands_nobody_meets_head_on():
 @pytest.mark.parametrize("name", sorted(set(SAMPLERS) - {"adaptive-looks"}))
 @pytest.mark.parametrize("returns", [True, False])
 def test_whoever_decides_nobody_meets_head_on(name, returns):
-    day = Day(n=4, robot=Robot(hours=0.7, detection=1.0, returns=returns), infested=0.1)
+    day = Day(n=4, robot=Robot(hours=0.5, detection=1.0, returns=returns), infested=0.1)
     day.check(day.work(Teamwork(passing_m=30.0), name), 30.0)
 
 

@@ -7,10 +7,13 @@ rate at which insects multiply is a guess, nor how they behave otherwise than it
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from scipy.special import gammaincinv, nbdtrik, ndtri, pdtrik
+
+from fieldmon.compute.arrays import read_only
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -137,6 +140,18 @@ def _whole(mean: Floats, places: NDArray[np.floating[Any]]) -> Floats:
     return np.where(mean < _FEW, np.maximum(np.ceil(few), 0.0), mean)
 
 
+@lru_cache(maxsize=8)
+def _even_draws(n: int, known: float) -> tuple[Floats, Floats, Floats]:
+    """Return draws of levels, of rates, and of what arrives, ``(n,)`` each, spread evenly.
+
+    What arrives is `known` by so many finds.
+    """
+    one, other, third = ((np.arange(n) + 1) * step % 1.0 for step in _STEPS)
+    levels = gammaincinv(LEVEL_DOUBT**-2.0, one) * LEVEL_DOUBT**2.0
+    faster = np.exp(RATE_DOUBT * ndtri(other))
+    return read_only(levels), read_only(faster), read_only(gammaincinv(known, third))
+
+
 class UninspectedDays(NamedTuple):
     """Days without inspections until now, and what of earlier ones is still in doubt.
 
@@ -184,12 +199,9 @@ class UninspectedDays(NamedTuple):
         """Return what the number may have become; None: there was no day without inspections."""
         if self.counted is None:
             return None
-        draws = len(self.counted.drawn)
-        one, other, third = ((np.arange(draws) + 1) * step % 1.0 for step in _STEPS)
-        levels = gammaincinv(LEVEL_DOUBT**-2.0, one) * LEVEL_DOUBT**2.0
-        faster = np.exp(RATE_DOUBT * ndtri(other))
         known = arrivals_known(arrivals_found)
-        arrived = self.arrived * (1.0 - self.sent) * gammaincinv(known, third) / known
+        levels, faster, outside = _even_draws(len(self.counted.drawn), known)
+        arrived = self.arrived * (1.0 - self.sent) * outside / known
         came = levels * (arrived + self.sent * faster)
         times = levels * np.exp(np.minimum(self.grown * faster, _MOST_GROWN))
         grew = np.maximum(times * (1.0 - self.arrived), min(float(np.exp(self.grown)), 1.0))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -67,6 +68,7 @@ def inspections_to_verdict(
 
 def _first(clear: Callable[[int], bool], most: int) -> int | None:
     """Return the fewest looks at which it is clear, by doubling and halving; None: not within."""
+    clear = cache(clear)
     high = 1
     while high < most and not clear(high):
         high *= 2

@@ -146,7 +146,7 @@ class Store:
         connections.must_be_there(self.path)
         with (
             connections.sentences_of(self.path, target),
-            closing(connections.connect(self.path)) as db,
+            connections.opened(self.path) as db,
         ):
             _into_one_file(db)
             if db.execute("PRAGMA journal_mode").fetchone()[0] == "wal":
@@ -228,7 +228,7 @@ class Store:
         connections.must_be_there(self.path)
         with (
             connections.sentences_of(self.path),
-            closing(connections.connect(self.path, patience_s)) as db,
+            connections.opened(self.path, patience_s) as db,
         ):
             # EXTRA: once this returns, not even a power cut brings the old state back
             db.execute("PRAGMA synchronous = EXTRA")

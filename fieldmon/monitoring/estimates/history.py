@@ -339,6 +339,12 @@ class History:
         evening = in_hindsight(self._evening(self.first_morning, 0), self.night(0))
         return self._ever_infested(0, not_found_yet(self.grid, evening, self._flagged(0)))
 
+    def remember_first_evening(self, before: History) -> None:
+        """Take over what was worked out of the first evening: it followed from the same before."""
+        known = vars(before).get("_infested_first")
+        if known is not None:
+            vars(self)["_infested_first"] = known
+
     def _ever_infested(self, day: int, left: PlotEstimate) -> Estimate:
         """Return how many plants were infested by the evening of a day, if found or still so."""
         done = self.until(day)

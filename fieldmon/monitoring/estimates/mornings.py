@@ -113,7 +113,7 @@ class Mornings:
 
     def _unpacked(self, day: int, kept: _KeptMorning) -> Belief | None:
         """Return a morning that the file keeps; None: it is not that of what happened."""
-        if kept.causes != _causes(self.history, day) or kept.content != digest(kept.chances):
+        if kept.causes != causes_until(self.history, day) or kept.content != digest(kept.chances):
             return None
         return _unpacked(self.history.first_morning, kept.chances)
 
@@ -142,7 +142,7 @@ def take(db: sqlite3.Connection, mornings: Mornings) -> None:
 def causes_of(history: History, day: int, estimate: PlotEstimate) -> str:
     """Return a name for an estimate of a day's evening and all from which it follows."""
     said = estimate.expected, estimate.low, estimate.high, estimate.chance_clean
-    return digest(_causes(history, day + 1), said)
+    return digest(causes_until(history, day + 1), said)
 
 
 def keep(db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
@@ -150,7 +150,7 @@ def keep(db: sqlite3.Connection, mornings: Mornings, newest: int) -> None:
     eighths = range(newest - newest % _EVERY, 0, -_EVERY)[:_IN_FILE]
     # that before the newest: who corrects the last day's work begins there
     wanted = {day for day in (*eighths, newest - 1, newest) if day > 0}
-    causes = {day: _causes(mornings.history, day) for day in wanted}
+    causes = {day: causes_until(mornings.history, day) for day in wanted}
     for day, of_kept in db.execute("SELECT day, causes FROM mornings WHERE day > 0").fetchall():
         if causes.get(day) == of_kept:
             wanted.discard(day)
@@ -170,10 +170,10 @@ def is_behind(db: sqlite3.Connection, mornings: Mornings, newest: int) -> bool:
     if newest not in mornings.known or newest == 0:
         return False
     row = db.execute("SELECT causes FROM mornings WHERE day = ?", (newest,)).fetchone()
-    return row is None or row[0] != _causes(mornings.history, newest)
+    return row is None or row[0] != causes_until(mornings.history, newest)
 
 
-def _causes(history: History, day: int) -> str:
+def causes_until(history: History, day: int) -> str:
     """Return a name for all from which the morning of a day follows, our own rules among it."""
     done = history.until(day - 1)
     first, told = history.first_morning, history.detections[: len(done)]

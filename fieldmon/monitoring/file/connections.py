@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
 import threading
 import time
@@ -24,7 +25,8 @@ _ASK_AGAIN_S, _MOMENT_S = 0.25, 1.0
 # to merge a million inspections takes half of so many steps of SQLite, which last a minute; a
 # stranger's view or trigger may never end
 _MOST_STEPS, _STEPS = 3_000_000_000, 1_000_000
-# the files that a thread keeps open within `kept_open`, by path and inode; None: outside of it
+# the files that a thread keeps open within `kept_open`, by path, inode and process, which must not
+# use those of one that it was forked from; None: outside of it
 _KEPT = threading.local()
 # how long is waited for others at most within `waiting_at_most`, in its threads, too
 _MOST_S: ContextVar[float] = ContextVar("most_s")
@@ -34,10 +36,10 @@ _STILL = threading.local()
 
 @contextmanager
 def kept_open() -> Iterator[None]:
-    """Let this thread open each season's file once for all that it reads within this block.
+    """Let this thread open each season's file once for all that it does within this block.
 
     Opening it costs many times what is mostly read. Each reading still sees what the file says at
-    that moment, and between them nothing is locked.
+    that moment, and between transactions nothing is locked.
     """
     if _kept() is not None:
         yield
@@ -126,36 +128,40 @@ def held_still() -> dict[Path, sqlite3.Connection]:
     return files
 
 
-def _kept() -> dict[tuple[Path, int], sqlite3.Connection] | None:
+def _kept() -> dict[tuple[Path, int, int], sqlite3.Connection] | None:
     return getattr(_KEPT, "files", None)
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[sqlite3.Connection]:
+def opened(path: Path, patience_s: float | None = None) -> Iterator[sqlite3.Connection]:
     """Give a connection for one transaction: one that this thread keeps, if it may."""
     must_be_there(path)
+    patience_s = _patience_s() if patience_s is None else patience_s
     files = _kept()
     if files is None:
-        with closing(connect(path)) as db:
+        with closing(connect(path, patience_s)) as db:
             yield db
         return
     # another file of the same name is another season
-    of_file = path, path.stat().st_ino
+    of_file = path, path.stat().st_ino, os.getpid()
     # one that is at work belongs to whoever reads around this
     if of_file in files:
         db = files.pop(of_file)
+        db.execute(f"PRAGMA busy_timeout = {round(1000 * patience_s)}")
         _limit(db)
     else:
-        db = connect(path)
+        db = connect(path, patience_s)
     try:
         yield db
-    finally:
-        if of_file in files:
-            db.close()
-        else:
-            if db.in_transaction:
-                db.execute("ROLLBACK")
-            files[of_file] = db
+        if db.in_transaction:
+            db.execute("ROLLBACK")
+    except BaseException:
+        db.close()  # whatever it was at is taken back
+        raise
+    if of_file in files:
+        db.close()
+    else:
+        files[of_file] = db
 
 
 def must_be_there(path: Path) -> None:

@@ -13,6 +13,7 @@ import math
 import re
 import zipfile
 import zlib
+from functools import lru_cache
 from html import escape, unescape
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -161,6 +162,7 @@ def _last_routes(day: str, gone: Iterable[str]) -> str:
     return f'(SELECT max("fid") FROM "routes" WHERE "date" = {day}{but} GROUP BY "who")'  # noqa: S608 - quoted
 
 
+@lru_cache(maxsize=4)  # mostly it is what it was
 def _packed(project: str) -> str:
     return zipped({f"{PROJECT}.qgs": project.encode()}).hex()
 

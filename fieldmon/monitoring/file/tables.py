@@ -14,6 +14,7 @@ import shapely
 from shapely import LineString, MultiLineString, MultiPolygon, Point
 
 from fieldmon.compute.arrays import offsets
+from fieldmon.compute.digest import digest
 from fieldmon.compute.wording import worded
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.records import Records
@@ -45,6 +46,13 @@ _STATED = ("row_bearing_deg", "row_spacing_m", "plant_spacing_m")
 # what all arrays of a season may unpack to: those of a million plants take a third of it
 _MOST_BYTES = 1 << 30
 _NAMES = ("plant_rows", "plant_blocks", "plant_names")
+_OF_PLOT = (
+    "SELECT name, dtype, shape, data FROM arrays ORDER BY fid",
+    "SELECT geom, name FROM plots ORDER BY fid",
+    "SELECT kind, geom FROM places ORDER BY fid",
+)
+# the plot that was read last, by a name for what it was read from
+_LAST_READ: dict[str, Plot] = {}
 
 
 @dataclass(frozen=True)
@@ -205,7 +213,28 @@ def _write_plant_layers(db: sqlite3.Connection, grid: PlantGrid) -> None:
 
 
 def read_plot(db: sqlite3.Connection) -> Plot:
-    """Return the plot, exactly as it was written; its ways are found again."""
+    """Return the plot, exactly as it was written; its ways are found again.
+
+    Of seasons of one plot that are read one after the other all have the first one's: whoever reads
+    a season and its copy, or a season again, waits for its ways once.
+    """
+    name = _content_of_plot(db)
+    plot = _LAST_READ.get(name)
+    if plot is None:
+        plot = _read_plot(db)
+        _LAST_READ.clear()  # those of 100 000 plants fill the memory
+        _LAST_READ[name] = plot
+    return plot
+
+
+def _content_of_plot(db: sqlite3.Connection) -> str:
+    """Return a name for all from which the plot is read."""
+    parts = [value for wanted in _OF_PLOT for row in db.execute(wanted) for value in row]
+    known = [len(value) if isinstance(value, bytes) else value for value in parts]
+    return digest(known, *(value for value in parts if isinstance(value, bytes)))
+
+
+def _read_plot(db: sqlite3.Connection) -> Plot:
     arrays = read_arrays(db)
     try:
         grid, field = _grid(arrays), _field(db, arrays)

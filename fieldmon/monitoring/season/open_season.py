@@ -18,7 +18,7 @@ from fieldmon.monitoring.changes import outside_changes, season_log
 from fieldmon.monitoring.changes.file_revision import FileRevision
 from fieldmon.monitoring.changes.transactions import Store
 from fieldmon.monitoring.estimates import derived_layers, first_morning
-from fieldmon.monitoring.estimates.mornings import Mornings
+from fieldmon.monitoring.estimates.mornings import Mornings, causes_until
 from fieldmon.monitoring.estimates.mornings import keep as keep_mornings
 from fieldmon.monitoring.estimates.mornings import take as take_mornings
 from fieldmon.monitoring.estimates.season_contents import (
@@ -73,6 +73,8 @@ class OpenSeason:
         self._last: SeasonContents | None = None
         self._written: SeasonContents | None = None
         self._prior: _Prior | None = None
+        # what the first evening followed from when it was written last, and that history
+        self._first_evening: tuple[str, History] | None = None
         with self.store.reading() as db:
             #: the plants and the ways between them
             self.plot: Plot = tables.read_plot(db)
@@ -250,6 +252,7 @@ class OpenSeason:
         self._last = None
         inspection_lots.keep(db)  # what is read next is read of these
         now = self._read(db, before, since or 0)
+        self._remember_first_evening(now.history)
         if since is None:
             since = now.mornings.last_until(newest_day(db))
         newest = derived_layers.refresh(db, self.plot, now.history, now.morning, since)
@@ -257,6 +260,13 @@ class OpenSeason:
         qgis_project.keep(db, self.path.name, lambda day: self._unused_routes(db, now, day, since))
         self._last = None  # the transaction may yet fail
         self._written = replace(now, revision=now.revision.once_kept(db))
+
+    def _remember_first_evening(self, history: History) -> None:
+        """Let what the layers say of the first evening be worked out again only if it changed."""
+        causes = causes_until(history, 1)
+        if self._first_evening is not None and self._first_evening[0] == causes:
+            history.remember_first_evening(self._first_evening[1])
+        self._first_evening = causes, history
 
     def _unused_routes(
         self,

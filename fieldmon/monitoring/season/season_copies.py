@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.compute.kinds import checked
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.file import label_table
+from fieldmon.monitoring.file.connections import kept_open
 from fieldmon.monitoring.inspecting.contradictions import contradictions
 from fieldmon.monitoring.merging import merged_corrections
 from fieldmon.monitoring.merging.merge import merge_copies
@@ -35,6 +36,7 @@ _GONE = (
 class SeasonCopies(OpenSeason):
     """A season beside other files: whether they are copies of it, and what merging them brings."""
 
+    @kept_open()
     def merge(self, other: OpenSeason) -> Merged:
         """Take in what another copy of this season holds: all that is in either, once each.
 

@@ -23,6 +23,7 @@ from fieldmon.monitoring.estimates.mornings import Mornings
 from fieldmon.monitoring.estimates.season_contents import SeasonContents, nothing_yet
 from fieldmon.monitoring.estimates.verifying import changed_maps, check_against_log
 from fieldmon.monitoring.file import qgis_project, tables
+from fieldmon.monitoring.file.connections import kept_open
 from fieldmon.monitoring.phones.people import written_in
 from fieldmon.monitoring.season.season_frames import SeasonFrames
 from fieldmon.monitoring.season.season_plans import SeasonPlans
@@ -79,6 +80,7 @@ class Season(SeasonPlans, SeasonFrames):
     2
     """
 
+    @kept_open()
     def __init__(self, path: str | Path) -> None:
         super().__init__(path)
         #: findings that another program added to the file, and why some of them do not count
@@ -240,6 +242,7 @@ class Season(SeasonPlans, SeasonFrames):
             **({"back": True} if back else {}),
         )  # fmt: skip
 
+    @kept_open()
     def verify(self, *, whole: bool = True) -> tuple[str, ...]:
         """Hold the file to its digests; return a sentence for each thing that differs.
 

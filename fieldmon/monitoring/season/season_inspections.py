@@ -17,6 +17,7 @@ from fieldmon.io.readers.date_doubts import to_come
 from fieldmon.monitoring.changes import corrections, outside_changes, season_log
 from fieldmon.monitoring.estimates.told_detection import said_now
 from fieldmon.monitoring.file import tables
+from fieldmon.monitoring.file.connections import kept_open
 from fieldmon.monitoring.inspecting import (
     batches,
     drafts,
@@ -269,6 +270,7 @@ class SeasonInspections(SeasonCorrections):
             states=season_log.states(db, [done.batch]), batch=done.batch, source=source, **what,
         )  # fmt: skip
 
+    @kept_open()
     def undo(self, batch: int | None = None, inspection: int | None = None, who: str = "") -> str:
         """Take a `batch` back (None: the last one), or one `inspection`; nothing is deleted.
 
@@ -293,6 +295,7 @@ class SeasonInspections(SeasonCorrections):
         """
         return undo_with_batches(self, batch, inspection, who).said
 
+    @kept_open()
     def redo(self, batch: int, who: str = "") -> str:
         """Let a `batch` that was undone count again; `who` does so, for the log.
 

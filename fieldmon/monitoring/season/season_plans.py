@@ -18,6 +18,7 @@ from fieldmon.monitoring.days import kept_routes
 from fieldmon.monitoring.estimates.day_figures import PlannedAndDone
 from fieldmon.monitoring.estimates.mornings import is_behind
 from fieldmon.monitoring.estimates.season_contents import newest_day
+from fieldmon.monitoring.file.connections import kept_open
 from fieldmon.monitoring.phones import scouts
 from fieldmon.monitoring.season.season_days import SeasonDays
 from fieldmon.monitoring.settings.settings import seconds
@@ -54,6 +55,7 @@ class SeasonPlans(SeasonDays):
         super().__init__(path)
         self._unused_then: dict[int, set[str]] = {}
 
+    @kept_open()
     def plan(
         self, on: Day, now: TimeOfDay | None = None, *, keep: bool = True,
         wishes: Wishes | None = None, who: str | Besides | None = None,
@@ -85,6 +87,7 @@ class SeasonPlans(SeasonDays):
             days = self.plan_each(on, now, keep=keep, wishes=wishes)
         return days[settings.team.index(settings.member(who)) if who and settings.team else 0]
 
+    @kept_open()
     def plan_each(
         self, on: Day, now: TimeOfDay | None = None, *, keep: bool = True,
         wishes: Wishes | None = None, crew: ScoutCrew | None = None,

@@ -120,7 +120,7 @@ def written(monkeypatch):
         db.create_function("written", 1, plants.append)
         for event in ("INSERT", "UPDATE"):
             db.execute(
-                f"CREATE TEMP TRIGGER told_{event} AFTER {event} ON main.plant_state "
+                f"CREATE TEMP TRIGGER IF NOT EXISTS told_{event} AFTER {event} ON main.plant_state "
                 "BEGIN SELECT written(new.fid); END"
             )
         return refresh(db, *given)

@@ -22,6 +22,7 @@ from fieldmon.plot.robot import Robot
 from fieldmon.plot.travel import GATE
 from fieldmon.samplers.base import NEVER
 from tests.monitoring.seasons import a_plot
+from tests.thorough import seeds
 
 PLOT = a_plot()
 N = len(PLOT.grid)
@@ -242,7 +243,7 @@ def random_history(seed):
     return History(PLOT.grid, BEGINS, MORNING, done, recorded=recorded), list(looks)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", seeds(4, 8))
 @pytest.mark.parametrize("who", [None, "ann", "Bob", "eve"])
 def test_a_day_and_all_before_it_are_what_going_through_the_looks_says(seed, who):
     history, looks = random_history(seed)

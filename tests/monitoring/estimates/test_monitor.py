@@ -63,7 +63,7 @@ def compiled(plot, name, robot, start):
     ],
 )
 def test_a_season_asked_and_told_is_the_compiled_one_stop_for_stop(plot, start, name, returns):
-    robot = Robot(hours=0.8, returns=returns)
+    robot = Robot(hours=0.4, returns=returns)
     monitor = Monitor(plot, name, robot, start.chance, BeliefSettings(spread=SPREAD), SEED)
     some_found = 0
     for simulated in compiled(plot, name, robot, start):
@@ -102,7 +102,7 @@ def test_a_plant_that_cannot_be_inspected_stays_unknown_and_is_not_asked_for_aga
 
 @pytest.mark.parametrize("name", ["adaptive", "dynamic", "naive", "decide"])
 def test_plants_that_are_gone_are_asked_for_again_ever_more_seldom(plot, name):
-    robot = Robot(hours=0.5)
+    robot = Robot(hours=0.25)
     monitor = Monitor(plot, name, robot)
     gone = np.zeros(plot.n_plants, np.bool_)
     gone[Monitor(plot, name, robot).plan().route.plant[::3]] = True
@@ -228,7 +228,7 @@ def test_finds_that_are_only_flagged_stay_infested(plot):
 def test_a_plant_known_to_be_infested_is_not_asked_for_again(plot, name, treated):
     """It was for ever, and took a third of the day's inspections."""
     settings = BeliefSettings(treated=treated)
-    monitor = Monitor(plot, name, Robot(hours=0.5), belief_settings=settings)
+    monitor = Monitor(plot, name, Robot(hours=0.3), belief_settings=settings)
     found = np.zeros(len(plot.grid), np.bool_)
     for _ in range(3):
         assert (monitor.left_out == (found & (not treated))).all()
@@ -252,7 +252,7 @@ def test_the_robot_stands_at_the_last_plant_that_was_told_of(plot):
 
 @pytest.mark.parametrize("name", SAMPLERS)
 def test_the_plants_ahead_are_those_asked_for_while_nothing_is_found(plot, start, name):
-    with Monitor(plot, name, Robot(hours=0.5), start.chance).day() as day:
+    with Monitor(plot, name, Robot(hours=0.25), start.chance).day() as day:
         assert day.ahead(3) == []  # nothing was asked for yet
         first = day.ask()
         some, rest = day.ahead(3), day.ahead(10**6)

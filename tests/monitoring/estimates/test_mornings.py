@@ -21,7 +21,13 @@ from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.estimates import day_figures, figures_of_day
 from fieldmon.monitoring.estimates.history import History
-from fieldmon.monitoring.estimates.mornings import Mornings, _arrays_in, _causes, _packed, _unpacked
+from fieldmon.monitoring.estimates.mornings import (
+    Mornings,
+    _arrays_in,
+    _packed,
+    _unpacked,
+    causes_until,
+)
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 from fieldmon.monitoring.treating.treatment import Treatment
 from fieldmon.pests.weather import DAY_S, weather_of
@@ -233,11 +239,11 @@ def test_who_inspected_matters_where_they_find_as_much_as_they_are_said_to(path)
         replace(history, inspections=replace(history.inspections, who=np.full(n, name, object)))
         for name in ("Ann", "Ben")
     ]
-    assert _causes(by[0], LAST) == _causes(by[1], LAST)
+    assert causes_until(by[0], LAST) == causes_until(by[1], LAST)
     team = [
         replace(one, detection=np.full(n, told)) for one, told in zip(by, (0.9, 0.5), strict=True)
     ]
-    assert _causes(team[0], LAST) != _causes(team[1], LAST)
+    assert causes_until(team[0], LAST) != causes_until(team[1], LAST)
 
 
 def test_a_morning_of_another_plot_is_not_taken():
@@ -266,10 +272,10 @@ def test_a_kept_morning_goes_on_as_the_one_that_was_worked_out(treated):
 
 def test_a_morning_is_named_by_all_that_it_follows_from_and_by_nothing_after_it(path):
     history, day = replace(Season(path).history, detection=0.84), 9
-    own = _causes(history, day)
+    own = causes_until(history, day)
     n = len(history.grid)
-    assert own == _causes(replace(history), day)
-    assert own != _causes(history, day - 1) != _causes(history, day + 1)
+    assert own == causes_until(replace(history), day)
+    assert own != causes_until(history, day - 1) != causes_until(history, day + 1)
 
     def treated(on, plants=5, efficacy=0.8):
         return replace(history, treatments=(Treatment(on, np.arange(n) < plants, efficacy),))
@@ -298,10 +304,10 @@ def test_a_morning_is_named_by_all_that_it_follows_from_and_by_nothing_after_it(
         replace(history, belief=replace(history.belief, spread=Spread(0.3))),
         replace(history, first_morning=TracedPairs.of(history.grid, another)),
     ]  # fmt: skip
-    names = [_causes(one, day) for one in causes]
+    names = [causes_until(one, day) for one in causes]
     assert len({own, *names}) == len(names) + 1
     for nothing in (treated(9), looked(9), looked(12), treated(20)):
-        assert _causes(nothing, day) == own
+        assert causes_until(nothing, day) == own
 
 
 def test_mornings_are_forgotten_from_the_day_on_that_changed(path):

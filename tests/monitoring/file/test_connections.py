@@ -18,6 +18,11 @@ from tests.monitoring.seasons import BEGINS, state, three_results
 ENDLESS = "WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT x FROM c"
 
 
+@pytest.fixture(autouse=True)
+def opened_once():
+    """Let files be opened for each thing that is done, as programs without pages do."""
+
+
 def test_a_file_held_by_another_program_is_a_sentence(path, monkeypatch):
     monkeypatch.setattr("fieldmon.monitoring.file.connections._PATIENCE_S", 0.2)
     season = Season(path)
@@ -43,16 +48,26 @@ def test_what_is_kept_open_is_opened_once_says_what_is_new_and_locks_nothing(pat
             assert season.days() == days
         assert opened == [path]  # for the reading within a reading
         Season(path).record(three_results(), "another window")
-        n = len(opened)
         assert season.revision != before
         assert len(season.history.inspections) == 15
-        assert len(opened) == n
+        assert opened == [path]  # nor for what is written
         with closing(sqlite3.connect(path, timeout=0)) as other:
             other.execute("BEGIN EXCLUSIVE")
             with pytest.raises(FileProblem, match="must be free"):
                 season.revision  # noqa: B018 - it reads
     season.revision  # noqa: B018
-    assert len(opened) == n + 1
+    assert len(opened) == 2
+
+
+def test_a_season_that_another_program_kept_in_three_files_is_one_though_we_keep_it_open(path):
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("PRAGMA journal_mode = WAL")
+        with kept_open():
+            season = Season(path)
+            db.close()
+            season.record(three_results(), "x")
+            with season.store.reading() as one:
+                assert one.execute("PRAGMA journal_mode").fetchone() == ("delete",)
 
 
 def test_a_file_that_takes_the_place_of_one_kept_open_is_the_one_that_is_read(path, tmp_path):

@@ -227,7 +227,7 @@ def test_a_layer_that_a_piece_of_work_changed_says_so_and_holds_what_it_shows(pa
             if name in ("treatments", "plots", "hot_spots") or not shapes:
                 continue
             whole = shapely.box(*box_of).buffer(1e-4)
-            assert all(whole.contains(one) for one in shapes), name
+            assert shapely.contains(whole, shapes).all(), name
     silent = {name for name in after if before[name] != after[name] and changed[name] < "2001"}
     assert silent == set()
 

@@ -19,6 +19,11 @@ from tests.monitoring.open_elsewhere import as_qgis, beside, left_by_a_crash
 from tests.monitoring.seasons import a_plot, a_season, state, three_results
 
 
+@pytest.fixture(autouse=True)
+def opened_once():
+    """Let files be opened for each thing that is done, as programs without pages do."""
+
+
 def test_what_another_program_left_beside_the_season_is_taken_in_and_the_file_is_one_again(
     path, tmp_path
 ):

@@ -33,6 +33,20 @@ from fieldmon.plot.plot import Plot
 from tests.monitoring.seasons import a_plot
 
 
+def test_a_season_and_its_copy_have_one_plot_and_one_whose_plot_is_another_has_that(path, other):
+    plot = Season(path).plot
+    assert Season(other).plot is plot
+    stated = zlib.compress(np.array([7.0, np.nan, np.nan]).tobytes(), 1)
+    with closing(sqlite3.connect(other)) as db:
+        db.execute("UPDATE plots SET name = 'Elsewhere'")
+        db.commit()
+        assert Season(other).plot.field.name == "Elsewhere"
+        db.execute("UPDATE arrays SET data = ? WHERE name = 'stated'", (stated,))
+        db.commit()
+        assert Season(other).plot.field.row_bearing_deg == 7.0
+    assert Season(path).plot.field.name == plot.field.name
+
+
 @pytest.mark.parametrize(
     "lost",
     [

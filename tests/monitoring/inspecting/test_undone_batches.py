@@ -155,8 +155,8 @@ def test_corrections_that_were_undone_count_again_as_they_did(season, correct):
         assert all_of(season) != after
         assert f"Batch {batch} counts again: " in season.redo(batch)
         assert all_of(season) == after
-        assert Season(season.path).verify() == ()
-        assert check_against_log(season) == ()
+    assert Season(season.path).verify() == ()
+    assert check_against_log(season) == ()
 
 
 def test_a_correction_that_was_corrected_itself_counts_again_below_that(season):

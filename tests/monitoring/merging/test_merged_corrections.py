@@ -11,6 +11,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring import Season
 from tests.monitoring.merging.copies import result
 from tests.monitoring.seasons import BEGINS
+from tests.thorough import times
 
 
 def dated(day):
@@ -92,7 +93,8 @@ def test_three_copies_come_out_the_same_in_every_order(copies):
         dated(day)(Season(path), row)
     dated(1)(Season(paths[1]), row)
     dated(0)(Season(paths[0]), row)  # as it was at first
-    for k, order in enumerate(permutations(paths)):
+    # half of the orders; all six with FIELDMON_EXAMPLES
+    for k, order in enumerate([*permutations(paths)][: times(3, 6)]):
         whole = Season(shutil.copy(order[0], paths[0].with_name(f"whole{k}.gpkg")))
         assert [len(whole.merge(Season(path)).contradictions) for path in order[1:]] == [1, 1]
         assert counting(whole) == [(DAYS[0], FOUND)]

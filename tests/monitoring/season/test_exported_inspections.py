@@ -22,17 +22,23 @@ from tests.monitoring.seasons import BEGINS, a_plot, a_season
 OPTIONS = InspectionOptions()
 
 
-@pytest.fixture
-def season(path):
-    season = Season(path)
-    season.record(
+@pytest.fixture(scope="module")
+def of_two(recorded, tmp_path_factory):
+    """Record what Ann and Ben saw, once; return the season's file."""
+    path = shutil.copy(recorded, tmp_path_factory.mktemp("of_two") / "season.gpkg")
+    Season(path).record(
         Inspections.of(
             np.array([300, 301]), np.array([0, 1]), BEGINS, second=[np.nan, 30_000],
             count=[np.nan, 2.0], who=["Ann", "Ben"], notes=["", "below, left"], detects=[0.4, 0.3],
         ),
         "more",
     )  # fmt: skip
-    return season
+    return path
+
+
+@pytest.fixture
+def season(of_two, tmp_path):
+    return Season(shutil.copy(of_two, tmp_path / "season.gpkg"))
 
 
 def exported(season):

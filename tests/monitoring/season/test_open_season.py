@@ -183,6 +183,19 @@ def test_a_correction_of_the_last_days_work_begins_at_its_morning(two_weeks, nig
     assert as_if_all_was_worked_out_again(season)
 
 
+def test_the_first_evening_is_worked_out_again_only_where_it_changed(two_weeks, monkeypatch):
+    two_weeks.record(three_results(LAST, NOBODYS), "the layers are written")
+    worked, evening = [], History._evening
+    monkeypatch.setattr(
+        History, "_evening", lambda *given: (worked.append(given[2]), evening(*given))[1]
+    )
+    two_weeks.record(three_results(LAST, NOBODYS + 3), "once more")
+    assert set(worked) == {LAST}
+    two_weeks.record(three_results(0, NOBODYS + 6), "of the first day")
+    assert 0 in worked
+    assert as_if_all_was_worked_out_again(two_weeks)
+
+
 def test_inspections_alone_are_those_of_the_history_whoever_asks_first(two_weeks):
     first = Season(two_weeks.path)
     alone, known = first.inspections, first.history.inspections

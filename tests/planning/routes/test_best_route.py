@@ -145,7 +145,7 @@ def test_a_route_that_holds_more_than_its_bound_proves_nothing(monkeypatch):
 
 @given(st.data())
 def test_no_sampler_expects_more_than_the_bound(data):
-    aisles = data.draw(crooked_aisles(max_radius_m=60.0, max_plants=1500))
+    aisles = data.draw(crooked_aisles(max_radius_m=40.0, max_plants=600))
     grid, robot = aisles.grid, data.draw(ROBOTS)
     chance = 0.5 * data.draw(rewards(len(grid)))
     seconds = data.draw(st.floats(0.02, 0.8)) * whole_day_s(aisles, chance, robot)
@@ -164,9 +164,11 @@ def test_no_sampler_expects_more_than_the_bound(data):
 
 
 @pytest.mark.parametrize("faces", [1, 2])
-@pytest.mark.parametrize("robot", [Robot(hours=4.0), scout(), Robot(hours=4.0, returns=False)])
+@pytest.mark.parametrize(
+    "robot", [Robot(hours=2.0), scout().with_hours(3.0), Robot(hours=2.0, returns=False)]
+)
 def test_on_a_plain_plot_route_and_bound_are_close(faces, robot):
-    aisles = Aisles.of(rectangle(40, 40, Planting(faces=faces)))
+    aisles = Aisles.of(rectangle(28, 28, Planting(faces=faces)))
     reward = np.random.default_rng(3).beta(0.3, 20.0, len(aisles.grid))
     route = best(aisles, reward, robot)
     check(aisles, reward, robot, robot.day_s, route)

@@ -71,7 +71,7 @@ def test_at_no_price_is_any_route_worth_more_than_the_best_drive(data):
 def far_apart():
     """Return two parts beside each other, with a way of 300 m between them."""
     area = Frame(35.15, 30.36).geometry_lonlat(
-        MultiPolygon([box(-210, -40, -150, 40), box(150, -40, 210, 40)])
+        MultiPolygon([box(-200, -30, -150, 30), box(150, -30, 200, 30)])
     )
     return Aisles.of(lay(Field("apart", area), Planting(row_bearing_deg=90.0)))
 

@@ -38,13 +38,13 @@ def test_a_day_that_was_missed_is_given_its_hours_and_one_that_was_worked_keeps_
     press(season_app, "Use from now on")
     assert "Mon 16 Nov stays as it was planned" in season_app.success[0].value
     season_app.date_input[0].set_value(days[1]).run()
-    assert season().planned_by(days[1]).robot.hours == 12.0
+    assert season().planned_by(days[1]).robot.hours == 2.0
     tap(season_app, "plan_as_now")
     assert season().planned_by(days[1]).robot.hours == 6.0
     hours_box(season_app).set_value(4.0).run()
     press(season_app, "Use from now on")
     assert season_app.success[0].value.startswith("Tue 17 Nov goes by this too")
-    assert [season().planned_by(day).robot.hours for day in days[:2]] == [12.0, 4.0]
+    assert [season().planned_by(day).robot.hours for day in days[:2]] == [2.0, 4.0]
 
 
 def test_another_sampler_goes_without_the_n_of_the_one_before(season_app, season):
@@ -91,7 +91,7 @@ def test_a_strategy_in_use_is_that_of_the_season_and_says_so(season_app, season)
     season_app.button(key="run").click().run()
     until(lambda: len(season_app.run().table))
     press(season_app, "Use this strategy")
-    assert season_app.success[0].value == "Naive · 12 h · 40 s is in use now."
+    assert season_app.success[0].value == "Naive · 2 h · 40 s is in use now."
     assert season().settings.sampler == "naive"
 
 
@@ -104,7 +104,7 @@ def test_a_robot_gives_way_to_a_scout_in_a_season_and_comes_back(season_app, sea
     who(season_app).set_value("Scout on foot").run()
     press(season_app, "Use from now on")
     assert not season_app.exception
-    assert season().settings.robot == scout().with_hours(12.0)  # hours are the plot's
+    assert season().settings.robot == scout().with_hours(2.0)  # hours are the plot's
     assert who(season_app).value == "Scout on foot"
     hours_box(season_app).set_value(5.0).run()
     press(season_app, "Use from now on")
@@ -131,26 +131,26 @@ def test_other_hours_stand_above_the_day_s_sentence_and_count_once_they_are_used
 ):
     at = places_of(season_app)
     assert at["hours"] < at["sentence"] < at["seconds"], "they are changed every day"
-    hours_box(season_app).set_value(4.0).run()
+    hours_box(season_app).set_value(1.0).run()
     shown = list(season_app.main)
     use = next(k for k, one in enumerate(shown) if getattr(one, "key", "") == "change_setup")
     assert at["hours"] < use < places_of(season_app)["sentence"]
-    assert season().settings.robot.hours == 12.0
+    assert season().settings.robot.hours == 2.0
     # a plan of other hours than the slider says is not handed on
     assert "first use what you changed" in texts_of(season_app)
     for step in ("plan", "send"):
         button = season_app.button(key=f"do_{step}")
         assert (button.disabled, button.proto.type) == (True, "secondary")
     press(season_app, "Use from now on")
-    assert season().settings.robot.hours == 4.0
-    assert int(metric(season_app, "Plants to inspect").split(" / ")[0]) < 300
+    assert season().settings.robot.hours == 1.0
+    assert int(metric(season_app, "Plants to inspect").split(" / ")[0]) < 100
     tap(season_app, "do_plan")
-    assert season().planned_and_done(BEGINS).hours <= 4.0
+    assert season().planned_and_done(BEGINS).hours <= 1.0
     go(season_app, "record")
     at = places_of(season_app)
     assert at["hours"] is not None
     assert at["hours"] < at["seconds"]
-    assert hours_box(season_app).value == 4.0
+    assert hours_box(season_app).value == 1.0
 
 
 def test_the_hours_of_a_plot_without_a_season_stand_there_too_and_are_kept_elsewhere(app):
@@ -176,7 +176,7 @@ def test_an_earlier_day_goes_by_what_counted_then_and_says_so(season):
     few = metric(app, texts.PLANTS_TO_INSPECT)
     app = opened("Gate 2026", day=str(days[0]))
     assert not [one for one in app.slider if one.key.startswith("hours ")]
-    assert "what counted then: Adaptive · 12 h · 40 s, from 06:00" in texts_of(app)
+    assert "what counted then: Adaptive · 2 h · 40 s, from 06:00" in texts_of(app)
     assert metric(app, texts.PLANTS_TO_INSPECT) != few
 
 
@@ -191,7 +191,7 @@ def test_an_earlier_day_of_a_team_says_how_each_worked(season):
         kept.record(Inspections.of(np.arange(3), np.zeros(3, np.int8), np.datetime64(day)))
     said = texts_of(opened("Gate 2026", day=str(days[0])))
     assert texts.EARLIER_TEAM in said
-    assert "Ann\u2069: Adaptive · 12 h · 40 s, from 06:00" in said
+    assert "Ann\u2069: Adaptive · 2 h · 40 s, from 06:00" in said
     assert f"Dan\u2069: Adaptive · 3 h · {walks.look_s:g} s, from 08:00" in said
 
 

@@ -48,7 +48,6 @@ def test_one_plant_is_recorded_undone_or_gone(season_app, season):
     # pulled out by now, and no treatment
     for name, value in {"one_row": 3, "one_plant": 5, "one_result": GONE}.items():
         season_app.session_state[key_of(season_app, name)] = value
-    season_app.run()
     send(season_app, "one")
     assert "1 recorded" in season_app.success[0].value
     assert season().history.gone(0).nonzero()[0].tolist() == [
@@ -105,7 +104,6 @@ def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_it_was_ta
     go(app, "record")
     for name, value in {"one_row": "2", "one_plant": 5, "one_result": FOUND}.items():
         app.session_state[key_of(app, name)] = value
-    app.run()
     send(app, "one")
     assert "2 may be any of rows 2–3 here" in app.error[0].value
     assert not len(season_named.history.inspections)
@@ -124,7 +122,6 @@ def test_a_row_is_typed_by_its_name_and_a_plant_that_may_be_another_by_its_name_
     for plant, error in ((4, "4 may be any of plants 3–4 of row 1 · 5a here"), (5, None)):
         for name, value in {"one_row": "5A", "one_plant": plant, "one_result": FOUND}.items():
             app.session_state[key_of(app, name)] = value
-        app.run()
         send(app, "one")
         assert [error in one.value for one in app.error] == ([True] if error else [])
     (plant,) = season_named.history.inspections.plant
@@ -534,7 +531,6 @@ def test_a_press_is_carried_out_though_what_is_typed_next_breaks_its_run_off(
         row = key_of(season_app, "one_row")
         for name, value in {"one_row": 3, "one_plant": 3 + n, "one_result": FOUND}.items():
             season_app.session_state[key_of(season_app, name)] = value
-        season_app.run()
         with monkeypatch.context() as patch:
             broken_off(patch, more)
             send(season_app, "one")
@@ -544,12 +540,12 @@ def test_a_press_is_carried_out_though_what_is_typed_next_breaks_its_run_off(
         assert (numbered.line[plant], numbered.number[plant]) == (3, 3 + n)
         assert boxed(season_app.number_input, "one_row").value == (5 if more else None)
         assert boxed(season_app.number_input, "one_plant").value is None
-    boxed(season_app.number_input, "efficacy").set_value(90).run()
+    boxed(season_app.number_input, "efficacy").set_value(90)
     with monkeypatch.context() as patch:
         broken_off(patch)
         send(season_app, "treatment")
     assert len(season().treatments()) == 1
-    boxed(season_app.number_input, "stops_done").set_value(3).run()
+    boxed(season_app.number_input, "stops_done").set_value(3)
     broken_off(monkeypatch)
     send(season_app, "route")
     assert len(season().history.inspections) == 5

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+import stat
 import threading
 import time
 from contextlib import closing, contextmanager
@@ -133,14 +134,14 @@ def _kept() -> dict[tuple[Path, int], sqlite3.Connection] | None:
 @contextmanager
 def opened(path: Path) -> Iterator[sqlite3.Connection]:
     """Give a connection for one transaction: one that this thread keeps, if it may."""
-    must_be_there(path)
+    inode = must_be_there(path)
     files = _kept()
     if files is None:
         with closing(connect(path)) as db:
             yield db
         return
     # another file of the same name is another season
-    of_file = path, path.stat().st_ino
+    of_file = path, inode
     # one that is at work belongs to whoever reads around this
     if of_file in files:
         db = files.pop(of_file)
@@ -158,10 +159,18 @@ def opened(path: Path) -> Iterator[sqlite3.Connection]:
             files[of_file] = db
 
 
-def must_be_there(path: Path) -> None:
-    """Refuse a file that is away, if for a moment: SQLite would put an empty one in its place."""
-    if not path.is_file():
+def must_be_there(path: Path) -> int:
+    """Refuse a file that is away, if for a moment: SQLite would put an empty one in its place.
+
+    Returns its inode.
+    """
+    try:
+        there = path.stat()
+    except OSError:
+        raise no_file(path) from None
+    if not stat.S_ISREG(there.st_mode):
         raise no_file(path)
+    return there.st_ino
 
 
 def sentences_of(path: Path, into: Path | None = None) -> AbstractContextManager[None]:

@@ -47,11 +47,12 @@ def test_a_day_that_was_missed_is_given_its_hours_and_one_that_was_worked_keeps_
     assert [season().planned_by(day).robot.hours for day in days[:2]] == [2.0, 4.0]
 
 
-def test_another_sampler_goes_without_the_n_of_the_one_before(season_app, season):
+def test_another_n_than_usual_is_said_and_another_sampler_goes_without_it(season_app, season):
     project, settings = season(), season().settings
     every_third = replace(settings, sampler="bouncy", sampler_settings={"every": 3})
     project.change(every_third, settings)
     go(season_app, "today")
+    assert "every second plant; but here N is 3, not 2" in texts_of(season_app)
     hours_box(season_app).set_value(4.0).run()
     press(season_app, "Use from now on")
     assert season().settings.sampler_settings == {"every": 3}
@@ -215,11 +216,3 @@ def test_of_a_team_each_has_a_row_another_sampler_leaves_all_as_they_are_and_one
     assert season().settings == before.with_sampler("naive")
     press(season_app, next(one.label for one in season_app.button if one.key == "undo_change"))
     assert season().settings.team == team
-
-
-def test_another_n_than_usual_is_said_beside_what_the_sampler_does(season_app, season):
-    kept = season()
-    every = replace(kept.settings, sampler="bouncy", sampler_settings={"every": 5})
-    kept.change(every, kept.settings)
-    go(season_app, "season")
-    assert "every second plant; but here N is 5, not 2" in texts_of(season_app)

@@ -110,7 +110,9 @@ def part_noted(app, **boxes):
     press(app, "Note the treatment")
 
 
-def test_a_treatment_of_rows_is_of_their_plants_as_in_a_command(season_app, season):
+def test_a_treatment_of_rows_or_of_what_is_selected_on_the_map_is_of_those_plants(
+    season_app, season
+):
     go(season_app, "record")
     part_noted(season_app, rows="5-12")
     assert not season_app.error
@@ -123,18 +125,14 @@ def test_a_treatment_of_rows_is_of_their_plants_as_in_a_command(season_app, seas
     assert len(season().treatments()) == 1
     part_noted(season_app, rows="")
     assert season().treatments()[-1].place.plants.all(), "without a word it is the whole plot"
-
-
-def test_a_treatment_of_what_is_selected_on_the_map_is_of_those_plants(season_app, season):
     some = (3, 4, 700)
     season_app.session_state["plants picked"] = in_season(season()).place, some
-    go(season_app, "record")
+    season_app.run()
     assert "3 plants" in boxed(season_app.checkbox, "treat selected").label
     part_noted(season_app, rows="12")
     assert "two of them are said" in season_app.error[0].value
     part_noted(season_app, rows="")
-    (one,) = season().treatments()
-    assert tuple(one.place.plants.nonzero()[0].tolist()) == some
+    assert tuple(season().treatments()[-1].place.plants.nonzero()[0].tolist()) == some
     # the next one is of the whole plot again, unless something is selected
     assert not [box for box in season_app.checkbox if "treat selected" in (box.key or "")]
 

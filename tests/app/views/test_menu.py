@@ -56,12 +56,12 @@ def go_to_item(app, name):
     app.run()
 
 
-def test_a_box_that_two_parts_have_keeps_what_was_chosen(app):
-    go(app, "compare")
-    app.number_input(key="n_days").set_value(7).run()
-    box = app.segmented_control(key=menu.key("ahead"))
+def test_a_box_that_two_parts_have_keeps_what_was_chosen(season_app):
+    go(season_app, "compare")
+    season_app.number_input(key="n_days").set_value(7).run()
+    box = season_app.segmented_control(key=menu.key("ahead"))
     box.set_value("simulate").run()
-    assert app.number_input(key="n_days").value == 7
-    app.number_input(key="n_days").set_value(9).run()
-    app.segmented_control(key=menu.key("ahead")).set_value("compare").run()
-    assert app.number_input(key="n_days").value == 9
+    assert season_app.number_input(key="n_days").value == 7
+    season_app.number_input(key="n_days").set_value(9).run()
+    season_app.segmented_control(key=menu.key("ahead")).set_value("compare").run()
+    assert season_app.number_input(key="n_days").value == 9

@@ -39,7 +39,9 @@ def test_the_season_says_why_days_sum_to_more_than_the_plants_found(season_app, 
     assert "6 finds on 3 plants: 3 of them on plants that had been found" in texts_of(season_app)
 
 
-def test_the_season_says_how_many_plants_are_only_flagged(season_app, monkeypatch):
+def test_the_season_says_how_many_plants_are_only_flagged(season_app, season, monkeypatch):
+    # of what was just recorded nothing is kept yet
+    season().record(Inspections.of([3], [0], date(2026, 11, 16)), "file")
     monkeypatch.setattr(figures_of_day, "flagged", lambda *_: 20.0)
     go(season_app, "season")
     assert not season_app.exception

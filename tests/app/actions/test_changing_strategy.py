@@ -34,17 +34,17 @@ def test_a_day_that_was_missed_is_given_its_hours_and_one_that_was_worked_keeps_
         one = Inspections.of(np.array([3]), np.array([0]), np.datetime64(day))
         season().record(one, "file")
     season_app.run()
-    hours_box(season_app).set_value(6.0).run()
+    hours_box(season_app).set_value(1.5).run()
     press(season_app, "Use from now on")
     assert "Mon 16 Nov stays as it was planned" in season_app.success[0].value
     season_app.date_input[0].set_value(days[1]).run()
     assert season().planned_by(days[1]).robot.hours == 2.0
     tap(season_app, "plan_as_now")
-    assert season().planned_by(days[1]).robot.hours == 6.0
-    hours_box(season_app).set_value(4.0).run()
+    assert season().planned_by(days[1]).robot.hours == 1.5
+    hours_box(season_app).set_value(1.0).run()
     press(season_app, "Use from now on")
     assert season_app.success[0].value.startswith("Tue 17 Nov goes by this too")
-    assert [season().planned_by(day).robot.hours for day in days[:2]] == [2.0, 4.0]
+    assert [season().planned_by(day).robot.hours for day in days[:2]] == [2.0, 1.0]
 
 
 def test_another_n_than_usual_is_said_and_another_sampler_goes_without_it(season_app, season):
@@ -53,7 +53,7 @@ def test_another_n_than_usual_is_said_and_another_sampler_goes_without_it(season
     project.change(every_third, settings)
     go(season_app, "today")
     assert "every second plant; but here N is 3, not 2" in texts_of(season_app)
-    hours_box(season_app).set_value(4.0).run()
+    hours_box(season_app).set_value(1.0).run()
     press(season_app, "Use from now on")
     assert season().settings.sampler_settings == {"every": 3}
     for name in ("adaptive", "snake"):
@@ -72,14 +72,14 @@ def test_changes_of_settings_are_taken_back_one_by_one(season_app, season):
     go(season_app, "season")
     assert not [one for one in season_app.button if one.key == "undo_change"]
     settings = season().settings
-    for hours in (7.0, 16.0):
+    for hours in (1.0, 3.0):
         hours_box(season_app).set_value(hours).run()
         press(season_app, "Use from now on")
-    press(season_app, "Take back: hours 16")
+    press(season_app, "Take back: hours 3")
     said = season_app.success[0].value.replace("\u00a0", " ")
-    assert said == "The last change was taken back: hours 16 (now 7 again)."
-    assert season().settings.robot.hours == 7.0
-    press(season_app, "Take back: hours 7")
+    assert said == "The last change was taken back: hours 3 (now 1 again)."
+    assert season().settings.robot.hours == 1.0
+    press(season_app, "Take back: hours 1")
     assert season().settings == settings
     assert not [one for one in season_app.button if one.key == "undo_change"]
 
@@ -107,12 +107,12 @@ def test_a_robot_gives_way_to_a_scout_in_a_season_and_comes_back(season_app, sea
     assert not season_app.exception
     assert season().settings.robot == scout().with_hours(2.0)  # hours are the plot's
     assert who(season_app).value == "Scout on foot"
-    hours_box(season_app).set_value(5.0).run()
+    hours_box(season_app).set_value(1.0).run()
     press(season_app, "Use from now on")
-    assert season().settings.robot == scout().with_hours(5.0)
+    assert season().settings.robot == scout().with_hours(1.0)
     who(season_app).set_value("Robot").run()
     press(season_app, "Use from now on")
-    assert season().settings.robot == Robot(hours=5.0)
+    assert season().settings.robot == Robot(hours=1.0)
 
 
 def places_of(app):

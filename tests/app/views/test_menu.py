@@ -11,17 +11,17 @@ SEVERAL = [name for name, item in menu.MENU.items() if len(item.pages) > 1]
 
 
 @pytest.mark.parametrize("name", SEVERAL)
-def test_an_item_shows_its_first_page_first_and_another_by_a_click(app, name):
+def test_an_item_shows_its_first_page_first_and_another_by_a_click(season_app, name):
     first, second = menu.MENU[name].pages[:2]
-    go(app, first)
-    box = app.segmented_control(key=menu.key(name))
+    go(season_app, first)
+    box = season_app.segmented_control(key=menu.key(name))
     assert box.value == first
     assert [texts.PAGES[page] for page in menu.MENU[name].pages] == box.options
-    before = texts_of(app)
+    before = texts_of(season_app)
     box.set_value(second).run()
-    assert not app.exception
-    assert app.segmented_control(key=menu.key(name)).value == second
-    assert texts_of(app) != before
+    assert not season_app.exception
+    assert season_app.segmented_control(key=menu.key(name)).value == second
+    assert texts_of(season_app) != before
 
 
 def test_the_page_that_was_shown_is_shown_again_after_another_item(app):

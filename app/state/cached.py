@@ -356,7 +356,7 @@ def _layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:
 
 
 def written(key: str, make: Callable[[], Written]) -> Written:
-    """Return what is written or played on a map, made once a language; `key` as above."""
+    """Return what a day is said in, or played from, made once a language; `key` as above."""
     return cast("Written", _written(f"{language.current()} {key}", make))
 
 

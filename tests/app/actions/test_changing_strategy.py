@@ -69,7 +69,7 @@ def hours_box(app):
 
 
 def test_changes_of_settings_are_taken_back_one_by_one(season_app, season):
-    go(season_app, "season")
+    go(season_app, "record")
     assert not [one for one in season_app.button if one.key == "undo_change"]
     settings = season().settings
     for hours in (1.0, 3.0):
@@ -100,7 +100,7 @@ def test_a_robot_gives_way_to_a_scout_in_a_season_and_comes_back(season_app, sea
     def who(app):
         return next(one for one in app.segmented_control if (one.key or "").startswith("who "))
 
-    go(season_app, "season")
+    go(season_app, "record")
     assert who(season_app).value == "Robot"
     who(season_app).set_value("Scout on foot").run()
     press(season_app, "Use from now on")

@@ -54,8 +54,8 @@ def show(choices: Choices) -> None:
         with st.expander(texts.STOPS):
             route = plan.route
             planned = DayRoute(route, chosen_day.starts(choices, plan))
-            said = digest(route.plant, route.arrive_s, route.believed)
-            key = f"table of stops {choices.key} {planned.begins} {said}"
+            stops = digest(route.plant, route.arrive_s, route.believed)
+            key = f"table of stops {choices.key} {planned.begins} {stops}"
             table = cached.written(key, lambda: day.stops(choices, planned))
             st.dataframe(table, height=300)
 

@@ -75,13 +75,13 @@ def choose(
     Without a `day` the hours stand with who works. On a phone they fold with where and when.
     Returns the choices, or the problem that keeps from them.
     """
-    options = _options()
+    names = seasons_folder.names()
     if not browser.is_phone():
-        return _chosen(head, Work(foot, day), wait, options)
+        return _chosen(head, Work(foot, day), wait, names)
     with head.container(key="where_and_when", horizontal=True, vertical_alignment="center"):
         name = _of_files().get(plot_source.chosen()) or texts.isolated(plot_source.chosen())
         boxes, line = st.popover(name), st.empty()
-    chosen = _chosen(boxes, Work(foot, None if day is None else boxes), wait, options)
+    chosen = _chosen(boxes, Work(foot, None if day is None else boxes), wait, names)
     if chosen.choices is not None:
         line.markdown(_where_and_when(chosen.choices))
     return chosen
@@ -101,14 +101,14 @@ def _who_works(choices: Choices) -> Robot:
     return choices.season.planned_by(choices.on).member(choices.whose_day).robot
 
 
-def _chosen(head: DeltaGenerator, work: Work, wait: Wait, options: list[str]) -> Chosen:
+def _chosen(head: DeltaGenerator, work: Work, wait: Wait, names: list[str]) -> Chosen:
     with head:
-        source = _source(options)
+        source = _source(_options(names))
         try:
             if source in (plot_source.SAMPLE, plot_source.FILES):
                 return Chosen(_from_files(source, wait, work))
             wait(None)
-            if source not in seasons_folder.names():  # it may be back at the next run
+            if source not in names:  # it may be back at the next run
                 raise FileProblem(notices.gone(source))
             notices.found()
             return Chosen(_from_season(source, work))
@@ -116,9 +116,9 @@ def _chosen(head: DeltaGenerator, work: Work, wait: Wait, options: list[str]) ->
             return Chosen(problem=error)
 
 
-def _options() -> list[str]:
+def _options(names: list[str]) -> list[str]:
     """Return where a plot may come from; the season that is asked for, also while it is gone."""
-    options = [plot_source.SAMPLE, plot_source.FILES, *seasons_folder.names()]
+    options = [plot_source.SAMPLE, plot_source.FILES, *names]
     plot_source.begin_from_address()
     named = widget_memory.value(plot_source.KEY)
     if not named:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import wraps
+from functools import partial, wraps
 from typing import TYPE_CHECKING, Literal, ParamSpec, TypeVar
 
 import altair as alt
@@ -70,6 +70,9 @@ def _in_language(make: Callable[P, C]) -> Callable[P, C]:
             axisLeft=_level("left", -_ASIDE_PX),
             axisRight=_level("right", _ASIDE_PX),
         )
+        # whether Vega-Lite knows all that is in a chart of ours hangs on no data: its tests say it,
+        # nobody who looks at a page waits for it
+        object.__setattr__(chart, "to_dict", partial(chart.to_dict, validate=False))
         if language.current() == language.ENGLISH:
             return chart
         fraction, thousands = language.separators()
@@ -204,7 +207,7 @@ def found(figures: SeasonMetrics, axes: tuple[str, str]) -> alt.Chart:
 
 
 def load() -> None:
-    """Make a chart: what checks all charts is then loaded before anybody asks for one."""
+    """Make a chart: what makes all charts is then loaded before anybody asks for one."""
     level = np.zeros(2)
     bands({"": (level, level, level)}, ("", "")).to_dict()
 

@@ -62,14 +62,17 @@ def day_map(
         *records(choices),
         *(above or []),
     ]
-    play = route_layers.playback(route, driven.begins)
+    of_route = _route_key(choices, route)
+    play = cached.written(
+        f"play {of_route} {driven.begins}", lambda: route_layers.playback(route, driven.begins)
+    )
     if play is not None:
-        play["key"] = f"{language.current()} {choices.revision} {_route_key(choices, route)}"
+        play = {**play, "key": f"{language.current()} {choices.revision} {of_route}"}
     return MapContent(
         **field_map.of_plot(choices, len(route)), layers=layers,
         switches=switches(layers, off, ("numbers", "rows")), shades=shades,
         legend=legend(choices), play=play,
-        labels=[*labels.stops(route), *words(choices)],
+        labels=[*cached.written(f"stops {of_route}", lambda: labels.stops(route)), *words(choices)],
     )  # fmt: skip
 
 
@@ -159,9 +162,13 @@ def records(choices: Choices) -> list[Layer]:
 
 
 def words(choices: Choices) -> list[labels.Label]:
-    """Return what is written on a plan, the most important first."""
+    """Return what is written on a plan, the most important first; made once."""
     plot = choices.plot
-    return [*labels.places(plot), *labels.rows(plot.grid), *labels.blocks(plot.grid)]
+
+    def make() -> list[labels.Label]:
+        return [*labels.places(plot), *labels.rows(plot.grid), *labels.blocks(plot.grid)]
+
+    return cached.written(f"words {choices.key}", make)
 
 
 def plants(choices: Choices) -> list[Layer]:

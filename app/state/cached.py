@@ -12,7 +12,7 @@ or else names what was read by its digest: what is older than its key would be s
 from __future__ import annotations
 
 from datetime import date
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar, cast
 
 import numpy as np
 import streamlit as st
@@ -60,6 +60,8 @@ if TYPE_CHECKING:
     from fieldmon.reports.content import Report
 
     Array = NDArray[np.float64]
+
+Written = TypeVar("Written")
 
 #: shown while something is made, in the language of whoever waits
 WORKING = Late(lambda: texts.WORKING)
@@ -350,6 +352,16 @@ def layers(key: str, make: Callable[[], list[Layer]]) -> list[Layer]:
 
 @st.cache_resource(max_entries=_MAPS, show_spinner=False)
 def _layers(key: str, _make: Callable[[], list[Layer]]) -> list[Layer]:
+    return _make()
+
+
+def written(key: str, make: Callable[[], Written]) -> Written:
+    """Return what a day is said in, or played from, made once a language; `key` as above."""
+    return cast("Written", _written(f"{language.current()} {key}", make))
+
+
+@st.cache_resource(max_entries=_MAPS, show_spinner=False)
+def _written(key: str, _make: Callable[[], object]) -> object:
     return _make()
 
 

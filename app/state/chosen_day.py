@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import date, datetime, time, timedelta
+from functools import cached_property
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.estimates.told_detection import ToldOtherwise
     from fieldmon.planning.plan import DayPlan
     from fieldmon.planning.route import Route
+    from fieldmon.plot.local_clock import LocalClock
     from fieldmon.plot.plot import Plot
 
     from .choices import Choices
@@ -58,7 +60,11 @@ class DayRoute:
         """Return the local time so many seconds after the start."""
         if self.worked:  # from one time noted to another
             return self.begins + timedelta(seconds=round(seconds))
-        return grid_clock(self.route.aisles.grid).after(self.begins, round(seconds))
+        return self._clock.after(self.begins, round(seconds))
+
+    @cached_property
+    def _clock(self) -> LocalClock:
+        return grid_clock(self.route.aisles.grid)
 
 
 def starts(choices: Choices, plan: DayPlan, who: str | None = None) -> datetime:

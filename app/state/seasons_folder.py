@@ -43,13 +43,15 @@ def names() -> list[str]:
     """Return the names of the seasons there, in order."""
     here = folder()
     files: Iterable[Path] = here.glob(f"*{_ENDING}") if here.is_dir() else ()
-    return sorted(file.stem for file in files if _lies_there(file) and is_season(file))
+    return sorted(file.stem for file in files if _lies_in(here, file) and is_season(file))
 
 
-def _lies_there(file: Path) -> bool:
+def _lies_in(here: Path, file: Path) -> bool:
     """Tell whether a file lies in the folder itself: a link may lead anywhere."""
+    if file.parent == here and not os.path.islink(file):  # noqa: PTH114 - no name is too long for it
+        return True
     try:
-        return file.resolve().parent == folder().resolve()
+        return file.resolve().parent == here.resolve()
     except OSError:
         return False
 
@@ -61,7 +63,7 @@ def path_of(name: str) -> Path:
     if len(name) > _LONGEST:
         raise SettingError(texts.SEASON_LONG.format(most=_LONGEST, n=len(name)))
     path = _file(folder(), name)
-    if not _lies_there(path):
+    if not _lies_in(folder(), path):
         raise SettingError(texts.SEASON_NAMED.format(name=name))
     return path
 

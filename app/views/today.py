@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
+from fieldmon.compute.digest import digest
+
 from ..actions import (
     asking_photos,
     assuming,
@@ -18,7 +20,7 @@ from ..actions import (
     recording_here,
 )
 from ..show import cautions, day, map_layers, plant_history
-from ..state import chosen_day, wishes
+from ..state import cached, chosen_day, wishes
 from ..state.chosen_day import DayRoute
 from ..words import texts
 
@@ -50,8 +52,12 @@ def show(choices: Choices) -> None:
                 st.markdown("\n".join(f"- {sentence}" for sentence in said))
     if len(plan.route):
         with st.expander(texts.STOPS):
-            planned = DayRoute(plan.route, chosen_day.starts(choices, plan))
-            st.dataframe(day.stops(choices, planned), height=300)
+            route = plan.route
+            planned = DayRoute(route, chosen_day.starts(choices, plan))
+            stops = digest(route.plant, route.arrive_s, route.believed)
+            key = f"table of stops {choices.key} {planned.begins} {stops}"
+            table = cached.written(key, lambda: day.stops(choices, planned))
+            st.dataframe(table, height=300)
 
 
 def _work(choices: Choices, plan: DayPlan) -> None:

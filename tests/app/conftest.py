@@ -10,29 +10,33 @@ import time
 import tomllib
 import urllib.request
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import UTC, date, datetime, timedelta
-from functools import cache
 from itertools import count
 from pathlib import Path
 
 import numpy as np
 import pytest
 import streamlit as st
+from shapely import MultiPolygon, box
 from streamlit import config
 from streamlit.components.v2 import manifest_scanner
 from streamlit.runtime.scriptrunner.script_cache import ScriptCache
 from streamlit.runtime.state.safe_session_state import SafeSessionState
 from streamlit.testing.v1 import local_script_runner
 
+from app.state import sample_estate
 from app.words import language
 from fieldmon.infestation.records import Records
+from fieldmon.io import plot_records, read
+from fieldmon.io.plot_request import RecordSource
 from fieldmon.monitoring import MonitoringSettings, Season
 from fieldmon.plot import local_clock
 from fieldmon.plot.plant_names import PlantNames
-from fieldmon.plot.plot import plot_around
+from fieldmon.plot.plot import Plot, plot_around
 from fieldmon.plot.projection import Frame
 from fieldmon.plot.robot import Robot
-from tests.app.driving import begun, opened
+from tests.app.driving import opened
 from tests.app.map_in_browser import dressed, picture
 from tests.paths import ROOT, SHARED
 
@@ -51,10 +55,12 @@ def pytest_runtest_makereport(item):
 
 @pytest.fixture(scope="session", autouse=True)
 def components():
-    """Look for components among all installed packages once, not for each session."""
+    """Look for no components among all installed packages: the app's own is none of those.
+
+    A server looks, see `address`.
+    """
     with pytest.MonkeyPatch.context() as patch:
-        scan = manifest_scanner.scan_component_manifests
-        patch.setattr(manifest_scanner, "scan_component_manifests", cache(scan))
+        patch.setattr(manifest_scanner, "scan_component_manifests", list)
         yield
 
 
@@ -148,12 +154,21 @@ def app():
 
 @pytest.fixture(scope="session")
 def begun_file(tmp_path_factory):
-    """Begin a season in the app, once; return its file."""
-    folder = tmp_path_factory.mktemp("begun")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("FIELDMON_SEASONS", str(folder))
-        assert "has begun" in begun(opened()).success[0].value
-    return folder / "Gate 2026.gpkg"
+    """Begin a season as the app does, on the part of the sample plot Gate at its gate, once."""
+    gate = sample_estate.plots()[0]
+    grid = Plot.of(gate).grid
+    x, y = grid.xy_m[0]
+    # 16 rows from the gate on, of 50 plants each
+    corner = box(x - 9.0, y - 9.0, x + 151.5, y + 62.0)
+    boundary = gate.boundary & grid.frame.geometry_lonlat(corner)
+    paths = read.read_lines(sample_estate.FOLDER / sample_estate.PATHS).value
+    plot = Plot.of(replace(gate, boundary=MultiPolygon([boundary]), paths=paths))
+    source = RecordSource(sample_estate.FOLDER / sample_estate.RECORDS)
+    records = plot_records.records_on(plot, source, sample_estate.plots, None).value
+    robot = Robot(hours=2.0)  # a day is a fifth of the plot, as eight hours are of the whole one
+    settings = MonitoringSettings(sample_estate.LAST_DAY, robot=robot, language=language.ENGLISH)
+    path = tmp_path_factory.mktemp("begun") / "Gate 2026.gpkg"
+    return Season.create(path, plot, records, settings).path
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from shapely import MultiPolygon, box
 from streamlit.testing.v1 import AppTest
 from streamlit.util import calc_hash
 
-from app.state import menu
+from app.state import menu, plot_source
 from app.state.map_store import STORE
 from app.words import texts
 from tests.app.shown_plants import shown_plants
@@ -23,6 +23,8 @@ from tests.paths import ROOT
 
 ESTATE = ROOT / "sample_data"
 SQUARE = MultiPolygon([box(35.15, 30.36, 35.1506, 30.3606)])
+#: how long a run of a page may take where other programs have the machine's processors
+PATIENCE_S = 400
 PAGES = tuple(page for item in menu.MENU.values() for page in item.pages)
 
 
@@ -40,7 +42,7 @@ class Session(AppTest):
     has_begun = True
 
     def __init__(self, address):
-        super().__init__(ROOT / "app" / "streamlit_app.py", default_timeout=120)
+        super().__init__(ROOT / "app" / "streamlit_app.py", default_timeout=PATIENCE_S)
         self.query_params = address
         self.has_begun = False
 
@@ -62,10 +64,10 @@ def word_of(app):
     return word[0] if isinstance(word, list) else word
 
 
-def go(app, page):
+def go(app, page, **address):
     """Turn to a page by its address: it says nothing else, the next run is its own.
 
-    A session that nobody has looked at begins there.
+    A session that nobody has looked at begins there; its address may say more.
     """
     item = menu.item_of(page)
     app._page_hash = calc_hash("" if item == "today" else item)
@@ -73,13 +75,14 @@ def go(app, page):
         app.session_state[menu.key(item)] = page
         app.query_params.clear()
     app.has_begun = True
-    app.query_params[menu.KEY] = page
+    app.query_params.update({menu.KEY: page} | address)
     return app.run()
 
 
 def begun(app, name="Gate 2026"):
     """Begin a season on the plot that is open; rows that were assumed are right."""
-    go(app, "today")
+    if not app.has_begun or not any(one.key == "do_begin" for one in app.button):
+        go(app, "today")
     boxed(app.text_input, "season_name").set_value(name)
     press(app, "Begin the season")
     asked = any(button.key == "begin_right" for button in app.button)
@@ -164,8 +167,11 @@ def texts_of(app):
 
 def upload(app, **files):
     """Bring files to the page of plots."""
-    app.selectbox(key="season").set_value("My own files").run()
-    go(app, "plot")
+    if app.has_begun:
+        app.selectbox(key=plot_source.KEY).set_value(plot_source.FILES).run()
+        go(app, "plot")
+    else:
+        go(app, "plot", **{plot_source.KEY: plot_source.FILES})
     for key, data in files.items():
         app.file_uploader(key=f"{key}_file").upload(*data)
     return app.run()

@@ -32,9 +32,11 @@ class FileRevision(NamedTuple):
     @classmethod
     def of(cls, db: sqlite3.Connection) -> FileRevision:
         """Return what the file says of itself."""
-        names = ("revision", schema.INSPECTIONS_CHANGED)
-        changes, inspections = (int(get_meta(db, name) or 0) for name in names)
-        return cls(changes, inspections, get_meta(db, schema.WRITTEN) or "")
+        names = "revision", schema.INSPECTIONS_CHANGED, schema.WRITTEN
+        # in one query: each reading of a season asks
+        said = dict(db.execute("SELECT key, value FROM fieldmon WHERE key IN (?, ?, ?)", names))
+        changes, inspections = (int(said.get(name) or 0) for name in names[:2])
+        return cls(changes, inspections, str(said.get(names[2]) or ""))
 
     def once_kept(self, db: sqlite3.Connection) -> FileRevision:
         """Return what the file will say once the transaction that writes it is kept."""

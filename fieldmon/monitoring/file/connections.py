@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
+import stat
 import threading
 import time
 from contextlib import closing, contextmanager
@@ -135,7 +136,7 @@ def _kept() -> dict[tuple[Path, int, int], sqlite3.Connection] | None:
 @contextmanager
 def opened(path: Path, patience_s: float | None = None) -> Iterator[sqlite3.Connection]:
     """Give a connection for one transaction: one that this thread keeps, if it may."""
-    must_be_there(path)
+    inode = must_be_there(path)
     patience_s = _patience_s() if patience_s is None else patience_s
     files = _kept()
     if files is None:
@@ -143,7 +144,7 @@ def opened(path: Path, patience_s: float | None = None) -> Iterator[sqlite3.Conn
             yield db
         return
     # another file of the same name is another season
-    of_file = path, path.stat().st_ino, os.getpid()
+    of_file = path, inode, os.getpid()
     # one that is at work belongs to whoever reads around this
     if of_file in files:
         db = files.pop(of_file)
@@ -164,10 +165,18 @@ def opened(path: Path, patience_s: float | None = None) -> Iterator[sqlite3.Conn
         files[of_file] = db
 
 
-def must_be_there(path: Path) -> None:
-    """Refuse a file that is away, if for a moment: SQLite would put an empty one in its place."""
-    if not path.is_file():
+def must_be_there(path: Path) -> int:
+    """Refuse a file that is away, if for a moment: SQLite would put an empty one in its place.
+
+    Returns its inode.
+    """
+    try:
+        there = path.stat()
+    except OSError:
+        raise no_file(path) from None
+    if not stat.S_ISREG(there.st_mode):
         raise no_file(path)
+    return there.st_ino
 
 
 def sentences_of(path: Path, into: Path | None = None) -> AbstractContextManager[None]:

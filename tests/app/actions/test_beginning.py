@@ -56,9 +56,10 @@ def test_a_season_begins_and_is_found_again_by_a_new_session(season):
 
 def test_a_season_is_never_begun_over_another_and_its_name_stays_in_the_folder(season_app, season):
     before = season().path.read_bytes()
+    season_app.selectbox(key="season").set_value("Sample estate").run()
     for name, says in (("Gate 2026", "new file"), ("../up", "name must be"), ("", "name must be")):
-        season_app.selectbox(key="season").set_value("Sample estate").run()
-        begun(season_app, name)
+        boxed(season_app.text_input, "season_name").set_value(name)
+        press(season_app, "Begin the season")
         assert not season_app.exception
         assert says in season_app.error[0].value
     assert season().path.read_bytes() == before
@@ -69,14 +70,13 @@ def test_a_season_begins_with_what_an_earlier_one_learnt(season_app, season):
     kept = season()
 
     def begin_after_it(days=1):
-        season_app.selectbox(key="season").set_value("Sample estate").run()
         (day,) = [one for one in season_app.date_input if one.key.startswith("day ")]
         day.set_value(kept.settings.begins + timedelta(days=days)).run()
-        go(season_app, "today")
         season_app.selectbox(key="season_earlier").set_value(kept.path.stem)
         boxed(season_app.text_input, "season_name").set_value("Next year")
         press(season_app, "Begin the season")
 
+    season_app.selectbox(key="season").set_value("Sample estate").run()
     begin_after_it()
     assert "nothing was inspected" in season_app.error[0].value
     plants, results = np.arange(3, dtype=np.int32), np.array([1, 0, 0], np.int8)

@@ -34,25 +34,26 @@ def test_a_day_that_was_missed_is_given_its_hours_and_one_that_was_worked_keeps_
         one = Inspections.of(np.array([3]), np.array([0]), np.datetime64(day))
         season().record(one, "file")
     season_app.run()
-    hours_box(season_app).set_value(6.0).run()
+    hours_box(season_app).set_value(1.5).run()
     press(season_app, "Use from now on")
     assert "Mon 16 Nov stays as it was planned" in season_app.success[0].value
     season_app.date_input[0].set_value(days[1]).run()
-    assert season().planned_by(days[1]).robot.hours == 12.0
+    assert season().planned_by(days[1]).robot.hours == 2.0
     tap(season_app, "plan_as_now")
-    assert season().planned_by(days[1]).robot.hours == 6.0
-    hours_box(season_app).set_value(4.0).run()
+    assert season().planned_by(days[1]).robot.hours == 1.5
+    hours_box(season_app).set_value(1.0).run()
     press(season_app, "Use from now on")
     assert season_app.success[0].value.startswith("Tue 17 Nov goes by this too")
-    assert [season().planned_by(day).robot.hours for day in days[:2]] == [12.0, 4.0]
+    assert [season().planned_by(day).robot.hours for day in days[:2]] == [2.0, 1.0]
 
 
-def test_another_sampler_goes_without_the_n_of_the_one_before(season_app, season):
+def test_another_n_than_usual_is_said_and_another_sampler_goes_without_it(season_app, season):
     project, settings = season(), season().settings
     every_third = replace(settings, sampler="bouncy", sampler_settings={"every": 3})
     project.change(every_third, settings)
     go(season_app, "today")
-    hours_box(season_app).set_value(4.0).run()
+    assert "every second plant; but here N is 3, not 2" in texts_of(season_app)
+    hours_box(season_app).set_value(1.0).run()
     press(season_app, "Use from now on")
     assert season().settings.sampler_settings == {"every": 3}
     for name in ("adaptive", "snake"):
@@ -68,17 +69,17 @@ def hours_box(app):
 
 
 def test_changes_of_settings_are_taken_back_one_by_one(season_app, season):
-    go(season_app, "season")
+    go(season_app, "record")
     assert not [one for one in season_app.button if one.key == "undo_change"]
     settings = season().settings
-    for hours in (7.0, 16.0):
+    for hours in (1.0, 3.0):
         hours_box(season_app).set_value(hours).run()
         press(season_app, "Use from now on")
-    press(season_app, "Take back: hours 16")
+    press(season_app, "Take back: hours 3")
     said = season_app.success[0].value.replace("\u00a0", " ")
-    assert said == "The last change was taken back: hours 16 (now 7 again)."
-    assert season().settings.robot.hours == 7.0
-    press(season_app, "Take back: hours 7")
+    assert said == "The last change was taken back: hours 3 (now 1 again)."
+    assert season().settings.robot.hours == 1.0
+    press(season_app, "Take back: hours 1")
     assert season().settings == settings
     assert not [one for one in season_app.button if one.key == "undo_change"]
 
@@ -91,7 +92,7 @@ def test_a_strategy_in_use_is_that_of_the_season_and_says_so(season_app, season)
     season_app.button(key="run").click().run()
     until(lambda: len(season_app.run().table))
     press(season_app, "Use this strategy")
-    assert season_app.success[0].value == "Naive · 12 h · 40 s is in use now."
+    assert season_app.success[0].value == "Naive · 2 h · 40 s is in use now."
     assert season().settings.sampler == "naive"
 
 
@@ -99,19 +100,19 @@ def test_a_robot_gives_way_to_a_scout_in_a_season_and_comes_back(season_app, sea
     def who(app):
         return next(one for one in app.segmented_control if (one.key or "").startswith("who "))
 
-    go(season_app, "season")
+    go(season_app, "record")
     assert who(season_app).value == "Robot"
     who(season_app).set_value("Scout on foot").run()
     press(season_app, "Use from now on")
     assert not season_app.exception
-    assert season().settings.robot == scout().with_hours(12.0)  # hours are the plot's
+    assert season().settings.robot == scout().with_hours(2.0)  # hours are the plot's
     assert who(season_app).value == "Scout on foot"
-    hours_box(season_app).set_value(5.0).run()
+    hours_box(season_app).set_value(1.0).run()
     press(season_app, "Use from now on")
-    assert season().settings.robot == scout().with_hours(5.0)
+    assert season().settings.robot == scout().with_hours(1.0)
     who(season_app).set_value("Robot").run()
     press(season_app, "Use from now on")
-    assert season().settings.robot == Robot(hours=5.0)
+    assert season().settings.robot == Robot(hours=1.0)
 
 
 def places_of(app):
@@ -131,26 +132,26 @@ def test_other_hours_stand_above_the_day_s_sentence_and_count_once_they_are_used
 ):
     at = places_of(season_app)
     assert at["hours"] < at["sentence"] < at["seconds"], "they are changed every day"
-    hours_box(season_app).set_value(4.0).run()
+    hours_box(season_app).set_value(1.0).run()
     shown = list(season_app.main)
     use = next(k for k, one in enumerate(shown) if getattr(one, "key", "") == "change_setup")
     assert at["hours"] < use < places_of(season_app)["sentence"]
-    assert season().settings.robot.hours == 12.0
+    assert season().settings.robot.hours == 2.0
     # a plan of other hours than the slider says is not handed on
     assert "first use what you changed" in texts_of(season_app)
     for step in ("plan", "send"):
         button = season_app.button(key=f"do_{step}")
         assert (button.disabled, button.proto.type) == (True, "secondary")
     press(season_app, "Use from now on")
-    assert season().settings.robot.hours == 4.0
-    assert int(metric(season_app, "Plants to inspect").split(" / ")[0]) < 300
+    assert season().settings.robot.hours == 1.0
+    assert int(metric(season_app, "Plants to inspect").split(" / ")[0]) < 100
     tap(season_app, "do_plan")
-    assert season().planned_and_done(BEGINS).hours <= 4.0
+    assert season().planned_and_done(BEGINS).hours <= 1.0
     go(season_app, "record")
     at = places_of(season_app)
     assert at["hours"] is not None
     assert at["hours"] < at["seconds"]
-    assert hours_box(season_app).value == 4.0
+    assert hours_box(season_app).value == 1.0
 
 
 def test_the_hours_of_a_plot_without_a_season_stand_there_too_and_are_kept_elsewhere(app):
@@ -176,7 +177,7 @@ def test_an_earlier_day_goes_by_what_counted_then_and_says_so(season):
     few = metric(app, texts.PLANTS_TO_INSPECT)
     app = opened("Gate 2026", day=str(days[0]))
     assert not [one for one in app.slider if one.key.startswith("hours ")]
-    assert "what counted then: Adaptive · 12 h · 40 s, from 06:00" in texts_of(app)
+    assert "what counted then: Adaptive · 2 h · 40 s, from 06:00" in texts_of(app)
     assert metric(app, texts.PLANTS_TO_INSPECT) != few
 
 
@@ -191,7 +192,7 @@ def test_an_earlier_day_of_a_team_says_how_each_worked(season):
         kept.record(Inspections.of(np.arange(3), np.zeros(3, np.int8), np.datetime64(day)))
     said = texts_of(opened("Gate 2026", day=str(days[0])))
     assert texts.EARLIER_TEAM in said
-    assert "Ann\u2069: Adaptive · 12 h · 40 s, from 06:00" in said
+    assert "Ann\u2069: Adaptive · 2 h · 40 s, from 06:00" in said
     assert f"Dan\u2069: Adaptive · 3 h · {walks.look_s:g} s, from 08:00" in said
 
 
@@ -215,11 +216,3 @@ def test_of_a_team_each_has_a_row_another_sampler_leaves_all_as_they_are_and_one
     assert season().settings == before.with_sampler("naive")
     press(season_app, next(one.label for one in season_app.button if one.key == "undo_change"))
     assert season().settings.team == team
-
-
-def test_another_n_than_usual_is_said_beside_what_the_sampler_does(season_app, season):
-    kept = season()
-    every = replace(kept.settings, sampler="bouncy", sampler_settings={"every": 5})
-    kept.change(every, kept.settings)
-    go(season_app, "season")
-    assert "every second plant; but here N is 5, not 2" in texts_of(season_app)

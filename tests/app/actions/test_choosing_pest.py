@@ -22,7 +22,7 @@ def bring(app, kind, name, data):
     assert not app.exception
 
 
-def test_a_pest_is_chosen_with_its_figures_sources_and_doubts(app):
+def test_a_pest_has_its_figures_and_sources_ages_records_and_a_season_says_its_next_generation(app):
     go(app, "plot")
     assert texts.PEST_NOTE in texts_of(app)
     app.selectbox(key=chosen_pest.WHICH).set_value("spider-mite").run()
@@ -32,28 +32,10 @@ def test_a_pest_is_chosen_with_its_figures_sources_and_doubts(app):
     assert "146.48 degree-days above" in said
     assert "Nobody measured how plants infest plants." in said
     assert "0.02 a day" in said
-
-
-def test_a_pest_of_ones_own_that_is_wrong_is_refused_with_its_line(app):
-    go(app, "plot")
-    app.selectbox(key=chosen_pest.WHICH).set_value(chosen_pest.OWN).run()
-    bring(app, chosen_pest.PEST, "mite.toml", OWN)
-    assert any("mite.toml, line 3" in one.value for one in app.error)
-
-
-def test_weather_says_what_its_import_says_and_ages_the_records(app):
-    go(app, "plot")
-    app.selectbox(key=chosen_pest.WHICH).set_value("spider-mite").run()
     bring(app, chosen_pest.WEATHER, "station.csv", station())
     assert "Columns of weather" in texts_of(app)
     # one generation of 15 days: records count half after that
     assert "taken as forecast" in texts_of(app)
-
-
-def test_a_season_begun_with_a_pest_says_when_its_next_generation_is_due(app):
-    go(app, "plot")
-    app.selectbox(key=chosen_pest.WHICH).set_value("spider-mite").run()
-    bring(app, chosen_pest.WEATHER, "station.csv", station())
     begun(app)
     go(app, "season")
     assert not app.exception
@@ -63,6 +45,13 @@ def test_a_season_begun_with_a_pest_says_when_its_next_generation_is_due(app):
     assert "Those of that day: egg." in said
     go(app, "plot")
     assert "Pest of this season: Two-spotted spider mite, by degree-days." in texts_of(app)
+
+
+def test_a_pest_of_ones_own_that_is_wrong_is_refused_with_its_line(app):
+    go(app, "plot")
+    app.selectbox(key=chosen_pest.WHICH).set_value(chosen_pest.OWN).run()
+    bring(app, chosen_pest.PEST, "mite.toml", OWN)
+    assert any("mite.toml, line 3" in one.value for one in app.error)
 
 
 def test_a_season_takes_a_pest_later_and_weather_alone_is_refused(season_app, season):

@@ -23,7 +23,7 @@ from tests.app.driving import (
 )
 from tests.cli.estate import square
 
-SQUARE = ((34.9, 31.5), (34.902, 31.5), (34.902, 31.502), (34.9, 31.502))
+SQUARE = ((34.9, 31.5), (34.901, 31.5), (34.901, 31.501), (34.9, 31.501))
 
 
 @pytest.fixture
@@ -50,11 +50,11 @@ def test_four_typed_corners_are_a_plot_that_survives_a_reload_and_begins_seasons
 ):
     corners(drawing, SQUARE)
     assert map_of(drawing)["draw"]["points"] == [list(corner) for corner in SQUARE]
-    assert "4 corners, 4.21 ha" in texts_of(drawing).replace("\u00a0", " ")
+    assert "4 corners, 1.05 ha" in texts_of(drawing).replace("\u00a0", " ")
     press(drawing, texts.OUTLINE_USE)
     assert not drawing.exception
     assert not drawing.error
-    assert metric(drawing, "Area") == "4.21 ha"
+    assert metric(drawing, "Area") == "1.05 ha"
     assert plot_name(drawing) == texts.OUTLINE_NAME
     assert "named by column" not in texts_of(drawing)
     assert texts.MESSAGES_DRAWN in texts_of(drawing)
@@ -63,7 +63,7 @@ def test_four_typed_corners_are_a_plot_that_survives_a_reload_and_begins_seasons
     assert plot_name(again) == texts.OUTLINE_NAME
     assert "route" in {one["key"] for one in map_of(again)["switches"]}
     # another season of one opened by its address has its boundary, gate and no-go areas
-    drawn = {"gate": "34.9,31.5", "no_go": "34.9005,31.5005 34.901,31.5005 34.901,31.501"}
+    drawn = {"gate": "34.9,31.5", "no_go": "34.9003,31.5003 34.9006,31.5003 34.9006,31.5006"}
     for kind, places in drawn.items():
         drawing.selectbox(key="draw_kind").set_value(kind).run()
         drawing.text_input(key="draw_typed").set_value(places).run()
@@ -76,7 +76,7 @@ def test_four_typed_corners_are_a_plot_that_survives_a_reload_and_begins_seasons
     assert not another.exception
     assert texts.ANOTHER_BARE in [one.value for one in another.success]
     assert another.selectbox(key="season").value == plot_source.FILES
-    assert (metric(another, "Area"), metric(another, "Plants")) == ("4.21 ha", plants)
+    assert (metric(another, "Area"), metric(another, "Plants")) == ("1.05 ha", plants)
     assert "the gate: 1" in texts_of(another)
     assert texts.OUTLINE_CORRECT in [one.label for one in another.button]
     begun(another, "Drawn again")
@@ -99,12 +99,12 @@ def test_corners_so_far_survive_a_reload_and_what_is_used_can_be_corrected(drawi
     again = go(opened(texts.UPLOAD, files=word[0] if isinstance(word, list) else word), "plot")
     assert map_of(again)["draw"]["points"] == [list(corner) for corner in SQUARE[:3]]
     press(again, texts.OUTLINE_USE)
-    assert metric(again, "Area") == "2.11 ha"
+    assert metric(again, "Area") == "0.527 ha"
     press(again, texts.OUTLINE_CORRECT)
     corners(again, SQUARE[3:])
     press(again, texts.OUTLINE_USE)
     assert not again.error
-    assert metric(again, "Area") == "4.21 ha"
+    assert metric(again, "Area") == "1.05 ha"
 
 
 def test_too_few_corners_and_crossed_ones_are_refused_in_a_sentence_and_stay(drawing):

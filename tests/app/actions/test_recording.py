@@ -48,7 +48,6 @@ def test_one_plant_is_recorded_undone_or_gone(season_app, season):
     # pulled out by now, and no treatment
     for name, value in {"one_row": 3, "one_plant": 5, "one_result": GONE}.items():
         season_app.session_state[key_of(season_app, name)] = value
-    season_app.run()
     send(season_app, "one")
     assert "1 recorded" in season_app.success[0].value
     assert season().history.gone(0).nonzero()[0].tolist() == [
@@ -105,7 +104,6 @@ def test_a_row_typed_that_may_be_another_by_its_name_is_refused_unless_it_was_ta
     go(app, "record")
     for name, value in {"one_row": "2", "one_plant": 5, "one_result": FOUND}.items():
         app.session_state[key_of(app, name)] = value
-    app.run()
     send(app, "one")
     assert "2 may be any of rows 2–3 here" in app.error[0].value
     assert not len(season_named.history.inspections)
@@ -124,7 +122,6 @@ def test_a_row_is_typed_by_its_name_and_a_plant_that_may_be_another_by_its_name_
     for plant, error in ((4, "4 may be any of plants 3–4 of row 1 · 5a here"), (5, None)):
         for name, value in {"one_row": "5A", "one_plant": plant, "one_result": FOUND}.items():
             app.session_state[key_of(app, name)] = value
-        app.run()
         send(app, "one")
         assert [error in one.value for one in app.error] == ([True] if error else [])
     (plant,) = season_named.history.inspections.plant
@@ -165,36 +162,50 @@ def test_a_treatment_lowers_what_is_expected_and_is_taken_back(season_app):
     assert expected(season_app) == before
 
 
-def test_a_file_is_recorded_once_and_what_was_left_out_of_one_is_a_warning_that_can_be_closed(
+def file_recorded(app, table, name="found.csv"):
+    """Record a file; return what is said of it."""
+    boxed(app.file_uploader, "findings_file").upload(name, table).run()
+    app.button(key="record_file").click().run()
+    assert not app.exception
+    (said,) = [*app.error, *app.warning, *app.success]
+    return said.value
+
+
+def test_what_fits_of_a_file_is_recorded_once_and_what_does_not_is_a_sentence_that_can_be_closed(
     season_app, season
 ):
     go(season_app, "record")
+    for data, says in (
+        (b"a,b\n1,2\n", "found.csv"),
+        (b"row,number,found\n999,1,yes\n", "0 recorded"),
+        (b"\x00\x01", "found.csv"),
+        (b"row,number,found,date\n1,1,yes,2026-11-16\n2,3,no,2026-11-15\n",
+         "Row 2, plant 3: The day must be of this season"),
+    ):  # fmt: skip
+        assert says in file_recorded(season_app, data)
+        assert not season_app.success
+    assert not len(season().history.inspections)
     table = b"row,number,found,count\n1,1,yes,3\n1,2,no,\n2,5,,\n"
     for says in ("2 recorded, 0 known", "0 recorded, 2 known"):
-        boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
-        season_app.button(key="record_file").click().run()
-        assert says in season_app.success[0].value
+        assert says in file_recorded(season_app, table)
+        assert season_app.success
     assert season().history.inspections.result.tolist() == [1, 0]
-    table = b"row,number,found,count\n1,3,yes,3\n999,1,yes,\n"
-    boxed(season_app.file_uploader, "findings_file").upload("some.csv", table).run()
-    season_app.button(key="record_file").click().run()
-    assert not season_app.success
-    assert "1 recorded, 0 known" in season_app.warning[0].value
-    assert "1 was left out" in season_app.warning[0].value
+    said = file_recorded(season_app, b"row,number,found,count\n1,3,yes,3\n999,1,yes,\n")
+    assert "1 recorded, 0 known" in said
+    assert "1 was left out" in said
+    assert season_app.warning
     press(season_app, texts.NOTICE_CLOSE)
     assert not season_app.warning
-    assert len(season().history.inspections) == 3
-
-
-def test_what_a_route_file_says_that_it_finds_reaches_the_season_and_its_page(season_app, season):
-    go(season_app, "record")
-    for detects, said in ((30, "record 2 of rex.csv says '30'"), (0.3, "2 recorded")):
-        table = f"row,number,found,who,detects\n1,1,yes,Rex,0.3\n1,2,no,Rex,{detects}\n".encode()
-        boxed(season_app.file_uploader, "findings_file").upload("rex.csv", table).run()
-        season_app.button(key="record_file").click().run()
-        (told,) = [*season_app.error, *season_app.success]
-        assert said in told.value
-    assert season().history.detections.tolist() == [0.3, 0.3]
+    said = file_recorded(season_app, b"row,number,date,found\n1,4,2026-11-16,yes\n1,5,,yes\n")
+    assert "1 recorded, 0 known" in said
+    assert "1 record has no date, as others have: left out." in said
+    assert season_app.warning
+    assert len(season().history.inspections) == 4
+    # what a route file says that it finds reaches the season and its page
+    for detects, says in ((30, "record 2 of rex.csv says '30'"), (0.3, "2 recorded")):
+        table = f"row,number,found,who,detects\n2,1,yes,Rex,0.3\n2,2,no,Rex,{detects}\n".encode()
+        assert says in file_recorded(season_app, table, "rex.csv")
+    assert season().history.detections.tolist()[-2:] == [0.3, 0.3]
     go(season_app, "season")
     assert "2 inspections find 30 % of what is there, as was said with them" in texts_of(season_app)
 
@@ -223,22 +234,6 @@ def test_words_that_say_neither_and_other_plots_are_asked_about_in_a_file_too(se
     plants = plant_numbers(season().plot.grid, season().history.inspections.plant).number.tolist()
     result = season().history.inspections.result.tolist()
     assert sorted(zip(plants, result, strict=True)) == [(1, 1), (2, 1), (3, 1), (4, 0)]
-
-
-def test_a_day_before_the_season_is_refused_and_a_record_without_a_day_gets_none_silently(
-    season_app, season
-):
-    go(season_app, "record")
-    table = b"row,number,found,date\n1,1,yes,2026-11-16\n2,3,no,2026-11-15\n"
-    boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
-    season_app.button(key="record_file").click().run()
-    assert season_app.error[0].value.startswith("Row 2, plant 3: The day must be of this season")
-    table = b"row,number,date,found\n1,1,2026-11-16,yes\n1,2,,yes\n"
-    boxed(season_app.file_uploader, "findings_file").upload("found.csv", table).run()
-    season_app.button(key="record_file").click().run()
-    assert "1 recorded, 0 known" in season_app.warning[0].value
-    assert "1 record has no date, as others have: left out." in season_app.warning[0].value
-    assert len(season().history.inspections) == 1
 
 
 def test_what_qgis_corrected_and_added_in_a_copy_comes_in_by_uploading_it(
@@ -283,21 +278,10 @@ def test_what_qgis_corrected_and_added_in_a_copy_comes_in_by_uploading_it(
     assert "1 correction taken" in season_app.success[0].value
 
 
-def test_a_file_that_does_not_fit_is_a_sentence(season_app, season):
-    go(season_app, "record")
-    for data in (b"a,b\n1,2\n", b"row,number,found\n999,1,yes\n", b"\x00\x01"):
-        boxed(season_app.file_uploader, "findings_file").upload("found.csv", data).run()
-        season_app.button(key="record_file").click().run()
-        assert not season_app.exception
-        (said,) = [*season_app.error, *season_app.warning]
-        assert "found must" in said.value or "found.csv" in said.value or "0 recorded" in said.value
-    assert not len(season().history.inspections)
-
-
 def test_days_in_the_app_give_the_digits_of_the_same_days_without_it(season_app, season, tmp_path):
     mine = season()
     twin = Season.create(tmp_path / "twin.gpkg", mine.plot, mine.records, mine.settings)
-    for day in range(16, 19):
+    for day in (16, 17):
         on = date(2026, 11, day)
         season_app.date_input(key="day Gate 2026").set_value(on).run()
         go(season_app, "record")
@@ -349,7 +333,9 @@ def test_what_is_typed_before_the_page_of_another_day_is_there_is_of_that_day(se
     assert not season_app.info
 
 
-def test_enter_in_a_box_and_a_click_on_an_untouched_form_record_nothing(season_app, season):
+def test_enter_and_a_click_on_an_untouched_form_record_nothing_and_one_on_marks_these_stops_alone(
+    season_app, season
+):
     go(season_app, "record")
     boxes = [*season_app.number_input, *season_app.text_input]
     assert not [box.key for box in boxes if box.proto.form_id], "a form may be sent by Enter"
@@ -358,10 +344,6 @@ def test_enter_in_a_box_and_a_click_on_an_untouched_form_record_nothing(season_a
         send(season_app, form)
         assert "must be said" in season_app.error[0].value
         assert season().revision == before
-
-
-def test_only_marked_stops_are_recorded_where_no_number_is_said(season_app, season):
-    go(season_app, "record")
     route = season().plan(date(2026, 11, 16), keep=False).route.plant
     season_app.session_state[key_of(season_app, "marks")] = {
         "edited_rows": {4: {"found": True}}, "added_rows": [], "deleted_rows": []
@@ -534,7 +516,6 @@ def test_a_press_is_carried_out_though_what_is_typed_next_breaks_its_run_off(
         row = key_of(season_app, "one_row")
         for name, value in {"one_row": 3, "one_plant": 3 + n, "one_result": FOUND}.items():
             season_app.session_state[key_of(season_app, name)] = value
-        season_app.run()
         with monkeypatch.context() as patch:
             broken_off(patch, more)
             send(season_app, "one")
@@ -544,12 +525,12 @@ def test_a_press_is_carried_out_though_what_is_typed_next_breaks_its_run_off(
         assert (numbered.line[plant], numbered.number[plant]) == (3, 3 + n)
         assert boxed(season_app.number_input, "one_row").value == (5 if more else None)
         assert boxed(season_app.number_input, "one_plant").value is None
-    boxed(season_app.number_input, "efficacy").set_value(90).run()
+    boxed(season_app.number_input, "efficacy").set_value(90)
     with monkeypatch.context() as patch:
         broken_off(patch)
         send(season_app, "treatment")
     assert len(season().treatments()) == 1
-    boxed(season_app.number_input, "stops_done").set_value(3).run()
+    boxed(season_app.number_input, "stops_done").set_value(3)
     broken_off(monkeypatch)
     send(season_app, "route")
     assert len(season().history.inspections) == 5

@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 
 from app.words import texts
-from fieldmon.plot.robot import Robot
 from tests.app.driving import apart, go, press, row_box
 
 TIMES = texts.ROBOT_TIMES_LABEL
@@ -46,13 +45,14 @@ def test_the_thesis_s_times_inspect_other_plants_than_those_of_simulated_drives(
 
 
 def test_a_season_keeps_the_width_and_the_times(season_app, season):
+    before = season().settings.robot
     width = next(one for one in season_app.number_input if one.label.startswith("Width"))
     width.set_value(0.7)
     next(one for one in season_app.selectbox if one.label == TIMES).set_value("thesis")
     season_app.run()
     press(season_app, "Use from now on")
     assert not season_app.exception
-    assert season().settings.robot == replace(Robot(), width_m=0.7).with_times("thesis")
+    assert season().settings.robot == replace(before, width_m=0.7).with_times("thesis")
 
 
 def test_times_set_by_a_command_stay_unless_they_are_changed(season_app, season):

@@ -141,7 +141,7 @@ def hours_of_work(hours, who=""):
 
 
 def of_two(season, hours=1.0, late_s=0.0):
-    """Make the season that of Ann, of 12 hours, and Dan; return its settings."""
+    """Make the season that of Ann, as long as it was, and Dan; return its settings."""
     before = season().settings
     dan = TeamMember("Dan", before.robot.with_hours(hours), starts_s=late_s)
     team = (TeamMember("Ann", before.robot), dan)

@@ -6,6 +6,7 @@ from streamlit.testing.v1 import AppTest
 from app.actions.studying import site_of
 from app.words import texts
 from tests.app.chosen import a_plot, chosen, records_at
+from tests.app.driving import PATIENCE_S
 
 
 def test_a_plot_without_records_leaves_the_start_to_the_study():
@@ -40,14 +41,14 @@ def page(refuses):
 
 
 def test_what_a_study_makes_comes_back_and_nothing_is_said_of_stopping():
-    app = AppTest.from_function(page, args=(False,)).run()
+    app = AppTest.from_function(page, args=(False,), default_timeout=PATIENCE_S).run()
     assert not app.exception
     assert app.session_state["came"] == "made"
     assert [info.value for info in app.info] == []
 
 
 def test_a_refusal_is_a_sentence_on_the_page():
-    app = AppTest.from_function(page, args=(True,)).run()
+    app = AppTest.from_function(page, args=(True,), default_timeout=PATIENCE_S).run()
     assert not app.exception
     assert app.session_state["came"] is None
     assert [error.value for error in app.error] == ["It must be otherwise."]
@@ -63,5 +64,5 @@ def stopped():
 
 
 def test_a_study_that_a_click_has_ended_is_said_to_be_stopped_once():
-    app = AppTest.from_function(stopped).run()
+    app = AppTest.from_function(stopped, default_timeout=PATIENCE_S).run()
     assert [info.value for info in app.info] == [texts.STUDY_STOPPED]

@@ -110,31 +110,29 @@ def part_noted(app, **boxes):
     press(app, "Note the treatment")
 
 
-def test_a_treatment_of_rows_is_of_their_plants_as_in_a_command(season_app, season):
+def test_a_treatment_of_rows_or_of_what_is_selected_on_the_map_is_of_those_plants(
+    season_app, season
+):
     go(season_app, "record")
-    part_noted(season_app, rows="20-40")
+    part_noted(season_app, rows="5-12")
     assert not season_app.error
     (one,) = season().treatments()
-    assert set(season().plant_numbers.line[one.place.plants].tolist()) == set(range(20, 41))
+    assert set(season().plant_numbers.line[one.place.plants].tolist()) == set(range(5, 13))
     noted = f"Treatment noted, of {one.place.plants.sum():,}"
     assert any(one.value.startswith(noted) for one in season_app.warning)
-    part_noted(season_app, rows="20-400")
+    part_noted(season_app, rows="5-400")
     assert "row 400 is named" in season_app.error[0].value
     assert len(season().treatments()) == 1
     part_noted(season_app, rows="")
     assert season().treatments()[-1].place.plants.all(), "without a word it is the whole plot"
-
-
-def test_a_treatment_of_what_is_selected_on_the_map_is_of_those_plants(season_app, season):
     some = (3, 4, 700)
     season_app.session_state["plants picked"] = in_season(season()).laid, some
-    go(season_app, "record")
+    season_app.run()
     assert "3 plants" in boxed(season_app.checkbox, "treat selected").label
-    part_noted(season_app, rows="20")
+    part_noted(season_app, rows="12")
     assert "two of them are said" in season_app.error[0].value
     part_noted(season_app, rows="")
-    (one,) = season().treatments()
-    assert tuple(one.place.plants.nonzero()[0].tolist()) == some
+    assert tuple(season().treatments()[-1].place.plants.nonzero()[0].tolist()) == some
     # the next one is of the whole plot again, unless something is selected
     assert not [box for box in season_app.checkbox if "treat selected" in (box.key or "")]
 
@@ -147,7 +145,7 @@ def test_a_treatment_of_a_file_is_of_its_area_whatever_the_zones_are_now(season_
     go(season_app, page)
     boxed(season_app.file_uploader, "treat file").upload("zones.geojson", data, "text/plain")
     if page == "record":
-        part_noted(season_app, rows="20")
+        part_noted(season_app, rows="12")
         assert "two of them are said" in season_app.error[0].value
         part_noted(season_app, rows="")
     else:

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from app.state import brought_files
+from app.state import brought_files, plot_source
 from fieldmon.io.options import PlotOptions, RecordOptions, Upload
 from tests.app.driving import opened, plot_name, square, texts_of, upload, zipped
 
@@ -12,8 +12,7 @@ from tests.app.driving import opened, plot_name, square, texts_of, upload, zippe
 def test_one_session_does_not_see_the_files_of_another(app, tmp_path):
     upload(app, plot=("plot.zip", zipped(tmp_path, square(name="secret"))))
     assert plot_name(app) == "secret"
-    other = opened()
-    other.selectbox(key="season").set_value("My own files").run()
+    other = opened(plot_source.FILES)
     assert "Bring a plot" in texts_of(other)
 
 

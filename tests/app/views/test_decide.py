@@ -33,6 +33,7 @@ def test_without_a_season_it_says_what_it_needs(app):
 
 
 def test_the_answer_stands_at_the_top_and_the_zones_on_the_map(recorded):
+    recorded.session_state["decide per_zone"] = 1.0
     go(recorded, "decide")
     assert not recorded.exception
     said = texts_of(recorded)

@@ -11,17 +11,17 @@ SEVERAL = [name for name, item in menu.MENU.items() if len(item.pages) > 1]
 
 
 @pytest.mark.parametrize("name", SEVERAL)
-def test_an_item_shows_its_first_page_first_and_another_by_a_click(app, name):
+def test_an_item_shows_its_first_page_first_and_another_by_a_click(season_app, name):
     first, second = menu.MENU[name].pages[:2]
-    go(app, first)
-    box = app.segmented_control(key=menu.key(name))
+    go(season_app, first)
+    box = season_app.segmented_control(key=menu.key(name))
     assert box.value == first
     assert [texts.PAGES[page] for page in menu.MENU[name].pages] == box.options
-    before = texts_of(app)
+    before = texts_of(season_app)
     box.set_value(second).run()
-    assert not app.exception
-    assert app.segmented_control(key=menu.key(name)).value == second
-    assert texts_of(app) != before
+    assert not season_app.exception
+    assert season_app.segmented_control(key=menu.key(name)).value == second
+    assert texts_of(season_app) != before
 
 
 def test_the_page_that_was_shown_is_shown_again_after_another_item(app):
@@ -56,12 +56,12 @@ def go_to_item(app, name):
     app.run()
 
 
-def test_a_box_that_two_parts_have_keeps_what_was_chosen(app):
-    go(app, "compare")
-    app.number_input(key="n_days").set_value(7).run()
-    box = app.segmented_control(key=menu.key("ahead"))
+def test_a_box_that_two_parts_have_keeps_what_was_chosen(season_app):
+    go(season_app, "compare")
+    season_app.number_input(key="n_days").set_value(7).run()
+    box = season_app.segmented_control(key=menu.key("ahead"))
     box.set_value("simulate").run()
-    assert app.number_input(key="n_days").value == 7
-    app.number_input(key="n_days").set_value(9).run()
-    app.segmented_control(key=menu.key("ahead")).set_value("compare").run()
-    assert app.number_input(key="n_days").value == 9
+    assert season_app.number_input(key="n_days").value == 7
+    season_app.number_input(key="n_days").set_value(9).run()
+    season_app.segmented_control(key=menu.key("ahead")).set_value("compare").run()
+    assert season_app.number_input(key="n_days").value == 9

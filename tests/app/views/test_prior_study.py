@@ -3,6 +3,8 @@
 import pytest
 from streamlit.testing.v1 import AppTest
 
+from tests.app.driving import PATIENCE_S
+
 
 def page():
     """Stand for the app's frame: AppTest cannot turn pages made of functions."""
@@ -16,7 +18,7 @@ def page():
 
 @pytest.fixture
 def app():
-    return AppTest.from_function(page, default_timeout=120).run()
+    return AppTest.from_function(page, default_timeout=PATIENCE_S).run()
 
 
 def test_a_scenario_is_shown_beside_its_figures(app):

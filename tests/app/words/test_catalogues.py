@@ -2,6 +2,7 @@
 
 import ast
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -37,10 +38,35 @@ def test_every_share_of_a_language_has_its_sign_in_one_way(code):
     assert [form for form in forms if re.search(other, re.sub(r":[^{}]*%}", "}", form))] == []
 
 
-def test_a_new_text_waits_for_its_translation(tmp_path, monkeypatch):
-    (tmp_path / "he.po").write_bytes(catalogues.path_of("he").read_bytes())
+#: a text of the app, told by its place, and a sentence of the library, told by its words
+OWN, OF_LIBRARY = "Take back: {what}", "turning radius"
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    """Write a file with some of the Hebrew texts, once; return it and what it holds."""
+    all_of, some = list(entries()), tmp_path_factory.mktemp("small")
+    held = [one for k, one in enumerate(all_of) if not k % 60 or one.words in (OWN, OF_LIBRARY)]
+    (some / "he.po").write_bytes(catalogues.path_of("he").read_bytes())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(catalogues, "FOLDER", some)
+        patch.setattr(catalogues, "entries", lambda: held)
+        assert catalogues.update("he") == []
+    return some / "he.po", held
+
+
+@pytest.fixture
+def he(small, tmp_path, monkeypatch):
+    """Return a copy of that file, in the folder that the command writes to."""
     monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
-    known, new = entries(), catalogues.TextEntry("NEW", "A new text")
+    monkeypatch.setattr(translations, "FOLDER", tmp_path)
+    return Path(shutil.copy(small[0], tmp_path))
+
+
+@pytest.mark.usefixtures("he")
+def test_a_new_text_waits_for_its_translation(small, monkeypatch):
+    _, known = small
+    new = catalogues.TextEntry("NEW", "A new text")
     monkeypatch.setattr(catalogues, "entries", lambda: [*known, new])
     assert catalogues.update("he") == [new]
     assert catalogues.read("he").get(new.id, new.context).string == ""
@@ -53,31 +79,25 @@ def lines_of(path, words):
 
 
 def test_a_text_whose_english_changed_keeps_its_translation_until_somebody_looked_at_it(
-    tmp_path, monkeypatch
+    he, small, monkeypatch
 ):
-    path = tmp_path / "he.po"
-    path.write_bytes(catalogues.path_of("he").read_bytes())
-    monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
-    monkeypatch.setattr(translations, "FOLDER", tmp_path)
-    news = {
-        "Take back: {what}": "Take it back: {what}",  # the app's own, by its place
-        "turning radius": "turning radius of it",  # a sentence of the library, by its words
-    }
+    _, known = small
+    news = {OWN: "Take it back: {what}", OF_LIBRARY: "turning radius of it"}
     before = catalogues.read("he")
-    own = {old: next(entry for entry in entries() if entry.words == old) for old in news}
+    own = {old: next(entry for entry in known if entry.words == old) for old in news}
     kept = {old: before.get(old, entry.context).string for old, entry in own.items()}
-    lines = {old: lines_of(path, old) for old in news}
+    lines = {old: lines_of(he, old) for old in news}
     changed = {old: catalogues.TextEntry(own[old].context, new) for old, new in news.items()}
     instead = {own[old]: entry for old, entry in changed.items()}
-    wanted = [instead.get(entry, entry) for entry in entries()]
+    wanted = [instead.get(entry, entry) for entry in known]
     monkeypatch.setattr(catalogues, "entries", lambda: wanted)
     open_ = catalogues.update("he")
     assert {*open_} == {*changed.values()}
     assert catalogues.update("he") == open_  # as often as it is run
     spoken = translations.catalogue_of.__wrapped__("he")
-    text = path.read_text()
+    text = he.read_text()
     for old, new in news.items():
-        written = lines_of(path, new)
+        written = lines_of(he, new)
         assert written[0].startswith("#, fuzzy")
         assert written[1] == f'#| msgid "{old}"'
         assert lines[old][-1] == written[-1] == f'msgstr "{kept[old]}"'
@@ -85,40 +105,32 @@ def test_a_text_whose_english_changed_keeps_its_translation_until_somebody_looke
         # whoever looked at it takes the marks out
         mark = "#, python-brace-format\n" if "{" in new else ""
         text = text.replace("\n".join(written[:2]) + "\n", mark)
-    path.write_text(text)
+    he.write_text(text)
     assert catalogues.update("he") == []
-    assert path.read_text() == text
+    assert he.read_text() == text
     spoken = translations.catalogue_of.__wrapped__("he")
     for old, new in news.items():
         assert spoken.pgettext(own[old].context, new) == kept[old]
 
 
-def test_what_was_long_and_counted_is_kept_whole(tmp_path, monkeypatch):
-    path = tmp_path / "he.po"
-    path.write_bytes(catalogues.path_of("he").read_bytes())
-    monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
+def test_what_was_long_and_counted_is_kept_whole(he, monkeypatch):
     one, many = "{n} " + "very long word " * 9, "{n} " + "very long words " * 9
     monkeypatch.setattr(catalogues, "entries", lambda: [catalogues.TextEntry("P", many, one)])
     catalogues.update("he")
-    path.write_text(path.read_text().replace('msgstr[0] ""', 'msgstr[0] "x"'))
+    he.write_text(he.read_text().replace('msgstr[0] ""', 'msgstr[0] "x"'))
     changed = catalogues.TextEntry("P", f"{many}!", one)
     monkeypatch.setattr(catalogues, "entries", lambda: [changed])
     assert catalogues.update("he") == [changed]
-    first = path.read_text()
+    first = he.read_text()
     said = "".join(re.findall(r'^#\| (?:msgid\w* )?"(.*)"$', first, re.MULTILINE))
     assert said == one + many
     assert catalogues.update("he") == [changed]
-    assert path.read_text() == first
+    assert he.read_text() == first
     assert catalogues.read("he").get(changed.id, "P").string[0] == "x"
 
 
-def test_texts_stay_where_they_are_and_new_ones_come_behind_what_they_stand_behind(
-    tmp_path, monkeypatch
-):
-    path = tmp_path / "he.po"
-    path.write_bytes(catalogues.path_of("he").read_bytes())
-    monkeypatch.setattr(catalogues, "FOLDER", tmp_path)
-
+@pytest.mark.usefixtures("he")
+def test_texts_stay_where_they_are_and_new_ones_come_behind_what_they_stand_behind(monkeypatch):
     def written(*words):
         made = [catalogues.TextEntry(LIBRARY, one) for one in words]
         monkeypatch.setattr(catalogues, "entries", lambda: made)
@@ -151,7 +163,7 @@ def _unworded(path):
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if not isinstance(node, ast.Call) or not node.args:
             continue
-        name = ast.unparse(node.func).rpartition(".")[2]
+        name = getattr(node.func, "attr", None) or getattr(node.func, "id", "")
         is_problem = isinstance(getattr(errors, name, None), type)
         place = _LABEL.get(name, 0)
         if (is_problem or name in _SAYS or name in _LABEL) and len(node.args) > place:

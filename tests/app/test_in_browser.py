@@ -41,7 +41,6 @@ from tests.app.map_in_browser import (
     DRAWN,
     MAP,
     asked_of_the_world,
-    awake,
     becomes,
     card,
     click,
@@ -103,15 +102,15 @@ def first_screen(new_tab, address):
 @pytest.fixture
 def screen(first_screen):
     """Return the first screen as it came: all layers, every plant by its chance, the whole plot."""
-    with awake(first_screen) as page:
-        page.set_viewport_size({"width": 1400, "height": 1000})
-        page.mouse.move(2, 2)
-        for name in (ROUTE, HOT):
-            switch(page, name, on=True)
-        shade(page, BY_CHANCE)
-        opacity(page, page.opaque)
-        page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
-        yield page
+    page = first_screen
+    page.set_viewport_size({"width": 1400, "height": 1000})
+    page.mouse.move(2, 2)
+    for name in (ROUTE, HOT):
+        switch(page, name, on=True)
+    shade(page, BY_CHANCE)
+    opacity(page, page.opaque)
+    page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
+    return page
 
 
 @cache
@@ -351,12 +350,12 @@ def states_tab(new_tab, address, served_seasons):
 @pytest.fixture
 def states(states_tab):
     """Return that tab, with states and the whole plot on its map."""
-    with awake(states_tab) as page:
-        if not page.locator(".st-key-item_season").count():
-            open_item(page, texts.MENU["season"])
-        only_states(page)
-        page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
-        yield page
+    page = states_tab
+    if not page.locator(".st-key-item_season").count():
+        open_item(page, texts.MENU["season"])
+    only_states(page)
+    page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
+    return page
 
 
 def test_found_clean_and_never_inspected_are_told_apart_by_pixels(states):
@@ -480,11 +479,11 @@ def asked_tab(new_tab, address):
 @pytest.fixture
 def asked_screen(asked_tab):
     """Return that tab on its first screen, with what was asked before."""
-    with awake(asked_tab) as page:
-        if not page.locator(".st-key-item_today").count():
-            open_item(page, texts.MENU["today"])
-        page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
-        yield page
+    page = asked_tab
+    if not page.locator(".st-key-item_today").count():
+        open_item(page, texts.MENU["today"])
+    page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
+    return page
 
 
 def test_a_map_comes_though_the_network_fails_and_the_server_has_let_go_of_a_part(asked_tab):
@@ -915,10 +914,10 @@ def record_tab(new_tab, address, served_seasons):
 @pytest.fixture
 def record_page(record_tab):
     """Return that tab, as the test before left it but for the page."""
-    with awake(record_tab) as page:
-        if not page.get_by_role("tab", name=texts.RECORD_ROUTE).count():
-            open_item(page, texts.MENU["today"])
-        yield page
+    page = record_tab
+    if not page.get_by_role("tab", name=texts.RECORD_ROUTE).count():
+        open_item(page, texts.MENU["today"])
+    return page
 
 
 def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_one(record_page):
@@ -1163,8 +1162,8 @@ def phone_tab(new_tab, address):
 @pytest.fixture
 def on_a_phone(phone_tab):
     """Return that screen."""
-    with awake(phone_tab) as page:
-        yield page
+    page = phone_tab
+    return page
 
 
 def test_a_phone_shows_the_whole_plot_above_the_days_work(on_a_phone):

@@ -549,9 +549,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
 ):
     """What is pressed twice is done once."""
     kept_before = {*served_seasons.glob("*.gpkg")}
-    parcels = gpd.read_file(next(shared.glob("parcels_orchards_vineyards/**/*lleida*.gpkg")))
-    own = parcels[(parcels.area > 8_000) & (parcels.area < 15_000)].head(1)
-    own = own.to_crs(25831).assign(name="מטע הדרים")[["name", "geometry"]]
+    own = an_orchard(shared)
     lon, lat = own.to_crs(4326).geometry.iloc[0].representative_point().coords[0]
     plot = {"name": "plot.zip", "mimeType": "", "buffer": zipped(tmp_path, own, without=".prj")}
     mites = f"date;lat;lon;count\n14.11.2026;{lat:.6f};{lon:.6f};12\n"
@@ -582,11 +580,7 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     assert (zoomed(page) != far).any()
     seen, said = view(page), page.locator(".st-key-lead").inner_text()
     page.get_by_label("Name of the season").fill("עונה 2026")
-    page.get_by_role("button", name="Begin the season").click()
-    page.get_by_role("button", name=texts.BEGIN_RIGHT).dblclick()
-    page.get_by_text("has begun").wait_for(timeout=180_000)
-    still(page)
-    assert page.get_by_text("was pressed before").count() == 0
+    begun_by_a_double_press(page)
     assert view(page) == seen, "a season of the same plot is seen from where the plot was"
     assert page.locator(".st-key-lead").inner_text() == said
     (file,) = {*served_seasons.glob("*.gpkg")} - kept_before
@@ -601,6 +595,27 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     # planned anew, the rest is another route of about as many stops
     assert abs(len(remaining) - len(first)) < 20
     assert not set(remaining) & set(first[:8])
+    planned_by_a_double_press(page, project)
+
+
+def an_orchard(shared):
+    """Return a real parcel with a Hebrew name."""
+    parcels = gpd.read_file(next(shared.glob("parcels_orchards_vineyards/**/*lleida*.gpkg")))
+    own = parcels[(parcels.area > 8_000) & (parcels.area < 15_000)].head(1)
+    return own.to_crs(25831).assign(name="מטע הדרים")[["name", "geometry"]]
+
+
+def begun_by_a_double_press(page):
+    """Begin a season whose rows were assumed; a second press chose nothing."""
+    page.get_by_role("button", name="Begin the season").click()
+    page.get_by_role("button", name=texts.BEGIN_RIGHT).dblclick()
+    page.get_by_text("has begun").wait_for(timeout=180_000)
+    still(page)
+    assert page.get_by_text("was pressed before").count() == 0
+
+
+def planned_by_a_double_press(page, project):
+    """Keep the day's plan, once."""
     page.locator(".st-key-do_plan button").dblclick()
     page.get_by_text("This is the plan for").first.wait_for(timeout=60_000)
     rest(page)
@@ -1150,8 +1165,7 @@ def phone_tab(new_tab, address):
 @pytest.fixture
 def on_a_phone(phone_tab):
     """Return that screen."""
-    page = phone_tab
-    return page
+    return phone_tab
 
 
 def test_a_phone_shows_the_whole_plot_above_the_days_work(on_a_phone):

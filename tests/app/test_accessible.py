@@ -78,6 +78,7 @@ def tab(new_tab, address, kept):
 @pytest.fixture
 def today(tab):
     """Return that tab on the page that it began on."""
+    tab.bring_to_front()
     if not tab.locator(".st-key-item_today").count():
         open_item(tab, texts.MENU["today"])
     if not tab.get_by_role("radio", name=texts.PAGES["today"], exact=True).is_checked():

@@ -103,6 +103,7 @@ def first_screen(new_tab, address):
 def screen(first_screen):
     """Return the first screen as it came: all layers, every plant by its chance, the whole plot."""
     page = first_screen
+    page.bring_to_front()  # one behind another hears of the mouse seconds later
     page.set_viewport_size({"width": 1400, "height": 1000})
     page.mouse.move(2, 2)
     for name in (ROUTE, HOT):
@@ -335,6 +336,7 @@ def states_tab(new_tab, address, served_seasons):
 def states(states_tab):
     """Return that tab, with states and the whole plot on its map."""
     page = states_tab
+    page.bring_to_front()
     if not page.locator(".st-key-item_season").count():
         open_item(page, texts.MENU["season"])
     only_states(page)
@@ -463,6 +465,7 @@ def asked_tab(new_tab, address, served_seasons):
 
 def turned(page, part):
     """Return a tab on this page of today, with what was done before."""
+    page.bring_to_front()
     if not page.locator(".st-key-item_today").count():
         open_item(page, texts.MENU["today"])
     if not page.get_by_role("radio", name=texts.PAGES[part], exact=True).is_checked():
@@ -1165,6 +1168,7 @@ def phone_tab(new_tab, address):
 @pytest.fixture
 def on_a_phone(phone_tab):
     """Return that screen."""
+    phone_tab.bring_to_front()
     return phone_tab
 
 

@@ -3,7 +3,8 @@
 import base64
 import io
 import json
-from contextlib import contextmanager, suppress
+import time
+from contextlib import suppress
 from pathlib import Path
 
 import axe_playwright_python
@@ -25,6 +26,8 @@ _FAULTS = """async (runOnly) => {
 #: the map with all that is wanted on it, while the server has nothing more to say
 IDLE = "[data-testid=stApp][data-test-script-state=notRunning]"
 DRAWN = f"{MAP}[data-shown]"
+#: and nothing of it moves or is still to be drawn
+RESTING = f"{DRAWN}[data-resting]"
 # what lies on the map is not the map: from the first look on it cannot be seen, but still be used
 _BARE = """() => {
   const roots = [document, ...[...document.querySelectorAll("*")].flatMap((one) => one.shadowRoot ?? [])];
@@ -47,26 +50,6 @@ _COME = """() => [...document.querySelectorAll(".stBidiComponent")].map((one) =>
   return { place: Boolean(place), called: Boolean(place?.last), made: Boolean(map), turn: map?.turn, wanted };
 })"""  # noqa: E501
 _REST_MS = 180_000
-# maps ask for the next frame for as long as they are there, whether anything moves or not
-_ASLEEP = """() => {
-  const later = [], frame = window.requestAnimationFrame;
-  window.requestAnimationFrame = (call) => later.push(call);
-  window.wake = () => {
-    window.requestAnimationFrame = frame;
-    later.splice(0).forEach((call) => window.requestAnimationFrame(call));
-  };
-}"""
-
-
-@contextmanager
-def awake(page):
-    """Use a tab that is kept for others, and let it draw nothing until they do.
-
-    A map at rest takes a twentieth of a processor.
-    """
-    page.evaluate("() => window.wake?.()")
-    yield page
-    page.evaluate(_ASLEEP)
 
 
 def asked_of_the_world(page, address):
@@ -112,25 +95,25 @@ def dressed(page):
 
 
 def still(page):
-    """Return the map's pixels once two looks at the same view are the same."""
-    before = None
+    """Return the map's pixels once it rests."""
     for _ in range(100):
         rest(page)
-        now = view(page), look(page)
-        same = before is not None and before[0] == now[0] and np.array_equal(before[1], now[1])
-        if same and np.ptp(now[1]) > 0:
-            return now[1]
-        before = now
+        page.wait_for_selector(RESTING, timeout=_REST_MS)
+        pixel = look(page)
+        if np.ptp(pixel) > 0:
+            return pixel
     pytest.fail("the map did not come to rest")
 
 
 def becomes(page, as_wanted, what):
     """Return the map's pixels once they are as wanted."""
-    for _ in range(30):
-        now = still(page)
-        if as_wanted(now):
-            return now
-    pytest.fail(f"{what} did not show as it should")
+    pixel = still(page)
+    end = time.monotonic() + 120.0
+    while not as_wanted(pixel):
+        assert time.monotonic() < end, f"{what} did not show as it should"
+        page.wait_for_timeout(100)
+        pixel = still(page)
+    return pixel
 
 
 def view(page):

@@ -41,7 +41,6 @@ from tests.app.map_in_browser import (
     DRAWN,
     MAP,
     asked_of_the_world,
-    awake,
     becomes,
     card,
     click,
@@ -103,15 +102,16 @@ def first_screen(new_tab, address):
 @pytest.fixture
 def screen(first_screen):
     """Return the first screen as it came: all layers, every plant by its chance, the whole plot."""
-    with awake(first_screen) as page:
-        page.set_viewport_size({"width": 1400, "height": 1000})
-        page.mouse.move(2, 2)
-        for name in (ROUTE, HOT):
-            switch(page, name, on=True)
-        shade(page, BY_CHANCE)
-        opacity(page, page.opaque)
-        page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
-        yield page
+    page = first_screen
+    page.bring_to_front()  # one behind another hears of the mouse seconds later
+    page.set_viewport_size({"width": 1400, "height": 1000})
+    page.mouse.move(2, 2)
+    for name in (ROUTE, HOT):
+        switch(page, name, on=True)
+    shade(page, BY_CHANCE)
+    opacity(page, page.opaque)
+    page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
+    return page
 
 
 @cache
@@ -251,22 +251,6 @@ def test_a_page_is_shown_again_over_a_line_so_slow_that_another_was_turned_to_me
     assert broken.count() == 0
 
 
-def test_a_double_press_begins_one_season_and_keeps_one_plan(page, address, served_seasons):
-    before = {*served_seasons.glob("*.gpkg")}
-    shown(page, address)
-    page.locator(".st-key-do_begin button").dblclick()
-    page.get_by_text("has begun").wait_for(timeout=180_000)
-    rest(page)
-    (file,) = {*served_seasons.glob("*.gpkg")} - before
-    assert page.get_by_text("was pressed before").count() == 0
-    page.locator(".st-key-do_plan button").dblclick()
-    page.get_by_text("This is the plan for").first.wait_for(timeout=60_000)
-    rest(page)
-    kept = Season(file)
-    assert len(kept.kept_route(kept.settings.begins))
-    assert sum(one.kind == "planned" for one in kept.log()) == 1
-
-
 #: as Streamlit does when new data come while the first call is not through: it is ended last, and
 #: may begin last
 _OVERTAKEN = """async (order) => {
@@ -351,12 +335,13 @@ def states_tab(new_tab, address, served_seasons):
 @pytest.fixture
 def states(states_tab):
     """Return that tab, with states and the whole plot on its map."""
-    with awake(states_tab) as page:
-        if not page.locator(".st-key-item_season").count():
-            open_item(page, texts.MENU["season"])
-        only_states(page)
-        page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
-        yield page
+    page = states_tab
+    page.bring_to_front()
+    if not page.locator(".st-key-item_season").count():
+        open_item(page, texts.MENU["season"])
+    only_states(page)
+    page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
+    return page
 
 
 def test_found_clean_and_never_inspected_are_told_apart_by_pixels(states):
@@ -456,35 +441,50 @@ def test_pointing_at_a_plant_says_which_it_is_and_its_chance(screen):
 
 
 @pytest.fixture(scope="module")
-def asked_tab(new_tab, address):
-    """Load the first screen once for all who ask it about plants, which alone are pointed at.
+def asked_tab(new_tab, address, served_seasons):
+    """Load a season once for all who ask about its plants, which alone are pointed at, or type.
 
     The first two times that it asks for a part of the map, it gets none.
     """
     page = new_tab()
+    page.kept = season(served_seasons / "Asked.gpkg", a_plot())
     page.failures = [lambda asked: asked.abort(), lambda asked: asked.fulfill(status=404)]
 
     def answer(asked):
         page.failures.pop()(asked) if page.failures else asked.continue_()
 
     page.route("**/map_data/*", answer)
-    shown(page, address)
+    page.goto(f"{address}/?season=Asked&day=2026-11-18")
+    rest(page)
     page.unroute("**/map_data/*")
     page.complaints.clear()  # of these two
-    for name in (ROUTE, HOT):
-        switch(page, name, on=False)
+    switch(page, ROUTE, on=False)
     yield page
     page.close()
 
 
+def turned(page, part):
+    """Return a tab on this page of today, with what was done before."""
+    page.bring_to_front()
+    if not page.locator(".st-key-item_today").count():
+        open_item(page, texts.MENU["today"])
+    if not page.get_by_role("radio", name=texts.PAGES[part], exact=True).is_checked():
+        open_page(page, texts.PAGES[part])
+    return page
+
+
 @pytest.fixture
 def asked_screen(asked_tab):
-    """Return that tab on its first screen, with what was asked before."""
-    with awake(asked_tab) as page:
-        if not page.locator(".st-key-item_today").count():
-            open_item(page, texts.MENU["today"])
-        page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
-        yield page
+    """Return that tab on its first page, with the whole plot on its map."""
+    page = turned(asked_tab, "today")
+    page.get_by_role("button", name=texts.MAP_WORDS["whole_plot"]).click()
+    return page
+
+
+@pytest.fixture
+def record_page(asked_tab):
+    """Return that tab where it is recorded."""
+    return turned(asked_tab, "record")
 
 
 def test_a_map_comes_though_the_network_fails_and_the_server_has_let_go_of_a_part(asked_tab):
@@ -495,7 +495,7 @@ def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(asked_sc
     page = asked_screen
     still(page)
     zoomed(page)
-    plot, _ = sample()
+    plot = page.kept.plot
     place = pixels(view(page), plot.grid.lonlat())
     x, y = free(page)
     box = page.locator(MAP).bounding_box()
@@ -513,12 +513,13 @@ def test_a_tap_shows_the_history_of_the_very_plant_with_a_ring_round_it(asked_sc
 def test_rows_are_selected_by_their_numbers_and_the_map_is_driven_by_keys(asked_screen):
     page = asked_screen
     still(page)
-    page.locator(".label.row:visible", has_text=re.compile("^10$")).click()
-    page.get_by_text("85 plants selected").wait_for(timeout=180_000)
-    page.locator(".label.row:visible", has_text=re.compile("^20$")).click()
-    page.get_by_text("170 plants selected").wait_for(timeout=180_000)
-    page.locator(".label.row:visible", has_text=re.compile("^20$")).click()
-    page.get_by_text("85 plants selected").wait_for(timeout=180_000)
+    numbers = page.kept.plant_numbers.line
+    seen = [int(text) for text in page.locator(".label.row:visible").all_inner_texts()]
+    of = {row: int((numbers == row).sum()) for row in (seen[0], seen[-1])}
+    assert len(of) == 2
+    for row, n in ((seen[0], of[seen[0]]), (seen[-1], sum(of.values())), (seen[-1], of[seen[0]])):
+        page.locator(".label.row:visible", has_text=re.compile(f"^{row}$")).first.click()
+        page.get_by_text(f"{n} plants selected").wait_for(timeout=60_000)
     page.get_by_role("application").focus()
     middle = view(page)
     page.keyboard.press("ArrowRight")
@@ -549,9 +550,9 @@ def history(page):
 def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     page, address, shared, tmp_path, served_seasons
 ):
-    parcels = gpd.read_file(next(shared.glob("parcels_orchards_vineyards/**/*lleida*.gpkg")))
-    own = parcels[(parcels.area > 8_000) & (parcels.area < 15_000)].head(1)
-    own = own.to_crs(25831).assign(name="מטע הדרים")[["name", "geometry"]]
+    """What is pressed twice is done once."""
+    kept_before = {*served_seasons.glob("*.gpkg")}
+    own = an_orchard(shared)
     lon, lat = own.to_crs(4326).geometry.iloc[0].representative_point().coords[0]
     plot = {"name": "plot.zip", "mimeType": "", "buffer": zipped(tmp_path, own, without=".prj")}
     mites = f"date;lat;lon;count\n14.11.2026;{lat:.6f};{lon:.6f};12\n"
@@ -582,13 +583,12 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     assert (zoomed(page) != far).any()
     seen, said = view(page), page.locator(".st-key-lead").inner_text()
     page.get_by_label("Name of the season").fill("עונה 2026")
-    for name in ("Begin the season", texts.BEGIN_RIGHT):
-        page.get_by_role("button", name=name).click()
-    page.get_by_text("has begun").wait_for(timeout=180_000)
-    still(page)
+    begun_by_a_double_press(page)
     assert view(page) == seen, "a season of the same plot is seen from where the plot was"
     assert page.locator(".st-key-lead").inner_text() == said
-    project = Season(served_seasons / "עונה 2026.gpkg")
+    (file,) = {*served_seasons.glob("*.gpkg")} - kept_before
+    assert file.stem == "עונה 2026"
+    project = Season(file)
     assert project.plot.field.gate == pytest.approx(clicked[0], abs=1e-6)
     path_is_where_it_was_clicked(project.plot.field, clicked[1:], drawn_in)
     record_eight(page)
@@ -598,6 +598,31 @@ def test_a_day_begins_with_files_and_ends_with_tomorrows_route(
     # planned anew, the rest is another route of about as many stops
     assert abs(len(remaining) - len(first)) < 20
     assert not set(remaining) & set(first[:8])
+    planned_by_a_double_press(page, project)
+
+
+def an_orchard(shared):
+    """Return a real parcel with a Hebrew name."""
+    parcels = gpd.read_file(next(shared.glob("parcels_orchards_vineyards/**/*lleida*.gpkg")))
+    own = parcels[(parcels.area > 8_000) & (parcels.area < 15_000)].head(1)
+    return own.to_crs(25831).assign(name="מטע הדרים")[["name", "geometry"]]
+
+
+def begun_by_a_double_press(page):
+    """Begin a season whose rows were assumed; a second press chose nothing."""
+    page.get_by_role("button", name="Begin the season").click()
+    page.get_by_role("button", name=texts.BEGIN_RIGHT).dblclick()
+    page.get_by_text("has begun").wait_for(timeout=180_000)
+    still(page)
+    assert page.get_by_text("was pressed before").count() == 0
+
+
+def planned_by_a_double_press(page, project):
+    """Keep the day's plan, once."""
+    page.locator(".st-key-do_plan button").dblclick()
+    page.get_by_text("This is the plan for").first.wait_for(timeout=60_000)
+    rest(page)
+    assert sum(one.kind == "planned" for one in project.log()) == 1
 
 
 def test_a_plot_is_drawn_by_four_taps_corrected_and_has_a_route(page, address):
@@ -901,26 +926,6 @@ def test_a_scout_works_on_a_phone_and_goes_on_after_a_reload(page, address, serv
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
-@pytest.fixture(scope="module")
-def record_tab(new_tab, address, served_seasons):
-    """Load the page of recording once, on a day, for all who type there."""
-    page = new_tab()
-    page.kept = season(served_seasons / "Typing.gpkg", a_plot())
-    page.goto(f"{address}/?season=Typing&part=record&day=2026-11-18")
-    rest(page)
-    yield page
-    page.close()
-
-
-@pytest.fixture
-def record_page(record_tab):
-    """Return that tab, as the test before left it but for the page."""
-    with awake(record_tab) as page:
-        if not page.get_by_role("tab", name=texts.RECORD_ROUTE).count():
-            open_item(page, texts.MENU["today"])
-        yield page
-
-
 def test_what_is_being_typed_as_record_empties_its_box_is_typed_on_in_the_empty_one(record_page):
     page = record_page
     forms = page.get_by_role("tabpanel")
@@ -1163,8 +1168,8 @@ def phone_tab(new_tab, address):
 @pytest.fixture
 def on_a_phone(phone_tab):
     """Return that screen."""
-    with awake(phone_tab) as page:
-        yield page
+    phone_tab.bring_to_front()
+    return phone_tab
 
 
 def test_a_phone_shows_the_whole_plot_above_the_days_work(on_a_phone):

@@ -18,6 +18,7 @@ import { asked, moved } from "./keys.js";
 import { Labels, nameBoxes, rowBoxes, withHot } from "./labels.js";
 import { layersOf } from "./layers.js";
 import { letNoticesGo } from "./notice.js";
+import { Pace } from "./pace.js";
 import { nearestPlant, plantsWithin, rowsUnder, tipOf } from "./pick.js";
 import { composed, freePart } from "./picture.js";
 import { Playback } from "./playback.js";
@@ -41,6 +42,16 @@ const MARGIN_PX = 8, MOST_ASKED = 4000;
 const MOST_SAID = 6;
 // from farther away a tap is no corner of a plot; nor is a position that is less exact
 const CORNER_M_A_PX = 5, CORNER_M = 30, WAIT_MS = 20000, NEAR_ZOOM = 18;
+
+// What may bring another picture: what is set, and a hand on the map.
+const HANDS = ["pointerdown", "pointermove", "pointerup", "pointerleave", "wheel", "touchstart", "touchmove", "touchend", "keydown"];
+
+class PacedDeck extends Deck {
+  setProps(props) {
+    super.setProps(props);
+    this.props.animationFrameProvider?.wake();
+  }
+}
 
 export class MapPage {
   constructor(parent) {
@@ -70,6 +81,7 @@ export class MapPage {
     this.root = parent.appendChild(element("div", { class: "map" }, [
       this.canvasPlace, this.labelPlace, this.tools, this.card, this.legend, this.foot, this.bar, this.cross, this.tip, this.choice, this.heard]));
     this.scale = new Scale(this.foot);
+    this.pace = new Pace((rests) => this.root.toggleAttribute("data-resting", rests));
     this.labels = new Labels(this.labelPlace);
     this.dots = new Dots();
     this.playback = new Playback(this.foot, () => this.drawLayers());
@@ -94,6 +106,7 @@ export class MapPage {
   async show({ data, setTriggerValue }) {
     this.data = data;
     this.tell = setTriggerValue;
+    delete this.root.dataset.shown; // until it is
     this.choice.hidden = true;
     const turn = (this.turn = (this.turn ?? 0) + 1);
     this.speak(data);
@@ -230,8 +243,9 @@ export class MapPage {
   }
 
   open() {
-    this.deck = new Deck({
+    this.deck = new PacedDeck({
       parent: this.canvasPlace,
+      animationFrameProvider: this.pace,
       views: new MapView({ id: "map", repeat: false }),
       controller: { keyboard: false, doubleClickZoom: true },
       initialViewState: { ...this.fit(), maxZoom: 24 },
@@ -241,6 +255,7 @@ export class MapPage {
       getCursor: ({ isDragging }) => (isDragging ? "grabbing" : this.drawing.mode ? "crosshair" : "grab"),
       onViewStateChange: ({ viewState, interactionState }) => this.limited(viewState, interactionState),
       onAfterRender: () => {
+        this.pace.wake();
         if (this.drive.isStale(this.viewport()) || this.dots.isStale(this.jsons, this.viewport())) this.drawLayers();
         this.follow();
         for (const done of this.waiting.splice(0)) done();
@@ -252,7 +267,7 @@ export class MapPage {
         canvas.tabIndex = -1; // keys are the map's own: see keys.js
       },
     });
-    this.watch = new ResizeObserver(() => this.resized());
+    this.watch = new ResizeObserver(() => { this.pace.wake(); this.resized(); });
     this.watch.observe(this.canvasPlace);
   }
 
@@ -632,6 +647,7 @@ export class MapPage {
     // at dusk many devices turn dark by themselves: what the server colours follows, once Streamlit knows
     this.turned = () => setTimeout(() => this.tell?.("turned", this.turn), TURN_MS);
     DARK.addEventListener("change", this.turned);
+    for (const kind of HANDS) place.addEventListener(kind, () => this.pace.wake(), { passive: true, capture: true });
     place.setAttribute("role", "application");
     place.tabIndex = 0;
     place.addEventListener("pointerdown", (event) => this.pressed(event), true);

@@ -39,6 +39,12 @@ def digest(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+@pytest.fixture
+def _soon_refused(monkeypatch):
+    """Answer strangers sooner: that all wait as long has a test of its own."""
+    monkeypatch.setattr(season_api, "_REFUSED_S", 0.02)
+
+
 def test_every_route_is_tried():
     ways = {(m, r.path) for r in application().routes for m in r.methods - {"HEAD"}}
     season = f"{description.PATH}/seasons/{{season}}"
@@ -46,6 +52,7 @@ def test_every_route_is_tried():
     assert ways == tried | {("GET", f"{description.PATH}/openapi.json")}
 
 
+@pytest.mark.usefixtures("_soon_refused")
 def test_with_a_key_every_way_is_open_until_it_ends(served):
     for (method, path), sent in WAYS.items():
         answer = ask(method, of_season(path), key=served.key, **sent)
@@ -84,6 +91,7 @@ def test_a_file_out_of_reach_for_a_moment_is_no_key_that_ended(served, trouble, 
     assert ask("GET", of_season("plot"), key=served.key).status == 200
 
 
+@pytest.mark.usefixtures("_soon_refused")
 def test_a_stranger_reads_nothing_and_writes_nothing(served):
     other = Season(shutil.copy(served.season.path, served.folder / "other.gpkg"))
     ended = scouts.let_in(served.season, "Ben")

@@ -10,9 +10,12 @@ from pathlib import Path
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import llvmlite.binding as llvm
 import numba as nb
-from numba.core import event
+from numba.core import event, types
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from numba.core.dispatcher import Dispatcher
 
 from fieldmon.compute.jit_progress import FIRST_USE
@@ -23,9 +26,47 @@ except ImportError:  # on Windows every process compiles for itself
     fcntl = None  # type: ignore[assignment]
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 F = TypeVar("F", bound="Callable[..., object]")
+
+
+class _Linked(JITCodeLibrary):
+    """A loop that only other loops call: each is linked with what LLVM made of it.
+
+    Machine code of its own would never run. All that is made into such are the pointers to
+    constants that numba sets ("environments").
+    """
+
+    def _finalize_final_module(self) -> None:
+        whole = self._final_module
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        for function in whole.functions:
+            if not function.is_declaration and function.linkage == llvm.Linkage.external:
+                function.linkage = "linkonce_odr"  # as numba's `_get_module_for_linking` does
+        pointers = [
+            f"@{pointer.name} = common global ptr null"
+            for pointer in whole.global_variables
+            if pointer.name.startswith("_ZN08NumbaEnv")
+        ]
+        self._final_module = llvm.parse_assembly("\n".join(pointers))
+        self._final_module.name = whole.name
+        self._final_module.triple, self._final_module.data_layout = whole.triple, whole.data_layout
+        super()._finalize_final_module()
+        self._shared_module = whole
+
+
+class _Linking(Compiler):
+    """Compiles a loop that only other loops call."""
+
+    def compile_extra(self, function: FunctionType) -> object:
+        """Compile it into what they are linked with."""
+        library = _Linked(self.state.targetctx.codegen(), function.__qualname__)
+        library.enable_object_caching()
+        self.state.library = library
+        return super().compile_extra(function)
+
 
 # nothing here is called from C; numba's own stubs leave the last two out
 _BARE: dict[str, Any] = {
@@ -33,7 +74,7 @@ _BARE: dict[str, Any] = {
     "_nrt": False,
     "no_cfunc_wrapper": True,
 }
-_NOT_FOR_PYTHON = _BARE | {"no_cpython_wrapper": True}
+_NOT_FOR_PYTHON = _BARE | {"no_cpython_wrapper": True, "pipeline_class": _Linking}
 
 
 class _Compiling(event.Listener):
@@ -190,11 +231,36 @@ def kept(function: F) -> F:
     return function
 
 
+def _any_of(kind: types.Type) -> types.Type:
+    """Return the type of any number for that of a constant, and the widest of signed integers."""
+    if isinstance(kind, types.Tuple | types.UniTuple):
+        return types.BaseTuple.from_types([_any_of(part) for part in kind.types])  # type: ignore[no-untyped-call]
+    kind = types.unliteral(kind)  # type: ignore[no-untyped-call]
+    if isinstance(kind, types.Integer) and kind.signed:
+        return max(kind, types.int64, key=lambda one: one.bitwidth)
+    return kind
+
+
+def _compiled(function: F, **options: object) -> F:
+    """Compile a function, for any number where a loop that calls it gives a constant.
+
+    Numba would compile it once for each 0, 1 or -1 in a call, and for all that it calls with it.
+    """
+    made: Any = nb.njit(**options)(function)
+    if isinstance(made, Dispatcher):
+        as_given = made.get_call_template
+
+        def for_any(given: Sequence[types.Type], named: dict[str, types.Type]) -> object:
+            by_name = {name: _any_of(kind) for name, kind in named.items()}
+            return as_given([_any_of(kind) for kind in given], by_name)  # type: ignore[no-untyped-call]
+
+        setattr(made, "get_call_template", for_any)  # noqa: B010 - numba calls it as it types a call
+    return kept(made)
+
+
 def routine(function: F) -> F:
     """Compile a function that may make arrays of its own."""
-    options: dict[str, Any] = {"nogil": True, "no_cfunc_wrapper": True}
-    compiled: F = nb.njit(**options)(function)
-    return kept(compiled)
+    return _compiled(function, nogil=True, no_cfunc_wrapper=True)
 
 
 def loop(function: F) -> F:
@@ -204,22 +270,24 @@ def loop(function: F) -> F:
     function would cost some fifty atomic additions a step, ten times the work proper. Divisions
     by zero follow IEEE 754, for the same reason: a loop that cannot raise needs no way out.
     """
-    compiled: F = nb.njit(nogil=True, **_BARE)(function)
-    return kept(compiled)
+    return _compiled(function, nogil=True, **_BARE)
 
 
 def inner_loop(function: F) -> F:
     """Compile a function likewise that only other loops call.
 
-    What Python would need to call it is left out (it would crash), which is nearly half of what a
-    small function takes to compile.
+    What Python would need to call it is left out (it would crash), and so is machine code of its
+    own: together more than half of what a small function takes to compile.
     """
-    compiled: F = nb.njit(**_NOT_FOR_PYTHON)(function)
-    return kept(compiled)
+    return _compiled(function, **_NOT_FOR_PYTHON)
 
 
 def inlined(function: F) -> F:
-    """Compile a function likewise, to be copied into the loops that call it."""
+    """Compile a function as `loop` does, to be copied into the loops that call it."""
     # copied as machine code; as numba's own it would be worked through again in every loop
-    compiled: F = nb.njit(forceinline=True, **_BARE)(function)
-    return kept(compiled)
+    return _compiled(function, forceinline=True, **_BARE)
+
+
+def inner_inlined(function: F) -> F:
+    """Compile a function as `inner_loop` does, to be copied likewise."""
+    return _compiled(function, forceinline=True, **_NOT_FOR_PYTHON)

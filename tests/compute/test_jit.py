@@ -114,7 +114,8 @@ def started():
 RIGHT = [0.0, 4.0, 8.0, 12.0, 0.0, 1.0, 4.0]
 
 
-def test_a_second_start_loads_what_the_first_compiled(compiled, loops, caplog):
+@pytest.mark.usefixtures("loops")
+def test_a_second_start_loads_what_the_first_compiled(compiled, caplog):
     found, n = started()
     assert found == RIGHT
     assert n >= 4, "numba's own may come on top, once a process"

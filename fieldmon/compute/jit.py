@@ -10,7 +10,7 @@ from pathlib import Path
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import llvmlite.binding as llvm
+import llvmlite.binding as llvm  # type: ignore[import-untyped]
 import numba as nb
 from numba.core import event, types
 from numba.core.caching import FunctionCache, IndexDataCacheFile
@@ -40,8 +40,8 @@ class _Linked(JITCodeLibrary):
 
     def _finalize_final_module(self) -> None:
         whole = self._final_module
-        self._finalize_dynamic_globals()
-        self._verify_declare_only_symbols()
+        self._finalize_dynamic_globals()  # type: ignore[no-untyped-call]
+        self._verify_declare_only_symbols()  # type: ignore[no-untyped-call]
         for function in whole.functions:
             if not function.is_declaration and function.linkage == llvm.Linkage.external:
                 function.linkage = "linkonce_odr"  # as numba's `_get_module_for_linking` does
@@ -53,7 +53,7 @@ class _Linked(JITCodeLibrary):
         self._final_module = llvm.parse_assembly("\n".join(pointers))
         self._final_module.name = whole.name
         self._final_module.triple, self._final_module.data_layout = whole.triple, whole.data_layout
-        super()._finalize_final_module()
+        super()._finalize_final_module()  # type: ignore[no-untyped-call]
         self._shared_module = whole
 
 
@@ -62,10 +62,10 @@ class _Linking(Compiler):
 
     def compile_extra(self, function: FunctionType) -> object:
         """Compile it into what they are linked with."""
-        library = _Linked(self.state.targetctx.codegen(), function.__qualname__)
+        library: Any = _Linked(self.state.targetctx.codegen(), function.__qualname__)  # type: ignore[no-untyped-call]
         library.enable_object_caching()
         self.state.library = library
-        return super().compile_extra(function)
+        return super().compile_extra(function)  # type: ignore[no-untyped-call]
 
 
 # nothing here is called from C; numba's own stubs leave the last two out
@@ -231,31 +231,30 @@ def kept(function: F) -> F:
     return function
 
 
-def _any_of(kind: types.Type) -> types.Type:
+def _any_of(kind: Any) -> Any:  # noqa: ANN401 - numba's types have hardly any
     """Return the type of any number for that of a constant, and the widest of signed integers."""
     if isinstance(kind, types.Tuple | types.UniTuple):
         return types.BaseTuple.from_types([_any_of(part) for part in kind.types])  # type: ignore[no-untyped-call]
-    kind = types.unliteral(kind)  # type: ignore[no-untyped-call]
-    if isinstance(kind, types.Integer) and kind.signed:
-        return max(kind, types.int64, key=lambda one: one.bitwidth)
-    return kind
+    plain: Any = types.unliteral(kind)  # type: ignore[no-untyped-call]
+    return types.int64 if isinstance(plain, types.Integer) and plain.minval < 0 else plain
 
 
-def _compiled(function: F, **options: object) -> F:
+def _compiled(function: F, **options: Any) -> F:  # noqa: ANN401 - numba's own
     """Compile a function, for any number where a loop that calls it gives a constant.
 
     Numba would compile it once for each 0, 1 or -1 in a call, and for all that it calls with it.
     """
-    made: Any = nb.njit(**options)(function)
+    compiled: F = nb.njit(**options)(function)
+    made: Any = compiled
     if isinstance(made, Dispatcher):
         as_given = made.get_call_template
 
-        def for_any(given: Sequence[types.Type], named: dict[str, types.Type]) -> object:
+        def for_any(given: Sequence[object], named: dict[str, object]) -> object:
             by_name = {name: _any_of(kind) for name, kind in named.items()}
-            return as_given([_any_of(kind) for kind in given], by_name)  # type: ignore[no-untyped-call]
+            return as_given([_any_of(kind) for kind in given], by_name)
 
         setattr(made, "get_call_template", for_any)  # noqa: B010 - numba calls it as it types a call
-    return kept(made)
+    return kept(compiled)
 
 
 def routine(function: F) -> F:

@@ -25,20 +25,21 @@ made = {name}
 """
 LOOPS = """
 import numpy as np
-from fieldmon.compute.jit import inlined, inner_loop, loop, routine
+from fieldmon.compute.jit import inner_inlined, inner_loop, loop, routine
 
-@inlined
-def twice(x):
-    return 2.0 * x
+@inner_inlined
+def scaled(x, way):
+    n, by = way
+    return n * by * x
 
 @inner_loop
-def apart(pair):
-    return twice(pair.high) - twice(pair.low)
+def apart(pair, n):
+    return scaled(pair.high, (1, 2)) - scaled(pair.low, (n, np.int32(1)))
 
 @loop
 def spans(pair, out):
     for i in range(out.size):
-        out[i] = i * apart(pair)
+        out[i] = i * apart(pair, out.size // 2)
 
 @routine
 def squares(n):
@@ -119,6 +120,7 @@ def test_a_second_start_loads_what_the_first_compiled(compiled, caplog):
     found, n = started()
     assert found == RIGHT
     assert n >= 4, "numba's own may come on top, once a process"
+    # one of each, though `scaled` is called with constants, a narrow number and any number
     assert len(list((compiled / "kept").rglob("*.nbc"))) == 4
     assert started() == (RIGHT, 0)
     assert caplog.records == []

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, inner_inlined, inner_loop, loop
+from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.infestation.chance_bounds import bounded_pair_chance
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ def update_clusters(
             clusters.finds[1] += detects * (pair_chance[e] / chance[j] - chance[i])
 
 
-@inner_inlined
+@inlined
 def _update_evidence(
     morning: tuple[NDArray[np.float64], NDArray[np.float64]],
     clusters: ClusterEstimate,

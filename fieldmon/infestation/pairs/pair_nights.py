@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, inner_inlined, inner_loop, loop
+from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.infestation.chance_bounds import bounded_chance, greater, lesser
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def _escape_any(
     return (1.0 - arrivals) * (1.0 - g * (1.0 - escapes))
 
 
-@inner_inlined
+@inlined
 def _one_infestation(
     total: float, together: float, infested: tuple[float, float]
 ) -> tuple[float, float]:
@@ -194,7 +194,7 @@ def _escape_four(
     return stay * (1.0 - g * (1.0 - f0 * f1 * f2 * f3))
 
 
-@inner_inlined
+@inlined
 def _given_clean(
     believed: tuple[NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,
@@ -206,7 +206,7 @@ def _given_clean(
     return j, greater(believed[0][j] - believed[1][e], 0.0) / clean
 
 
-@inner_inlined
+@inlined
 def _transmits(linked: Linked, rule: tuple[_Rates, bool], way: tuple[int, np.uint32]) -> float:
     """Return the chance that an infested plant j infests its neighbour i."""
     (along, across), to_one = rule
@@ -215,7 +215,7 @@ def _transmits(linked: Linked, rule: tuple[_Rates, bool], way: tuple[int, np.uin
     return rate / (linked.start[np.uint64(j) + _1] - linked.start[j]) if to_one else rate
 
 
-@inner_inlined
+@inlined
 def _escapes(infects: float, g: float) -> float:
     """Return the chance that a plant escapes a neighbour where an infestation is beside it."""
     return 1.0 - infects / g if g > 0.0 else 1.0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
-from fieldmon.compute.jit import inner_inlined, inner_loop, loop
+from fieldmon.compute.jit import inlined, inner_inlined, inner_loop, loop
 from fieldmon.infestation.chance_bounds import (
     LEAST_CHANCE,
     MOST_CHANCE,
@@ -209,7 +209,7 @@ def update_neighbourhood(
 
 
 # the next two are copied into `update_neighbourhood`: calling them costs a quarter of what they do
-@inner_inlined
+@inlined
 def _propagate(
     believed: tuple[NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,
@@ -246,7 +246,7 @@ def _propagate(
     return n
 
 
-@inner_inlined
+@inlined
 def _update_pairs(
     believed: tuple[NDArray[np.float64], NDArray[np.float64]],
     linked: Linked,

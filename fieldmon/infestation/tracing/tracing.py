@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled, as_seen
-from fieldmon.compute.jit import inner_inlined, inner_loop, loop
+from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.infestation.calibration_slope import no_inspections
 from fieldmon.infestation.cells import Cells
 from fieldmon.infestation.chance_bounds import bounded_chance, lesser
@@ -131,7 +131,7 @@ def trace(
     return n
 
 
-@inner_inlined
+@inlined
 def _raise(believed: tuple[Floats, Floats], linked: Linked, j: int, more: float) -> None:
     """Raise a plant's chance by an infestation that concerns no other."""
     chance, pair_chance = believed

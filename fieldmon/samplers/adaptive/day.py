@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, inner_inlined, inner_loop, loop
+from fieldmon.compute.jit import inlined, inner_loop, loop
 from fieldmon.infestation.calibration_slope import note_inspection, proved_slope
 from fieldmon.infestation.chance_bounds import bounded_chance, bounded_pair_chance
 from fieldmon.infestation.pairs.clustering import (
@@ -305,7 +305,7 @@ def times_odds_of_all(
         chance[i] = more[i]
 
 
-@inner_inlined
+@inlined
 def times_odds(chance: float, ratio: float) -> float:
     """Return a chance whose odds are so many times as high."""
     return bounded_chance(chance * ratio / (1.0 - chance + chance * ratio))

@@ -10,12 +10,9 @@ from pathlib import Path
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import llvmlite.binding as llvm  # type: ignore[import-untyped]
 import numba as nb
 from numba.core import event, types
 from numba.core.caching import FunctionCache, IndexDataCacheFile
-from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
 from numba.core.dispatcher import Dispatcher
 
 from fieldmon.compute.jit_progress import FIRST_USE
@@ -31,50 +28,13 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound="Callable[..., object]")
 
 
-class _Linked(JITCodeLibrary):
-    """A loop that only other loops call: each is linked with what LLVM made of it.
-
-    Machine code of its own would never run. All that is made into such are the pointers to
-    constants that numba sets ("environments").
-    """
-
-    def _finalize_final_module(self) -> None:
-        whole = self._final_module
-        self._finalize_dynamic_globals()  # type: ignore[no-untyped-call]
-        self._verify_declare_only_symbols()  # type: ignore[no-untyped-call]
-        for function in whole.functions:
-            if not function.is_declaration and function.linkage == llvm.Linkage.external:
-                function.linkage = "linkonce_odr"  # as numba's `_get_module_for_linking` does
-        pointers = [
-            f"@{pointer.name} = common global ptr null"
-            for pointer in whole.global_variables
-            if pointer.name.startswith("_ZN08NumbaEnv")
-        ]
-        self._final_module = llvm.parse_assembly("\n".join(pointers))
-        self._final_module.name = whole.name
-        self._final_module.triple, self._final_module.data_layout = whole.triple, whole.data_layout
-        super()._finalize_final_module()  # type: ignore[no-untyped-call]
-        self._shared_module = whole
-
-
-class _Linking(Compiler):
-    """Compiles a loop that only other loops call."""
-
-    def compile_extra(self, function: FunctionType) -> object:
-        """Compile it into what they are linked with."""
-        library: Any = _Linked(self.state.targetctx.codegen(), function.__qualname__)  # type: ignore[no-untyped-call]
-        library.enable_object_caching()
-        self.state.library = library
-        return super().compile_extra(function)  # type: ignore[no-untyped-call]
-
-
 # nothing here is called from C; numba's own stubs leave the last two out
 _BARE: dict[str, Any] = {
     "error_model": "numpy",
     "_nrt": False,
     "no_cfunc_wrapper": True,
 }
-_NOT_FOR_PYTHON = _BARE | {"no_cpython_wrapper": True, "pipeline_class": _Linking}
+_NOT_FOR_PYTHON = _BARE | {"no_cpython_wrapper": True}
 
 
 class _Compiling(event.Listener):
@@ -275,8 +235,8 @@ def loop(function: F) -> F:
 def inner_loop(function: F) -> F:
     """Compile a function likewise that only other loops call.
 
-    What Python would need to call it is left out (it would crash), and so is machine code of its
-    own: together more than half of what a small function takes to compile.
+    What Python would need to call it is left out (it would crash), which is nearly half of what a
+    small function takes to compile.
     """
     return _compiled(function, **_NOT_FOR_PYTHON)
 

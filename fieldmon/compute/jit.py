@@ -11,7 +11,7 @@ from types import FunctionType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numba as nb
-from numba.core import event
+from numba.core import event, types
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.dispatcher import Dispatcher
 
@@ -23,9 +23,10 @@ except ImportError:  # on Windows every process compiles for itself
     fcntl = None  # type: ignore[assignment]
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 F = TypeVar("F", bound="Callable[..., object]")
+
 
 # nothing here is called from C; numba's own stubs leave the last two out
 _BARE: dict[str, Any] = {
@@ -190,11 +191,35 @@ def kept(function: F) -> F:
     return function
 
 
+def _any_of(kind: Any) -> Any:  # noqa: ANN401 - numba's types have hardly any
+    """Return the type of any number for that of a constant, and the widest of signed integers."""
+    if isinstance(kind, types.Tuple | types.UniTuple):
+        return types.BaseTuple.from_types([_any_of(part) for part in kind.types])  # type: ignore[no-untyped-call]
+    plain: Any = types.unliteral(kind)  # type: ignore[no-untyped-call]
+    return types.int64 if isinstance(plain, types.Integer) and plain.minval < 0 else plain
+
+
+def _compiled(function: F, **options: Any) -> F:  # noqa: ANN401 - numba's own
+    """Compile a function, for any number where a loop that calls it gives a constant.
+
+    Numba would compile it once for each 0, 1 or -1 in a call, and for all that it calls with it.
+    """
+    compiled: F = nb.njit(**options)(function)
+    made: Any = compiled
+    if isinstance(made, Dispatcher):
+        as_given = made.get_call_template
+
+        def for_any(given: Sequence[object], named: dict[str, object]) -> object:
+            by_name = {name: _any_of(kind) for name, kind in named.items()}
+            return as_given([_any_of(kind) for kind in given], by_name)
+
+        setattr(made, "get_call_template", for_any)  # noqa: B010 - numba calls it as it types a call
+    return kept(compiled)
+
+
 def routine(function: F) -> F:
     """Compile a function that may make arrays of its own."""
-    options: dict[str, Any] = {"nogil": True, "no_cfunc_wrapper": True}
-    compiled: F = nb.njit(**options)(function)
-    return kept(compiled)
+    return _compiled(function, nogil=True, no_cfunc_wrapper=True)
 
 
 def loop(function: F) -> F:
@@ -204,8 +229,7 @@ def loop(function: F) -> F:
     function would cost some fifty atomic additions a step, ten times the work proper. Divisions
     by zero follow IEEE 754, for the same reason: a loop that cannot raise needs no way out.
     """
-    compiled: F = nb.njit(nogil=True, **_BARE)(function)
-    return kept(compiled)
+    return _compiled(function, nogil=True, **_BARE)
 
 
 def inner_loop(function: F) -> F:
@@ -214,12 +238,15 @@ def inner_loop(function: F) -> F:
     What Python would need to call it is left out (it would crash), which is nearly half of what a
     small function takes to compile.
     """
-    compiled: F = nb.njit(**_NOT_FOR_PYTHON)(function)
-    return kept(compiled)
+    return _compiled(function, **_NOT_FOR_PYTHON)
 
 
 def inlined(function: F) -> F:
-    """Compile a function likewise, to be copied into the loops that call it."""
+    """Compile a function as `loop` does, to be copied into the loops that call it."""
     # copied as machine code; as numba's own it would be worked through again in every loop
-    compiled: F = nb.njit(forceinline=True, **_BARE)(function)
-    return kept(compiled)
+    return _compiled(function, forceinline=True, **_BARE)
+
+
+def inner_inlined(function: F) -> F:
+    """Compile a function as `inner_loop` does, to be copied likewise."""
+    return _compiled(function, forceinline=True, **_NOT_FOR_PYTHON)

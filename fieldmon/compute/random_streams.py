@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, loop, routine
+from fieldmon.compute.jit import inlined, inner_inlined, loop, routine
 from fieldmon.compute.kinds import must_be_of
 from fieldmon.errors import SettingError
 
@@ -120,7 +120,7 @@ def _first_states(
         states[k] = _first_state(words, pool)
 
 
-@inlined
+@inner_inlined
 def _hashed(word: np.uint64, factor: np.uint64, times: np.uint64) -> tuple[np.uint64, np.uint64]:
     word ^= factor
     factor = (factor * times) & _LOW_32
@@ -161,7 +161,7 @@ def coin_table(key: np.uint64, n: int) -> NDArray[np.float64]:
     return table
 
 
-@inlined
+@inner_inlined
 def fill_coins(table: NDArray[np.float64], key: np.uint64) -> None:
     """Fill in the first entries ``(n,)`` of the table that `key` names.
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, inner_loop
+from fieldmon.compute.jit import inner_inlined, inner_loop
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -62,7 +62,7 @@ def finds_noted(sums: Floats) -> float:
     return float(sums[_FOUND])
 
 
-@inlined
+@inner_inlined
 def proved_slope(sums: Floats) -> float:
     """Return the least slope, 0 to 1, that a season's inspections speak for.
 

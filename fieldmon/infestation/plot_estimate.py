@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import gammaincinv, ndtri
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.jit import inlined, loop, routine
+from fieldmon.compute.jit import inner_inlined, loop, routine
 from fieldmon.compute.random_streams import coin
 from fieldmon.compute.wording import chance_figure, worded
 from fieldmon.errors import SettingError
@@ -376,7 +376,7 @@ def _beside_known(table: _Table, known: NDArray[np.bool_]) -> Floats:
     return given
 
 
-@inlined
+@inner_inlined
 def _given(table: _Table, drawn: NDArray[np.bool_], i: int, field: int) -> float:
     """Return the chance of plant i given its neighbours of lower number in one of the fields."""
     start, plant, factor, odds, alone = table

@@ -188,7 +188,9 @@ def off_steps(
     """Set `off` to False for the straight lines that come as near as this to a step."""
     box_m, step_m = rows
     low_y = box_m[:, 1]
-    tallest = (box_m[:, 3] - low_y).max()
+    tallest = 0.0
+    for b in range(low_y.size):  # numba's `max` of an array compiles for half a second
+        tallest = max(tallest, box_m[b, 3] - low_y[b])
     near = clearance_m + _THIN_M
     for k in range(off.size):
         x0, x1 = min(from_m[k, 0], to_m[k, 0]), max(from_m[k, 0], to_m[k, 0])

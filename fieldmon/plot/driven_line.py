@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, routine
+from fieldmon.compute.jit import inner_inlined, routine
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -182,7 +182,7 @@ def shortest_nodes(roads: RoadNetwork, a: int, b: int) -> Int:
     return np.array(nodes)
 
 
-@inlined
+@inner_inlined
 def _straight_m(roads: RoadNetwork, one: int, other: int) -> float:
     """Return the metres from node to node as the crow flies."""
     x = roads.xy_m[one, 0] - roads.xy_m[other, 0]

@@ -230,7 +230,9 @@ def _bends(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:
 def _off_boxes(box_m: Float, from_m: Float, to_m: Float, off: Mask) -> None:
     """Set `off` to False for the straight lines that touch a box; boxes are sorted by low y."""
     low_y = box_m[:, 1]
-    tallest = (box_m[:, 3] - low_y).max()
+    tallest = 0.0
+    for b in range(low_y.size):  # numba's `max` of an array compiles for half a second
+        tallest = max(tallest, box_m[b, 3] - low_y[b])
     for k in range(off.size):
         x, y = from_m[k]
         way_x, way_y = to_m[k, 0] - x, to_m[k, 1] - y

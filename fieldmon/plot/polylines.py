@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from fieldmon.compute.arrays import as_compiled, offsets, read_only, runs
-from fieldmon.compute.jit import inlined, routine
+from fieldmon.compute.jit import inner_inlined, routine
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -184,7 +184,7 @@ def _points(lines: Polylines, line: Int, place_m: Float, xy_m: Float) -> None:
             xy_m[i, k] = a + share * (b - a)
 
 
-@inlined
+@inner_inlined
 def _before(lines: Polylines, line: int, place_m: float) -> int:
     """Return the corner before a place, numbered through all lines."""
     low, high = lines.start[line], lines.start[line + 1] - 1

@@ -12,7 +12,7 @@ import shapely
 
 from fieldmon.compute.arguments import shown
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.jit import inlined, loop, routine
+from fieldmon.compute.jit import inlined, inner_inlined, loop, routine
 from fieldmon.compute.wording import counted, joined, worded
 from fieldmon.errors import SettingError
 from fieldmon.plot.clear_lanes import clear_lanes, hidden_plants
@@ -312,7 +312,7 @@ def trace(aisles: Aisles, a: int, b: int) -> list[int]:
     return nodes
 
 
-@inlined
+@inner_inlined
 def drive_m(travel: TravelTable, i: int, j: int) -> float:
     """Return the metres from plant i to plant j; -1 is the gate."""
     # written out: loops over the ends cost ten times as much

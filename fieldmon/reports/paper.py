@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import unicodedata
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fpdf import FPDF
 from fpdf.bidi import BidiParagraph
 from fpdf.enums import TextDirection
+from fpdf.fonts import TTFFont
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from typing import Any
 
     from fpdf.line_break import Fragment, TextLine
 
@@ -33,6 +33,13 @@ class Paper(FPDF):
     def __init__(self, size: tuple[float, float], *, right_to_left: bool = False) -> None:
         super().__init__(format=size)
         self._right_to_left = right_to_left
+
+    def add_font(self, *told: Any, **also: Any) -> None:  # noqa: ANN401 - fpdf2's
+        """Add a font that remembers how wide texts are in it."""
+        super().add_font(*told, **also)
+        for font in self.fonts.values():
+            if isinstance(font, TTFFont):
+                font.__class__ = _Font
 
     def _render_styled_text_line(self, text_line: TextLine, *told: Any, **also: Any) -> bool:  # noqa: ANN401 - fpdf2's
         """Write a line in the font that is set, which the page is told of first.
@@ -77,6 +84,28 @@ class Paper(FPDF):
             last = one
         if last is not None:
             yield last
+
+
+class _Font(TTFFont):
+    """A font that remembers how wide texts are in it.
+
+    fpdf2 asks again for all runs of a line with each letter that it adds.
+    """
+
+    __slots__ = ()
+
+    def shaped_text_width(
+        self, text: str, font_size_pt: float, text_shaping_params: dict[str, Any] | None
+    ) -> tuple[int, float]:
+        """Return number and width of the glyphs of a text, worked out once."""
+        told = text_shaping_params or {}
+        given = map(told.get, ("fragment_direction", "script", "language"))
+        asked = (text, font_size_pt, *given, *told.get("features", {}).items())
+        # only this part of a font takes what it was not made for
+        known: dict[object, tuple[int, float]] = self.hbfont.__dict__.setdefault("known", {})
+        if asked not in known:
+            known[asked] = super().shaped_text_width(text, font_size_pt, text_shaping_params)
+        return known[asked]
 
 
 def _has_mark(before: Fragment, after: Fragment) -> bool:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
-from fieldmon.compute.jit import inlined, inner_loop, loop
+from fieldmon.compute.jit import inner_inlined, inner_loop, loop
 from fieldmon.errors import SettingError
 from fieldmon.plot.travel import Clock, in_time, travel_s
 from fieldmon.samplers.base import Sampler, Scene, Stops
@@ -137,7 +137,7 @@ def _walk(
     return k
 
 
-@inlined
+@inner_inlined
 def _open(travel: TravelTable, opened: _Open, inspected: NDArray[np.bool_], plant: int) -> int:
     """Put a plant on the open list; return how many joined it (0 or 1)."""
     if inspected[plant] or opened.flag[plant]:
@@ -216,7 +216,7 @@ def _least_of(
     return least, room - above
 
 
-@inlined
+@inner_inlined
 def _nearest(
     travel: TravelTable, clock: Clock, opened: _Open, onward_m: NDArray[np.float32], at: int
 ) -> tuple[int, float]:
@@ -246,7 +246,7 @@ def _nearest(
     return best, best_s
 
 
-@inlined
+@inner_inlined
 def _nearest_in(
     travel: TravelTable, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
@@ -256,7 +256,7 @@ def _nearest_in(
     return _nearest_end(travel, clock, opened, at, row)
 
 
-@inlined
+@inner_inlined
 def _nearest_end(
     travel: TravelTable, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:
@@ -276,7 +276,7 @@ def _nearest_end(
     return (low, low_s) if low_s <= high_s else (high, high_s)
 
 
-@inlined
+@inner_inlined
 def _nearest_along(
     travel: TravelTable, clock: Clock, opened: _Open, at: int, row: int
 ) -> tuple[int, float]:

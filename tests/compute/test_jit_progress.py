@@ -9,12 +9,11 @@ import pytest
 from fieldmon.compute import jit_progress
 from fieldmon.compute.jit_progress import FirstUse
 
-A_NIGHT = """
+A_COIN = """
 import numpy as np
 from fieldmon.compute.jit_progress import FIRST_USE
-from fieldmon.plot.layout import rectangle
-from fieldmon.infestation.insects.spread import Spread, night
-night(rectangle(3, 3), np.ones(9, bool), Spread(), np.uint64(1))
+from fieldmon.compute.random_streams import coin
+coin(np.uint64(1), 0)
 print(FIRST_USE.compiled)
 """
 
@@ -87,7 +86,7 @@ def test_only_the_first_use_of_an_installation_compiles(tmp_path):
     env = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
 
     def compiled():
-        command = [sys.executable, "-c", A_NIGHT]
+        command = [sys.executable, "-c", A_COIN]
         return int(subprocess.run(command, env=env, check=True, capture_output=True).stdout)
 
     assert compiled() > 0

@@ -5,6 +5,7 @@ from datetime import date
 
 import pytest
 from fpdf import FPDF
+from fpdf.fonts import TTFFont
 from fpdf.line_break import Fragment
 from pypdf.generic import ContentStream
 
@@ -13,6 +14,7 @@ from fieldmon.compute.units import Units
 from fieldmon.compute.wording import LANGUAGES
 from fieldmon.decisions.sprayer import TreatmentCosts
 from fieldmon.monitoring.settings.advice_settings import AdviceSettings
+from fieldmon.reports import paper
 from fieldmon.reports.advice import advice_report
 from fieldmon.reports.certification import certification_report
 from fieldmon.reports.content import Paragraph, Report, Sheet, Table
@@ -112,3 +114,14 @@ def test_a_number_stays_in_its_name_beside_words_of_the_other_direction(monkeypa
     for language in (for_reports("es"), ARABIC):
         said = "".join(drawn(monkeypatch, text, language=language))
         assert 0 < said.index("دفيئة") - said.index("3") < len("3 \u2068\u2069")
+
+
+@pytest.mark.parametrize("code", ["es", "ar"])
+def test_a_file_is_the_same_whether_widths_are_remembered_or_worked_out_again(monkeypatch, code):
+    text = Paragraph("\u2068دفيئة 3\u2069 (Olivar 12, 14) كرم فُحصت. Zona fi 3 office AVAT. " * 4)
+    table = Table("فُحصت", ("fila 1", "b"), (("1", "دفيئة"), ("Olivar 3", "2")), (0.5, 0.5))
+    report = Report("دفيئة 3", "y", date(2026, 1, 1), (Sheet("z", (text, table)),))
+    report = report.said_in(for_reports(code))
+    remembered = pdf_bytes(report)
+    monkeypatch.setattr(paper._Font, "shaped_text_width", TTFFont.shaped_text_width)
+    assert pdf_bytes(report) == remembered

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fieldmon.compute.arrays import as_compiled
-from fieldmon.compute.jit import inlined, inner_loop, loop
+from fieldmon.compute.jit import inlined, inner_inlined, inner_loop, loop
 from fieldmon.infestation.chance_bounds import (
     LEAST_CHANCE,
     MOST_CHANCE,
@@ -276,7 +276,7 @@ def _update_pairs(
         pair_chance[e] = pair_chance[np.uint32(linked.back[e])] = both
 
 
-@inlined
+@inner_inlined
 def _conditional(p: float, q: float, pair_chance: float, after: float) -> float:
     """Return the chance of a plant, q until now, when its neighbour's goes from p to `after`."""
     both = bounded_pair_chance(pair_chance, p, q)

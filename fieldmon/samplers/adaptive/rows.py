@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.jit import inlined, inner_loop
+from fieldmon.compute.jit import inner_inlined, inner_loop
 from fieldmon.samplers.adaptive.arrays import BLOCK, LEAST, N_WAYS, NEARLY, NOWHERE
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _UNKNOWN = -1.0
 
 
-@inlined
+@inner_inlined
 def best_time(times: InspectionTimes, value: float, price: float) -> tuple[float, int]:
     """Return what the best inspection time gains at a price, and which it is.
 
@@ -74,7 +74,7 @@ def value_row(
     _through(travel, clock, rows, row, price)
 
 
-@inlined
+@inner_inlined
 def _pays_from(times: InspectionTimes, price: float) -> float:
     """Return what a find must be expected to be worth for any inspection to pay; a little less."""
     least = np.inf
@@ -83,20 +83,20 @@ def _pays_from(times: InspectionTimes, price: float) -> float:
     return price * least * NEARLY
 
 
-@inlined
+@inner_inlined
 def trusted(belief: BeliefArrays, value: float) -> float:
     """Return what a find is expected to be worth, as plans are made by it."""
     trust = belief.scale[3]
     return float(value if trust == 1.0 else value**trust)
 
 
-@inlined
+@inner_inlined
 def trusted_value(belief: BeliefArrays, i: int) -> float:
     """Return what a find at plant i is expected to be worth, as plans are made by it."""
     return trusted(belief, belief.worth[i] * belief.chance[i])
 
 
-@inlined
+@inner_inlined
 def most_in(belief: BeliefArrays, rows: RowTours, times: InspectionTimes, block: int) -> float:
     """Return the most that a find in a block is expected to be worth; value its plants for that."""
     most = rows.most[block]
@@ -111,14 +111,14 @@ def most_in(belief: BeliefArrays, rows: RowTours, times: InspectionTimes, block:
     return float(most)
 
 
-@inlined
+@inner_inlined
 def mark_changed(travel: TravelTable, rows: RowTours, i: int) -> None:
     """Mark a plant, and the one after it, as ones of which something else is believed."""
     rows.stale[travel.row[i]] = rows.before.stale[travel.row[i]] = True
     rows.most[i // BLOCK] = rows.most[(i + 1) // BLOCK] = -1.0
 
 
-@inlined
+@inner_inlined
 def mark_all_changed(rows: RowTours) -> None:
     """Mark all plants as ones of which something else is believed."""
     rows.stale[:] = rows.before.stale[:] = True
@@ -147,7 +147,7 @@ def turn_price(rows: RowTours, price: float, to: float) -> None:
         before.stale[row], rows.stale[row] = rows.stale[row], stale
 
 
-@inlined
+@inner_inlined
 def value_after_clean(
     belief: BeliefArrays, rows: RowTours, place: tuple[int, int], detects: float
 ) -> float:
@@ -164,7 +164,7 @@ def value_after_clean(
 
 
 # copied: handing over all of a belief takes longer than this
-@inlined
+@inner_inlined
 def _after_clean(belief: BeliefArrays, i: int, detects: float) -> float:
     """Return the chance of plant i once the one before it was inspected and seemed clean."""
     p, e = belief.chance[i], belief.pair_before[i]

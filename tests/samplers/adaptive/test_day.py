@@ -34,10 +34,9 @@ from fieldmon.samplers.adaptive.day import (
     times_odds_of_all,
     trust_in_differences,
 )
-from fieldmon.samplers.adaptive.replan import first_price, plan_on
 from fieldmon.samplers.base import NEVER
 from fieldmon.samplers.sweeps import Naive
-from tests.samplers.adaptive.working import times_of, workspace
+from tests.samplers.adaptive.working import first_price_of, planned_on, times_of, workspace
 from tests.scenes import scene_on
 from tests.thorough import seeds
 
@@ -245,11 +244,6 @@ def best_left(travel, clock, work, at, now_s):
 @loop
 def least_s(travel, clock, at, row):
     return _least_s(travel, clock, at, row)
-
-
-@loop
-def planned_on(travel, clock, work, state):
-    return plan_on(travel, clock, work, state)
 
 
 @loop
@@ -525,7 +519,7 @@ def test_a_day_follows_its_plan_to_a_find_or_the_end_of_a_stretch_and_plans_agai
     all_work, plants = (belief, rows, tours, times, own), (linked, belief, found)
     stops = np.empty(20, np.int32), np.empty(20), np.empty(20, np.uint8)
     at, now_s, k = scene.at, 0.0, 0
-    price = day_price(travel, clock, all_work, at)
+    price = first_price_of(travel, clock, all_work, at)
     while True:
         learn_clustering(linked, belief, rows)
         price, stretch = planned_on(
@@ -550,11 +544,6 @@ def test_a_day_follows_its_plan_to_a_find_or_the_end_of_a_stretch_and_plans_agai
             at, k = plant, k + 1
     assert work.plant.tolist() == stops[0][:k].tolist()
     assert work.arrive_s == pytest.approx(stops[1][:k])
-
-
-@loop
-def day_price(travel, clock, work, at):
-    return first_price(travel, clock, work, at)
 
 
 def fits(travel, clock, move, stop_s, now_s):

@@ -6,44 +6,36 @@ import pytest
 from fieldmon.compute.jit import loop
 from fieldmon.plot.layout import rectangle
 from fieldmon.plot.travel import GATE
-from fieldmon.samplers.adaptive import replan
-from fieldmon.samplers.adaptive.replan import first_price, plan_on, row_of
+from fieldmon.samplers.adaptive.replan import _along, row_of
 from fieldmon.samplers.adaptive.rows import mark_changed
-from tests.samplers.adaptive.working import scene_with, times_of, workspace
+from tests.samplers.adaptive.working import (
+    first_price_of,
+    planned_at,
+    planned_on,
+    scene_with,
+    times_of,
+    workspace,
+)
 from tests.thorough import seeds
 
 GRID = rectangle(8, 12)
 ONE_TIME = times_of((40.0, 0.84))
-_plan_at = replan._plan_at
-_along = replan._along
 
 
 @loop
-def price_of(travel, clock, work, at):
-    return first_price(travel, clock, work, at)
+def fetch_along(travel, clock, work, state):
+    _along(travel, clock, work[1], work[4], state)
 
 
-@loop
-def plan_at(travel, clock, work, state):
-    return _plan_at(travel, clock, work, state)
-
-
-@loop
-def planned_on(travel, clock, work, state):
-    return plan_on(travel, clock, work, state)
-
-
-@loop
 def valued_along(travel, clock, work, state):
-    at, end, price = state
-    plan_on(travel, clock, work, (at, price, clock.seconds_left))
-    _along(travel, clock, work[1], work[4], (at, end, price))
+    at, _, price = state
+    planned_on(travel, clock, work, (at, price, clock.seconds_left))
+    fetch_along(travel, clock, work, state)
 
 
-@loop
 def believe(travel, work, plant, chance):
     work[0].chance[plant] = chance
-    mark_changed(travel, work[1], plant)
+    mark_changed.py_func(travel, work[1], plant)
 
 
 @loop
@@ -58,7 +50,7 @@ def scene_of(seed, hours):
 
 def seconds_at(scene, price, at=GATE):
     work = workspace(scene, ONE_TIME)
-    return plan_at(scene.aisles.travel, scene.clock, work, (at, price)).seconds
+    return planned_at(scene.aisles.travel, scene.clock, work, (at, price)).seconds
 
 
 @pytest.mark.parametrize("seed", seeds(2, 6))
@@ -66,14 +58,14 @@ def seconds_at(scene, price, at=GATE):
 def test_at_the_first_price_the_day_is_just_filled(seed, hours):
     scene = scene_of(seed, hours)
     work = workspace(scene, ONE_TIME)
-    price = price_of(scene.aisles.travel, scene.clock, work, GATE)
+    price = first_price_of(scene.aisles.travel, scene.clock, work, GATE)
     assert seconds_at(scene, price) <= scene.seconds_left
     assert seconds_at(scene, price / 1.05) > scene.seconds_left, "a lower price would fit too"
 
 
 def test_with_time_for_all_a_second_costs_next_to_nothing():
     scene = scene_of(1, 24.0)
-    price = price_of(scene.aisles.travel, scene.clock, workspace(scene, ONE_TIME), GATE)
+    price = first_price_of(scene.aisles.travel, scene.clock, workspace(scene, ONE_TIME), GATE)
     assert price < 1e-6 * scene.chance.max()
     assert seconds_at(scene, price) > len(GRID) * 40.0
 
@@ -93,7 +85,7 @@ def test_the_dearer_a_second_the_shorter_the_plan(seed, at):
 def test_the_price_follows_the_hours_left_in_steps_of_a_tenth(seed, at):
     scene = scene_of(seed, 1.0)
     travel, clock, work = scene.aisles.travel, scene.clock, workspace(scene, ONE_TIME)
-    usual = price_of(travel, clock, work, GATE)
+    usual = first_price_of(travel, clock, work, GATE)
     for left_s in (300.0, 1800.0, 3600.0, 20_000.0):
         work[1].stale[:] = True
         price, stretch = planned_on(travel, clock, work, (at, usual, left_s))
@@ -115,7 +107,7 @@ def test_what_is_kept_of_the_price_before_is_what_would_be_worked_out_anew(seed)
     scene, rng = scene_of(seed, 1.0), np.random.default_rng(seed)
     travel, clock = scene.aisles.travel, scene.clock
     kept, anew = workspace(scene, ONE_TIME), workspace(scene, ONE_TIME)
-    price = price_of(travel, clock, kept, GATE)
+    price = first_price_of(travel, clock, kept, GATE)
     prices = [price]
     for _ in range(60):
         plant, chance = rng.integers(len(GRID)), rng.uniform(0.0, 0.3)
@@ -137,7 +129,7 @@ def test_a_stretch_ends_at_a_plant_of_its_row_that_pays(at):
     scene = scene_of(3, 1.0)
     work = workspace(scene, ONE_TIME)
     price = 0.002
-    stretch = plan_at(scene.aisles.travel, scene.clock, work, (at, price))
+    stretch = planned_at(scene.aisles.travel, scene.clock, work, (at, price))
     assert GRID.row[stretch.last] == stretch.row
     assert 0.84 * scene.chance[stretch.last] > price * 40.0
     if stretch.row == GRID.row[at]:
@@ -156,7 +148,7 @@ def test_from_the_gate_the_plan_leads_to_the_row_that_is_worth_it_the_first_as_a
     chance[GRID.row == row] = 0.5
     scene = scene_with(GRID, chance, 1.0, returns=True)
     travel, work = scene.aisles.travel, workspace(scene, ONE_TIME)
-    stretch = plan_at(travel, scene.clock, work, (GATE, 1e-3))
+    stretch = planned_at(travel, scene.clock, work, (GATE, 1e-3))
     assert stretch.row == row
 
 

@@ -32,16 +32,6 @@ def value(travel, clock, work, state):
 
 
 @loop
-def chosen_time(times, value, price):
-    return best_time(times, value, price)
-
-
-@loop
-def mark(travel, rows, i):
-    mark_changed(travel, rows, i)
-
-
-@loop
 def most(belief, rows, block):
     return most_in(belief, rows, ONE_TIME, block)
 
@@ -128,7 +118,7 @@ def test_the_second_of_two_neighbours_counts_as_after_a_clean_first():
 @pytest.mark.parametrize("price", [1e-4, 0.003, 0.01, 0.03])
 def test_a_plant_gets_the_time_that_is_worth_most_beyond_what_it_costs(price):
     for chance in (0.01, 0.2, 0.9):
-        gain, time = chosen_time(TIMES, chance, price)
+        gain, time = best_time.py_func(TIMES, chance, price)
         each = TIMES.detects * chance - price * TIMES.stop_s
         assert gain == pytest.approx(each.max())
         assert time == each.argmax()
@@ -160,7 +150,7 @@ def test_a_plant_that_changed_changes_what_the_next_is_worth_after_it_too(change
 
     before = values(rows)
     belief.chance[changed] *= 0.5
-    mark(scene.aisles.travel, rows, changed)
+    mark_changed.py_func(scene.aisles.travel, rows, changed)
     anew = rows._replace(most=np.full_like(rows.most, -1.0), value=rows.value.copy(),
                          after_clean=rows.after_clean.copy())  # fmt: skip
     now, wanted = values(rows), values(anew)

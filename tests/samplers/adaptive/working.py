@@ -4,11 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from fieldmon.compute.jit import loop
 from fieldmon.infestation.pairs.clustering import ClusterEstimate
 from fieldmon.infestation.pairs.pairs import Neighbourhood, pair_chances
 from fieldmon.infestation.tracing.tracing import Raised, Traces
 from fieldmon.plot.robot import Robot
 from fieldmon.samplers.adaptive.arrays import NOWHERE, BeliefArrays, BestTours, OwnRow, RowTours
+from fieldmon.samplers.adaptive.replan import _plan_at, first_price, plan_on
 from fieldmon.samplers.adaptive.tours import measure_ways
 from fieldmon.samplers.base import InspectionTimes
 from tests.scenes import scene_on
@@ -51,3 +53,29 @@ def workspace(scene, times, together=0.0):
     measure_ways(scene.aisles.travel, scene.clock, tours.next_s, tours.home_s)
     belief = belief_on(scene.grid, scene.chance, together)
     return belief, RowTours.of(n, n_rows, times.stop_s.size), tours, times, OwnRow.blank()
+
+
+@loop
+def _planned(travel, clock, work, state, how):
+    # one loop: what it calls is compiled with it, and again with another
+    at, price, left_s = state
+    if how == 0:
+        price = first_price(travel, clock, work, at)
+    elif how == 1:
+        return plan_on(travel, clock, work, (at, price, left_s))
+    return price, _plan_at(travel, clock, work, (at, price))
+
+
+def first_price_of(travel, clock, work, at):
+    """Return `first_price`."""
+    return _planned(travel, clock, work, (at, 0.0, 0.0), 0)[0]
+
+
+def planned_on(travel, clock, work, state):
+    """Return `plan_on`."""
+    return _planned(travel, clock, work, state, 1)
+
+
+def planned_at(travel, clock, work, state):
+    """Return `_plan_at`."""
+    return _planned(travel, clock, work, (*state, 0.0), 2)[1]

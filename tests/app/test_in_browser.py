@@ -104,6 +104,8 @@ def screen(first_screen):
     """Return the first screen as it came: all layers, every plant by its chance, the whole plot."""
     page = first_screen
     page.bring_to_front()  # one behind another hears of the mouse seconds later
+    if not page.locator(".st-key-item_today").count():
+        open_item(page, texts.MENU["today"])
     page.set_viewport_size({"width": 1400, "height": 1000})
     page.mouse.move(2, 2)
     for name in (ROUTE, HOT):
@@ -1244,10 +1246,10 @@ def test_the_sheet_is_pulled_up_and_let_down_again(on_a_phone):
     assert page.locator(DRAWN).count() == 1
 
 
-def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up(
-    asked_screen, address
-):
-    page = asked_screen
+def test_a_robot_drives_by_the_space_bar_stands_at_a_find_and_the_find_lights_up(screen, address):
+    page = screen
+    for name in (ROUTE, HOT):
+        switch(page, name, on=False)
     open_item(page, texts.MENU["ahead"])
     open_page(page, texts.PAGES["drive"])
     still(page)

@@ -35,7 +35,7 @@ def run(choices: Choices, scene: Scene, key: str) -> DriveRun:
         st.number_input, texts.DRIVE_SHARE, 0.1, 50.0, step=0.5, key=f"drive_share {believed:g}",
         default=believed,
     )  # fmt: skip
-    if choices.season is not None:
+    if choices.season is not None and share == believed:
         st.caption(texts.DRIVE_BELIEVES.format(day=choices.units.said_day(choices.day)))
     st.caption(texts.DRIVE_MADE_UP)
     made_up = MadeUp(share / 100)

@@ -8,8 +8,8 @@ import streamlit as st
 
 from fieldmon.compute.digest import digest
 
-from ..actions import driving, watching
-from ..show import drive_play, field_map
+from ..actions import choosing, driving, watching
+from ..show import day, drive_play, field_map
 from ..state import cached_simulations, widget_memory
 from ..words import texts
 
@@ -22,14 +22,19 @@ def show(choices: Choices) -> None:
     st.caption(texts.DRIVE_INTRO)
     shown = f"{choices.key} {choices.revision} {choices.day} {choices.whose_day} {choices.robot}"
     shown = f"{shown} {choices.sampler} {choices.wishes} {choices.prior}"
-    scene = choices.wishes.applied_to(choices.plan().scene)
+    plan = choices.plan()
+    scene = choices.wishes.applied_to(plan.scene)
     field_map.want(drive_play.content(choices, scene, None))
     source = widget_memory.show(
         st.segmented_control, texts.DRIVE_SOURCE, list(texts.DRIVE_SOURCES), key="drive_source",
         default="planned", required=True, format_func=texts.DRIVE_SOURCES.__getitem__,
     )  # fmt: skip
     if source == "planned":
-        day = driving.run(choices, scene, shown).day
+        choosing.whose_day(choices)
+        if not len(plan.route):
+            day.say_of_day(choices, plan)
+            return
+        driven = driving.run(choices, scene, shown).day
     elif source == "live":
         watched = f"{choices.key} {choices.day}"
         if (live := watching.robots(watched, choices, scene)) is not None and live.running:
@@ -40,8 +45,8 @@ def show(choices: Choices) -> None:
     else:
         data = brought.getvalue()
         key = f"{shown} {digest(data)}"
-        day = cached_simulations.recorded_drive(key, data, choices.plot, scene)
+        driven = cached_simulations.recorded_drive(key, data, choices.plot, scene)
         st.caption(texts.DRIVE_BELIEVED)
-    if day is not None:
+    if driven is not None:
         st.caption(texts.DRIVE_KEYS)
-        field_map.want(drive_play.content(choices, scene, day))
+        field_map.want(drive_play.content(choices, scene, driven))

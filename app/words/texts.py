@@ -1247,7 +1247,7 @@ DRIVE_MADE_UP = (
     "Once this tab is closed the drive waits, and is given up after two minutes."
 )
 DRIVE_SHARE = "Infested plants (%)"
-DRIVE_BELIEVES = "*Infested plants* begin as the season believes on {day}."
+DRIVE_BELIEVES = "This share is what the season believes on {day}."
 DRIVE_RUN = "Drive the day"
 DRIVE_DONE = Plural(
     "Driven: {n:,} stop, {found:,} found, {time}.", "Driven: {n:,} stops, {found:,} found, {time}."

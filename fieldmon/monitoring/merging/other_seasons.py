@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections import Counter
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
@@ -12,6 +13,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.monitoring.changes import copy_corrections, season_log
 from fieldmon.monitoring.changes.transactions import Store, get_meta
 from fieldmon.monitoring.file import schema
+from fieldmon.monitoring.file.rows_that_count import COUNTS, TAKEN_BACK
 from fieldmon.monitoring.merging import same_season
 from fieldmon.monitoring.treating import treatments
 
@@ -55,8 +57,23 @@ def is_copy(season: OpenSeason, file: Path) -> bool:
         return not apart or same_season.hold_in_common(db, theirs)
 
 
-def corrections_in(season: OpenSeason, copy: Path) -> tuple[OutsideChange, ...]:
-    """Return what another program changed of inspections in a copy of this season.
+def merge_command(season: OpenSeason, name: str) -> str:
+    """Return the command that takes in all that a file of this name holds."""
+    return f"fieldmon merge {shlex.quote(season.path.name)} {shlex.quote(name)}"
+
+
+def taken_back_in(season: OpenSeason, copy: Path) -> int:
+    """Return how many inspections that count here were taken back in a copy of this season."""
+    if not is_copy(season, copy):
+        return 0
+    wanted = "SELECT DISTINCT digest FROM inspections WHERE undone = ?"
+    with season.store.reading() as db, Store(copy).reading() as theirs:
+        here, there = ({*one.execute(wanted, (COUNTS,))} for one in (db, theirs))
+        return len(({*theirs.execute(wanted, (TAKEN_BACK,))} & here) - there)
+
+
+def corrections_in(season: OpenSeason, copy: Path, name: str) -> tuple[OutsideChange, ...]:
+    """Return what another program changed of inspections in a copy of this season of that name.
 
     A file that is no copy of it has none. Raise `FileProblem` where a copy has taken corrections
     that this season has not: recorded from there, what was corrected would count twice, and what
@@ -70,8 +87,9 @@ def corrections_in(season: OpenSeason, copy: Path) -> tuple[OutsideChange, ...]:
                 worded(
                     "A copy of a season whose findings are recorded must have no corrections of "
                     "its own, but {n} {n:inspection of this one was|inspections of this one were} "
-                    "corrected or deleted there. Take all that it holds with: fieldmon merge",
+                    "corrected or deleted there. Take all that it holds with: {merge}",
                     n=n,
+                    merge=merge_command(season, name),
                 )
             )
         return copy_corrections.waiting(theirs)

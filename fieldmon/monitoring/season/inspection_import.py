@@ -18,8 +18,10 @@ from fieldmon.monitoring.inspecting.batches import Recorded
 from fieldmon.monitoring.merging.other_seasons import (
     corrections_in,
     is_copy,
+    merge_command,
     own_names,
     refuse_another_pest,
+    taken_back_in,
     treatments_alone_in,
 )
 from fieldmon.monitoring.phones import findings
@@ -127,8 +129,8 @@ def read_brought(
     copy = season_copied(source, folder)
     if copy is not None:
         refuse_another_pest(season, copy)
-    corrected = [] if copy is None else [one.row for one in corrections_in(season, copy)]
-    treated = [] if copy is None else _about_treatments(season, copy)
+    corrected = [] if copy is None else [one.row for one in corrections_in(season, copy, name)]
+    apart = [] if copy is None else _about_copy(season, copy, name)
     if copy is not None:
         (folder / "new").mkdir()
         source = counting_copy(copy, folder / "new", corrected)
@@ -142,7 +144,7 @@ def read_brought(
         here, _ = own_rows(season, rows.value, options)
         edits = edits_in(season, here, options)
         n_changed = sum(one.is_seen_otherwise for one in edits.changed) + len(edits.unsure)
-    messages = (*read.messages, *treated, *_about_changed(n_changed))
+    messages = (*read.messages, *apart, *_about_changed(n_changed))
     return BroughtFile(name, read.value, messages, None, copy, len(corrected), n_changed)
 
 
@@ -185,8 +187,21 @@ def _dated_on_plot(
     return read if season.settings.begins > today else come(read, options, today)
 
 
-def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:
-    """Return a doubt about treatments of another season: it is asked for its findings alone."""
+def _about_copy(season: Season, copy: Path, name: str) -> list[ImportMessage]:
+    """Return doubts about what of another season is not taken: only its findings are asked for."""
+    about = _about_treatments(season, copy, name)
+    if n := taken_back_in(season, copy):
+        said = worded(
+            "{n} {n:inspection was|inspections were} taken back in that copy, and {n:counts|count} "
+            "on here. Take all that it holds with: {merge}",
+            n=n,
+            merge=merge_command(season, name),
+        )
+        about.append(doubtful(said))
+    return about
+
+
+def _about_treatments(season: Season, copy: Path, name: str) -> list[ImportMessage]:
     alone = treatments_alone_in(season, copy)
     if not alone:
         return []
@@ -201,9 +216,10 @@ def _about_treatments(season: Season, copy: Path) -> list[ImportMessage]:
     if is_copy(season, copy):
         said = worded(
             "{n} {n:treatment|treatments} of that copy {n:is|are} not taken ({some}), nor "
-            "{n:its|their} waiting periods. Take all that it holds with: fieldmon merge",
+            "{n:its|their} waiting periods. Take all that it holds with: {merge}",
             n=len(alone),
             some=first_few(named),
+            merge=merge_command(season, name),
         )
     else:
         said = worded(

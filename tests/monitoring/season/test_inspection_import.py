@@ -76,7 +76,9 @@ def test_a_copy_in_which_inspections_of_this_season_were_corrected_is_for_merge(
     first = copy.numbered(plant=int(season.history.inspections.plant[0]))[0].number
     copy.correct_time(first, None, "Ann", BEGINS + timedelta(days=2), confirmed=True)
     (tmp_path / "again").mkdir()
-    with pytest.raises(FileProblem, match="but 1 inspection of this one was corrected or deleted"):
+    with pytest.raises(
+        FileProblem, match=r"but 1 inspection of this .* with: fieldmon merge season.gpkg copy.gpkg"
+    ):
         read_brought(season, copy.path, OPTIONS, tmp_path / "again")
     season.merge(copy)
     (tmp_path / "merged").mkdir()
@@ -140,6 +142,25 @@ def test_a_copy_for_another_season_holds_only_what_was_not_undone(path, tmp_path
     for file, n in ((path, 12), (copy, 11)):
         with closing(sqlite3.connect(file)) as db:
             assert db.execute("SELECT count(*) FROM inspections").fetchone() == (n,)
+
+
+def test_what_was_taken_back_in_a_copy_and_counts_on_here_is_said(path, tmp_path):
+    season, copy = Season(path), Season(shutil.copy(path, tmp_path / "my copy.gpkg"))
+
+    def doubts(name):
+        (own := tmp_path / name).mkdir()
+        read = read_brought(season, copy.path, OPTIONS, own)
+        return [one.sentence for one in read.messages if "taken back" in one.sentence]
+
+    assert doubts("before") == []
+    copy.undo(inspection=3)
+    copy.undo(inspection=5)
+    assert doubts("after") == [
+        "2 inspections were taken back in that copy, and count on here. Take all that it holds "
+        "with: fieldmon merge season.gpkg 'my copy.gpkg'"
+    ]
+    season.merge(copy)
+    assert doubts("merged") == []
 
 
 def test_treatments_of_another_season_are_said_to_stay_there(path, tmp_path):

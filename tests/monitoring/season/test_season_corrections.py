@@ -23,7 +23,7 @@ def test_corrections_have_an_author(path, tmp_path):
 
 def test_a_file_that_is_no_copy_of_the_season_has_none(path, tmp_path):
     other = a_season(tmp_path / "other.gpkg")
-    assert corrections_in(Season(path), other.path) == ()
+    assert corrections_in(Season(path), other.path, "other.gpkg") == ()
     assert other.status(BEGINS).found == 0
 
 

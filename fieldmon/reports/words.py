@@ -131,6 +131,10 @@ SOURCES = {
     "added by another program": "added by another program",
 }  # fmt: skip
 BATCHES_REST = "... and {n} earlier; fieldmon status --batches lists all."
+CHANGED_LATER = "Taken back and corrected"
+CHANGED_LATER_LINE = "{day} {time}, by {who}: {said}"
+CHANGED_LATER_THERE = "{day} {time}, by {who}, in a copy that was merged: {said}"
+CHANGED_LATER_REST = "... and {n} earlier; fieldmon log lists all."
 TREATMENTS = "Treatments"
 TREATMENT_COLUMNS = ("day", "product", "plants", "works on", "harvest from")
 TREATMENTS_NONE = "No treatment was noted."

@@ -23,7 +23,7 @@ from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.estimates.last_days import default_date
 from fieldmon.monitoring.estimates.verifying import check_against_log
 from fieldmon.monitoring.inspecting.known_inspections import corrected_by
-from fieldmon.monitoring.merging.other_seasons import called_apart
+from fieldmon.monitoring.merging.other_seasons import by_plot, called_apart, of_one_plot
 from fieldmon.monitoring.treating.cautions import groups, label_of, waits
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.named_rows import place_in_words
@@ -219,7 +219,7 @@ def _summary(records: list[_PlotRecord]) -> Iterator[tuple[Block, ...]]:
     area_ha = sum(t.place.area_ha or 0.0 for one in records for t in one.treatments)
     lead = worded(
         words.CERT_LEAD,
-        treatments=counted(n, "treatment"), plots=counted(len(records), "plot"),
+        treatments=counted(n, "treatment"), plots=counted(len(by_plot(one.season for one in records)), "plot"),
         inspections=counted(sum(k for k, _ in seen), "inspection"),
         finds=counted(sum(k for _, k in seen), "find"),
     )  # fmt: skip
@@ -284,9 +284,13 @@ def _parts(table: Table, most: int) -> Iterator[Table]:
 
 
 def _cautions(records: list[_PlotRecord]) -> list[str]:
-    """Return what to beware of; treatments of one day may have the same warning: it stands once."""
+    """Return what to beware of; treatments of one day may have the same warning: it stands once.
+
+    That several seasons are of one plot comes first: what was done there counts in each.
+    """
+    twice = of_one_plot((one.season for one in records), words.isolated)
     said = (_of_plot(one, beware.sentence, records) for one in records for beware in one.cautions)
-    return [*dict.fromkeys(said)]
+    return [*twice, *dict.fromkeys(said)]
 
 
 def _of_plot(one: _PlotRecord, said: str, records: list[_PlotRecord]) -> str:

@@ -217,9 +217,10 @@ def _summary(records: list[_PlotRecord]) -> Iterator[tuple[Block, ...]]:
     n = sum(len(one.treatments) for one in records)
     seen = [one.inspected() for one in records]
     area_ha = sum(t.place.area_ha or 0.0 for one in records for t in one.treatments)
+    n_plots = len(by_plot(one.season for one in records))
     lead = worded(
         words.CERT_LEAD,
-        treatments=counted(n, "treatment"), plots=counted(len(by_plot(one.season for one in records)), "plot"),
+        treatments=counted(n, "treatment"), plots=counted(n_plots, "plot"),
         inspections=counted(sum(k for k, _ in seen), "inspection"),
         finds=counted(sum(k for _, k in seen), "find"),
     )  # fmt: skip

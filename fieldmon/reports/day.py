@@ -8,12 +8,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import chance_figure, estimate, figure, hours_figure, runs, worded
+from fieldmon.compute.wording import (
+    chance_figure,
+    estimate,
+    figure,
+    hours_figure,
+    joined,
+    runs,
+    worded,
+)
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.changes.earlier_settings import settings_on
 from fieldmon.monitoring.days.day_ahead import WorkPart, plan_ahead
+from fieldmon.monitoring.days.worked_route import past_midnight
 from fieldmon.monitoring.estimates.plant_states import hot_spots_on, shown_apart
 from fieldmon.monitoring.inspecting.contradictions import contradiction_lines
 from fieldmon.monitoring.treating.cautions import label_of, waits
@@ -117,6 +126,11 @@ class DayFacts:
         ``(n,)`` other finds, which only the records of before a season tell of; None: none.
     otherwise
         Who says what of each plant that was both clean and found that day.
+    past_midnight
+        How many plants were inspected after midnight in the shift of that day, and found infested
+        of these: they are dated the next day, and not among `inspected` and `found`.
+    before
+        How many of those inspected that day were so in the shift of the day before.
     """
 
     name: str
@@ -141,6 +155,8 @@ class DayFacts:
     skipped: tuple[Worded, ...] = ()
     recorded: NDArray[np.bool_] | None = None
     otherwise: tuple[Worded, ...] = ()
+    past_midnight: tuple[int, int] = (0, 0)
+    before: int = 0
 
     @classmethod
     def of_season(cls, season: Season, on: date, today: date | None = None) -> DayFacts:
@@ -181,7 +197,15 @@ class DayFacts:
                 recorded=recorded, otherwise=contradiction_lines(
                     season.inspections.on(on), season.plot.grid, words.isolated
                 ),
+                past_midnight=plants_past_midnight(season, on),
+                before=plants_past_midnight(season, on - timedelta(days=1))[0],
             )  # fmt: skip
+
+
+def plants_past_midnight(season: Season, on: date) -> tuple[int, int]:
+    """Return how many plants were inspected after midnight in a day's shift, and found of these."""
+    done = past_midnight(season, on).inspected
+    return len(np.unique(done.plant)), len(np.unique(done.plant[done.result == FOUND]))
 
 
 def was_missed(season: Season, on: date, today: date | None) -> bool:
@@ -252,9 +276,12 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
     said: list[str] = []
     if facts.inspected:
         numbers = {"inspected": facts.inspected, "found": len(facts.found)}
-        said.append(worded(words.WORKED, day=day, **numbers))
+        said += [worded(words.WORKED, day=day, **numbers), *_other_shifts(facts, units)]
         if facts.held is not None:
-            said.append(worded(words.PLANNED_DONE, **held_in_words([facts.held])))
+            held = worded(words.PLANNED_DONE, **held_in_words([facts.held]))
+            if facts.before or facts.past_midnight[0]:
+                held = joined(" ", (worded(words.OF_SHIFT, day=day), held))
+            said.append(held)
     if not (facts.worked and said):
         said.append(headline(facts.route, day))
     if facts.who:
@@ -265,6 +292,20 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
         grid = facts.route.aisles.grid
         said += closed_in_words(facts.closed, grid, units)
         said += facts.skipped
+    return said
+
+
+def _other_shifts(facts: DayFacts, units: Units) -> list[str]:
+    """Return what is of another date than its shift: a plan is of a shift, results of a date."""
+    on, said = facts.begins.date(), list[str]()
+    if facts.before:
+        day = units.day(on - timedelta(days=1))
+        said.append(worded(words.OF_SHIFT_BEFORE, day=day, n=facts.before))
+    inspected, found = facts.past_midnight
+    if inspected:
+        following = units.day(on + timedelta(days=1))
+        of_shift = {"day": units.day(on), "inspected": inspected, "found": found}
+        said.append(worded(words.PAST_MIDNIGHT, next=following, **of_shift))
     return said
 
 

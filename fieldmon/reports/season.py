@@ -270,7 +270,8 @@ def _went(facts: _Facts) -> Iterator[Block]:
     for title, chart in charts.items():
         yield Illustration(title, worded(words.CHART_ALT, title=title), chart.draw, (28.0, 46.0))
     plans = [facts.season.planned_and_done(one.on) for one in facts.days if one.inspected_today]
-    if held := [one for one in plans if one is not None]:
+    # of a date on which only the shift of the day before went on, no plan was worked
+    if held := [one for one in plans if one is not None and one.done + one.added]:
         days = counted(len(held), "day")
         said = worded(words.PLANNED_DONE, **held_in_words(held))
         yield Paragraph(joined(" ", (worded(words.PLANNED_DAYS, days=days), said)))

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import KeptText, Worded, counted, estimate, hours_figure, joined, worded
+from fieldmon.compute.wording import (
+    KeptText,
+    Worded,
+    counted,
+    estimate,
+    hours_figure,
+    joined,
+    worded,
+)
 from fieldmon.plot.grid import plant_numbers, row_ends
 from fieldmon.reports import words
 

@@ -25,6 +25,14 @@ HEADLINE_NONE = "Nothing to inspect on {day}."
 WORKED = (
     "Worked on {day}: {inspected:,} {inspected:plant|plants} inspected, {found:,} found infested."
 )
+PAST_MIDNIGHT = (
+    "After midnight, in the shift that began on {day}, {inspected:,} more "
+    "{inspected:plant was|plants were} inspected, {found:,} found infested: dated {next}."
+)
+OF_SHIFT_BEFORE = (
+    "{n:,} of them {n:was|were} inspected after midnight, in the shift that began on {day}."
+)
+OF_SHIFT = "Of the shift that begins on {day}:"
 MISSED = "{day} is past, and no inspection of it was recorded."
 OTHERWISE = "Clean and found, of the same plant"
 MISSED_PLAN = "Stops planned: {planned:,}."

@@ -8,7 +8,7 @@ import pytest
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import estimate
-from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import PlannedAndDone
 from fieldmon.monitoring.treating.applications import Application
 from fieldmon.planning.members import TeamMember
@@ -26,6 +26,7 @@ from fieldmon.reports.content import (
 )
 from fieldmon.reports.day import DayFacts, day_report, which
 from fieldmon.reports.pdf import pdf_bytes
+from fieldmon.reports.season import season_report
 from fieldmon.reports.sentences import headline
 from tests.monitoring.seasons import BEGINS, ROBOT, a_season, some_results
 from tests.reports.reading import MM, one, opened, table, texts
@@ -311,6 +312,42 @@ def test_a_worked_day_is_held_to_its_plan(done, of_worked_day):
     assert len(paragraphs(day_report(replace(done, held=None), Units()))) == (
         len(paragraphs(other)) - 1
     )
+
+
+def test_each_page_of_a_night_shift_says_which_shift_its_numbers_are_of(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", starts=time(23, 30))
+    plants = season.plan(BEGINS).route.plant
+    until = 23.5 * 3600 + np.arange(1, len(plants) + 1) * 1.4 * 3600 / len(plants)
+    late = until >= 86400
+    dates = np.datetime64(BEGINS) + late
+    found = np.where(np.arange(len(plants)) == len(plants) - 1, FOUND, CLEAN)
+    season.record(Inspections.of(plants, found, dates, second=until % 86400), "night")
+    next_day, n, k = BEGINS + timedelta(days=1), len(plants), int(late.sum())
+    season.plan(next_day)
+    first, second = (
+        paragraphs(day_report(DayFacts.of_season(season, on), Units())) for on in (BEGINS, next_day)
+    )
+    later = f"in the shift that began on 2026-04-06, {k} more plants were inspected, 1 found"
+    held = f"Stops planned: {n}; done: {n}; left out: 0; added: 0."
+    assert first[:3] == [
+        f"Worked on 2026-04-06: {n - k} plants inspected, 0 found infested.",
+        f"After midnight, {later} infested: dated 2026-04-07.",
+        f"Of the shift that begins on 2026-04-06: {held}",
+    ]
+    assert second[:2] == [
+        f"Worked on 2026-04-07: {k} plants inspected, 1 found infested.",
+        f"{k} of them were inspected after midnight, in the shift that began on 2026-04-06.",
+    ]
+    assert second[2].startswith("Of the shift that begins on 2026-04-07: Stops planned: ")
+    # a plan whose shift has not begun was not worked
+    (said,) = (one for one in said_of(season, next_day) if one.startswith("On 1 day planned and"))
+    assert said.endswith(held)
+
+
+def said_of(season, on):
+    """Return the paragraphs of a season's report."""
+    sheets = season_report(season, on, Units()).sheets
+    return [one.text for sheet in sheets for one in sheet.blocks if isinstance(one, Paragraph)]
 
 
 def test_the_route_of_a_day_on_which_several_are_out_is_said_to_be_nobodys(done):

@@ -227,9 +227,7 @@ def _entry(content: str, mark: str, *, is_ours: bool = True) -> LogEntry:
     what = said["what"]
     inner = what.get("theirs", ()) if is_ours else ()
     theirs = tuple(_entry(one["entry"], one["digest"], is_ours=False) for one in inner)
-    return LogEntry(
-        said["entry"], said["at"], said["kind"], said["who"], what, mark, theirs=theirs
-    )
+    return LogEntry(said["entry"], said["at"], said["kind"], said["who"], what, mark, theirs=theirs)
 
 
 def _numbered_now(log: list[LogEntry]) -> tuple[LogEntry, ...]:

@@ -55,7 +55,7 @@ SETTINGS, SETTING_COLUMNS = "Settings", ("what", "value", "where from")
 
 # -- the day
 DAY_TITLE = "Day of {day}"
-DAY_SHEET = "The day's work"
+DAY_SHEET, DAY_SHEET_OF = "The day's work", "The day's work: {who}"
 PLANTS_TO_INSPECT, OF_PLANTS = "Plants to inspect", "of {n:,}"
 TEAM = "Team"
 DAY_OF = "The route is that of {who}; the others of the team have their own."

@@ -24,7 +24,7 @@ from fieldmon.reports.content import (
     Table,
     TickList,
 )
-from fieldmon.reports.day import DayFacts, day_report, which
+from fieldmon.reports.day import DayFacts, day_of_each, day_report, which
 from fieldmon.reports.pdf import pdf_bytes
 from fieldmon.reports.season import season_report
 from fieldmon.reports.sentences import headline
@@ -382,6 +382,18 @@ def test_a_team_s_day_names_who_worked_and_how_and_says_no_times_that_nobody_dro
     assert rows["\u2068R1\u2069: hours, seconds at a plant"] == "1 h, 40 s"
     assert rows["\u2068Ann\u2069: hours, seconds at a plant"] == "0.5 h, 20 s"
     assert "Working hours" not in rows
+    # below it each has a page, with hours and times
+    each = DayFacts.each_of_season(of_a_team, BEGINS, BEGINS + timedelta(days=1))
+    made = day_of_each(each, Units())
+    assert [sheet.heading for sheet in made.sheets] == [
+        "The day's work", "The day's work: \u2068R1\u2069", "The day's work: \u2068Ann\u2069",
+    ]  # fmt: skip
+    assert sum(facts.inspected for facts in each[1:]) == each[0].inspected == each[0].held.done
+    for facts in each[1:]:
+        alone = day_report(facts, Units())
+        assert facts.held.done == facts.inspected == len(facts.results)
+        assert "Hours" in figures(alone)
+        assert "–" not in {row[1] for row in table(alone, "Stops by row, in order").rows}
 
 
 def test_a_day_of_several_without_a_team_is_nobodys_drive_and_counts_a_plant_once(tmp_path):
@@ -407,7 +419,13 @@ def test_a_day_of_several_without_a_team_is_nobodys_drive_and_counts_a_plant_onc
 
 
 def test_the_day_ahead_of_a_team_says_whose_route_it_is(of_a_team):
-    report = day_report(DayFacts.of_season(of_a_team, BEGINS + timedelta(days=1)), Units())
+    report, other = (
+        day_report(facts, Units())
+        for facts in DayFacts.each_of_season(of_a_team, BEGINS + timedelta(days=1))
+    )
+    assert "The route is that of \u2068Ann\u2069; the others of the team" in " ".join(
+        paragraphs(other)
+    )
     leads = [block.text for block in report.sheets[0].blocks if isinstance(block, Paragraph)]
     assert "The route is that of \u2068R1\u2069; the others of the team have their own." in leads
     assert "Hours" in figures(report)

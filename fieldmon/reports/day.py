@@ -375,7 +375,9 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
         # a plant that was come to twice is one
         figure(len(np.unique(route.plant))), worded(words.OF_PLANTS, n=n),
     )  # fmt: skip
+    pause_s = _between_shifts_s(facts)
     hours = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
+    hours = hours if len(route) and not pause_s else ""
     ahead = KeyFigure(
         words.FINDS, estimate(route.expected_finds), _of_infested(facts),
     )  # fmt: skip
@@ -389,11 +391,18 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     return KeyFigures(
         (
             inspected,
-            KeyFigure(words.TIME, hours_figure(route.end_s / 3600), hours if len(route) else ""),
+            KeyFigure(words.TIME, hours_figure((route.end_s - pause_s) / 3600), hours),
             KeyFigure(words.DRIVE, units.metres(route.drive_m)),
             done if facts.worked else ahead,
         )
     )  # fmt: skip
+
+
+def _between_shifts_s(facts: DayFacts) -> float:
+    """Return how long nobody worked between two shifts of one date; 0: one alone was worked."""
+    arrive_s = facts.route.arrive_s
+    is_of_two = facts.worked and 0 < facts.before < facts.inspected and len(arrive_s) > 1
+    return float(np.diff(arrive_s).max()) if is_of_two else 0.0
 
 
 def _of_infested(facts: DayFacts) -> str:

@@ -342,6 +342,16 @@ def test_each_page_of_a_night_shift_says_which_shift_its_numbers_are_of(tmp_path
     # a plan whose shift has not begun was not worked
     (said,) = (one for one in said_of(season, next_day) if one.startswith("On 1 day planned and"))
     assert said.endswith(held)
+    # hours are those of both shifts of one date, without the day between them
+    again = np.setdiff1d(np.arange(len(season.plot.grid)), plants)[:10].astype(np.int32)
+    second = 23.5 * 3600 + np.arange(1, 11) * 120.0
+    on = np.datetime64(next_day)
+    season.record(Inspections.of(again, np.zeros(10, np.int8), on, second=second), "next")
+    over = DayFacts.of_season(season, next_day, next_day + timedelta(days=1))
+    both = figures(day_report(over, Units()))["Hours"]
+    least_h = (float(until[-1]) - 86400 + 1200) / 3600  # and the way back to the gate
+    assert least_h <= float(both.value) <= least_h + 0.1
+    assert not both.note
 
 
 def said_of(season, on):

@@ -166,7 +166,7 @@ def _each(values: NDArray[np.float64], said: Callable[[float], object]) -> list[
 def log_table(season: OpenSeason) -> Table:
     """Return a line for each entry of the log, and below a merge those of the copy.
 
-    Of these `entry` is the merge's number, and `copy_entry` the one that they have in the copy.
+    Of these the entry is the merge's number; the last column has the one that they have there.
     """
     return _by_column(
         {

@@ -74,6 +74,7 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         otherwise=() if season is None else contradiction_lines(
             season.inspections.on(choices.on), season.plot.grid, words.isolated
         ),
+        day=choices.on,
         past_midnight=(0, 0) if season is None else plants_past_midnight(season, choices.on),
         before=0 if season is None
         else plants_past_midnight(season, choices.on - timedelta(days=1))[0],

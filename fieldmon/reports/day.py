@@ -133,6 +133,9 @@ class DayFacts:
         of these: they are dated the next day, and not among `inspected` and `found`.
     before
         How many of those inspected that day were so in the shift of the day before.
+    day
+        The day; None: that on which the route begins. What is left of a shift may begin after
+        midnight.
     """
 
     name: str
@@ -159,6 +162,12 @@ class DayFacts:
     otherwise: tuple[Worded, ...] = ()
     past_midnight: tuple[int, int] = (0, 0)
     before: int = 0
+    day: date | None = None
+
+    @property
+    def on(self) -> date:
+        """The day that it is about."""
+        return self.begins.date() if self.day is None else self.day
 
     @classmethod
     def of_season(
@@ -205,6 +214,7 @@ class DayFacts:
                 ),
                 past_midnight=plants_past_midnight(season, on, who),
                 before=plants_past_midnight(season, on - timedelta(days=1), who)[0],
+                day=on,
             )  # fmt: skip
 
     @classmethod
@@ -274,9 +284,8 @@ def results_on(season: Season, on: date) -> dict[int, int]:
 
 def day_report(facts: DayFacts, units: Units) -> Report:
     """Return the report of a day."""
-    on = facts.begins.date()
-    title = worded(words.DAY_TITLE, day=units.day(on))
-    return Report(facts.name, title, on, (_sheet(facts, units, words.DAY_SHEET),))
+    title = worded(words.DAY_TITLE, day=units.day(facts.on))
+    return Report(facts.name, title, facts.on, (_sheet(facts, units, words.DAY_SHEET),))
 
 
 def day_of_each(each: Sequence[DayFacts], units: Units) -> Report:
@@ -314,7 +323,7 @@ def _sheet(facts: DayFacts, units: Units, heading: str) -> Sheet:
 
 
 def _leads(facts: DayFacts, units: Units) -> list[str]:
-    day = units.day(facts.begins.date())
+    day = units.day(facts.on)
     if facts.missed:
         planned = 0 if facts.held is None else facts.held.planned
         of_plan = [worded(words.MISSED_PLAN, planned=planned)] * bool(planned)
@@ -343,7 +352,7 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
 
 def _other_shifts(facts: DayFacts, units: Units) -> list[str]:
     """Return what is of another date than its shift: a plan is of a shift, results of a date."""
-    on, said = facts.begins.date(), list[str]()
+    on, said = facts.on, list[str]()
     if facts.before:
         day = units.day(on - timedelta(days=1))
         said.append(worded(words.OF_SHIFT_BEFORE, day=day, n=facts.before))
@@ -376,7 +385,7 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
         figure(len(np.unique(route.plant))), worded(words.OF_PLANTS, n=n),
     )  # fmt: skip
     pause_s = _between_shifts_s(facts)
-    hours = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
+    hours: str = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
     hours = hours if len(route) and not pause_s else ""
     ahead = KeyFigure(
         words.FINDS, estimate(route.expected_finds), _of_infested(facts),

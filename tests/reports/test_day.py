@@ -339,6 +339,10 @@ def test_each_page_of_a_night_shift_says_which_shift_its_numbers_are_of(tmp_path
         f"{k} of them were inspected after midnight, in the shift that began on 2026-04-06.",
     ]
     assert second[2].startswith("Of the shift that begins on 2026-04-07: Stops planned: ")
+    # what is left of a shift may begin after midnight: it is the page of the same day
+    late_begin = datetime.combine(next_day, time(0, 40))
+    left = replace(DayFacts.of_season(season, BEGINS), begins=late_begin)
+    assert day_report(left, Units()).on == BEGINS
     # a plan whose shift has not begun was not worked
     (said,) = (one for one in said_of(season, next_day) if one.startswith("On 1 day planned and"))
     assert said.endswith(held)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import timedelta
 from typing import TYPE_CHECKING
 
 from fieldmon.io.import_report import Severity
@@ -12,6 +13,7 @@ from fieldmon.reports.certification import certification_report
 from fieldmon.reports.day import (
     DayFacts,
     day_report,
+    plants_past_midnight,
     results_on,
     treated_on,
     was_missed,
@@ -72,6 +74,10 @@ def to_come(choices: Choices) -> Callable[[], Report]:
         otherwise=() if season is None else contradiction_lines(
             season.inspections.on(choices.on), season.plot.grid, words.isolated
         ),
+        day=choices.on,
+        past_midnight=(0, 0) if season is None else plants_past_midnight(season, choices.on),
+        before=0 if season is None
+        else plants_past_midnight(season, choices.on - timedelta(days=1))[0],
     )  # fmt: skip
     units, of_paper = choices.units.of_library, language.for_reports(language.current())
     on = choices.on

@@ -43,7 +43,11 @@ class ReportOptions:
     ] = Path("report.pdf")
     on: Annotated[
         str | None,
-        typer.Option("--date", help="Report this day on one page, YYYY-MM-DD; else the season."),
+        typer.Option(
+            "--date",
+            help="Report this day, YYYY-MM-DD, on one page, or on one for each of a team; else the "
+            "season.",
+        ),
     ] = None
     until: Annotated[
         str | None,
@@ -118,11 +122,11 @@ def _certified(seasons: list[Season], until: str | None, units: Units) -> Report
 
 def _made(season: Season, on: str | None, until: str | None, units: Units) -> Report:
     """Return the report of a day, or of the season."""
-    from fieldmon.reports.day import DayFacts, day_report
+    from fieldmon.reports.day import DayFacts, day_of_each
     from fieldmon.reports.season import season_report
 
     asked = day(on)
     if asked is not None:
         today = day_on(season.plot.field, None)
-        return day_report(DayFacts.of_season(season, asked, today), units)
+        return day_of_each(DayFacts.each_of_season(season, asked, today), units)
     return season_report(season, default_date(season, day(until, "--until"), "--until"), units)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -22,8 +23,9 @@ from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.estimates.last_days import default_date
 from fieldmon.monitoring.estimates.verifying import check_against_log
 from fieldmon.monitoring.inspecting.known_inspections import corrected_by
-from fieldmon.monitoring.merging.other_seasons import called_apart
+from fieldmon.monitoring.merging.other_seasons import by_plot, called_apart, of_one_plot
 from fieldmon.monitoring.treating.cautions import groups, label_of, waits
+from fieldmon.plot.local_clock import local_clock
 from fieldmon.plot.named_rows import place_in_words
 from fieldmon.reports import words
 from fieldmon.reports.content import (
@@ -36,6 +38,7 @@ from fieldmon.reports.content import (
     Sheet,
     Table,
 )
+from fieldmon.reports.sentences import changed_later
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -96,6 +99,13 @@ class _PlotRecord:
     def name(self) -> str:
         return words.isolated(self.called)
 
+    @cached_property
+    def all_told(self) -> list[LogEntry]:
+        """The entries of the log and of copies that were merged, as they were written."""
+        both = [one for entry in self.log for one in (*entry.theirs, entry)]
+        # of one log they are in order, whatever clocks showed
+        return sorted(both, key=lambda one: one.at) if len(both) > len(self.log) else both
+
     def harvest_from(self, first: date | None) -> str:
         """Return from when on harvest is allowed after a treatment; empty: nobody said.
 
@@ -118,7 +128,7 @@ class _PlotRecord:
         day, treated = str(one.on), False
         before = max((str(other.on) for other in self.treatments if other.on < one.on), default="")
         said: list[dict[str, Any]] = []
-        for entry in self.log:
+        for entry in self.all_told:
             on = entry.what.get("date", "")
             if entry.kind == "treated":
                 treated |= on == day
@@ -207,9 +217,10 @@ def _summary(records: list[_PlotRecord]) -> Iterator[tuple[Block, ...]]:
     n = sum(len(one.treatments) for one in records)
     seen = [one.inspected() for one in records]
     area_ha = sum(t.place.area_ha or 0.0 for one in records for t in one.treatments)
+    n_plots = len(by_plot(one.season for one in records))
     lead = worded(
         words.CERT_LEAD,
-        treatments=counted(n, "treatment"), plots=counted(len(records), "plot"),
+        treatments=counted(n, "treatment"), plots=counted(n_plots, "plot"),
         inspections=counted(sum(k for k, _ in seen), "inspection"),
         finds=counted(sum(k for _, k in seen), "find"),
     )  # fmt: skip
@@ -229,6 +240,8 @@ def _summary(records: list[_PlotRecord]) -> Iterator[tuple[Block, ...]]:
     yield from _listed(words.CERT_CAUTIONS, _cautions(records), words.CERT_CAUTIONS_NONE)
     yield from _listed(words.CERT_UNSAID, _unsaid(records), words.CERT_UNSAID_NONE)
     yield from _listed(words.CERT_LOG, [_log(one) for one in records], "")
+    if changed := _changed_later(records):
+        yield from _listed(words.CHANGED_LATER, changed, "")
     yield (Listing(words.MEANING, words.CERT_MEANINGS),)
 
 
@@ -272,9 +285,13 @@ def _parts(table: Table, most: int) -> Iterator[Table]:
 
 
 def _cautions(records: list[_PlotRecord]) -> list[str]:
-    """Return what to beware of; treatments of one day may have the same warning: it stands once."""
+    """Return what to beware of; treatments of one day may have the same warning: it stands once.
+
+    That several seasons are of one plot comes first: what was done there counts in each.
+    """
+    twice = of_one_plot((one.season for one in records), words.isolated)
     said = (_of_plot(one, beware.sentence, records) for one in records for beware in one.cautions)
-    return [*dict.fromkeys(said)]
+    return [*twice, *dict.fromkeys(said)]
 
 
 def _of_plot(one: _PlotRecord, said: str, records: list[_PlotRecord]) -> str:
@@ -313,6 +330,15 @@ def _log(one: _PlotRecord) -> str:
         words.CERT_LOG_HOLDS, plot=one.name, n=len(one.log),
         since=one.units.day(one.log[0].at[:10]), digest=one.log[-1].digest,
     )  # fmt: skip
+
+
+def _changed_later(records: list[_PlotRecord]) -> list[str]:
+    """Return what was taken back and corrected, by whom and when, here or in a copy."""
+    return [
+        _of_plot(one, said, records)
+        for one in records
+        for said in changed_later(one.log, local_clock(one.season.plot.field), one.units)
+    ]
 
 
 # -- the applications

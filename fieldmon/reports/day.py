@@ -8,14 +8,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import chance_figure, estimate, figure, hours_figure, runs, worded
+from fieldmon.compute.wording import (
+    chance_figure,
+    estimate,
+    figure,
+    hours_figure,
+    joined,
+    runs,
+    worded,
+)
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.changes.earlier_settings import settings_on
 from fieldmon.monitoring.days.day_ahead import WorkPart, plan_ahead
+from fieldmon.monitoring.days.worked_route import past_midnight
+from fieldmon.monitoring.estimates.last_days import default_date
 from fieldmon.monitoring.estimates.plant_states import hot_spots_on, shown_apart
 from fieldmon.monitoring.inspecting.contradictions import contradiction_lines
+from fieldmon.monitoring.settings.shift_work import made_by
 from fieldmon.monitoring.treating.cautions import label_of, waits
 from fieldmon.monitoring.treating.closures import closed_in_words
 from fieldmon.planning.members import person_key
@@ -117,6 +128,14 @@ class DayFacts:
         ``(n,)`` other finds, which only the records of before a season tell of; None: none.
     otherwise
         Who says what of each plant that was both clean and found that day.
+    past_midnight
+        How many plants were inspected after midnight in the shift of that day, and found infested
+        of these: they are dated the next day, and not among `inspected` and `found`.
+    before
+        How many of those inspected that day were so in the shift of the day before.
+    day
+        The day; None: that on which the route begins. What is left of a shift may begin after
+        midnight.
     """
 
     name: str
@@ -141,47 +160,92 @@ class DayFacts:
     skipped: tuple[Worded, ...] = ()
     recorded: NDArray[np.bool_] | None = None
     otherwise: tuple[Worded, ...] = ()
+    past_midnight: tuple[int, int] = (0, 0)
+    before: int = 0
+    day: date | None = None
+
+    @property
+    def on(self) -> date:
+        """The day that it is about."""
+        return self.begins.date() if self.day is None else self.day
 
     @classmethod
-    def of_season(cls, season: Season, on: date, today: date | None = None) -> DayFacts:
+    def of_season(
+        cls, season: Season, on: date, today: date | None = None, who: str | None = None
+    ) -> DayFacts:
         """Return what a season knows of a day; nothing is kept by it.
 
-        `today` as in `day_was_worked`.
+        `today` as in `day_was_worked`. `who` is whose day it is, of several; None: that of all or,
+        of a team ahead, of its first.
         """
         with season.store.one_moment():
             first = "".join([one.name for one in season.planned_by(on).team][:1])
-            plan = plan_ahead(season, on, WorkPart(name=first))
+            whose = first if who is None else who
+            plan = plan_ahead(season, on, WorkPart(name=whose))
             route = plan.route
-            worked = day_was_worked(season, on, route, today)
+            told = made_by(season.history.on(season.settings.day(on)), who)
+            worked = bool(len(told)) and day_was_worked(season, on, route, today)
             settings = settings_on(season, on) if worked else season.planned_by(on)
             day = settings.day(on)
-            shown = worked_route(season, on) if worked else route
+            shown = worked_route(season, on, who) if worked else route
             begins = datetime.combine(on, settings.starts)
             if shown.notes is not None and shown.notes.start is not None:
                 begins = shown.notes.start
             names = tuple(one.name for one in settings.team)
             state, recorded = shown_apart(season.history, day)
-            done = season.history.on(day).inspected
+            done = told.inspected
             return cls(
                 season.plot.field.name, begins,
                 shown, season.evening(on), state,
                 hot_spots_on(season.history, day),
                 WorkSettings.of_season(season, on, worked=worked).with_learnt(season, on),
                 len(np.unique(done.plant)), np.unique(done.plant[done.result == FOUND]),
-                worked, results_on(season, on), season.planned_and_done(on),
-                who="" if worked else "".join(names[:1]),
-                team=who_came(season, on, names) if worked else (),
+                worked, dict(zip(told.plant.tolist(), told.result.tolist(), strict=True)),
+                season.planned_and_done(on, who),
+                who=who or ("" if worked else first),
+                team=who_came(season, on, names) if worked and who is None else (),
                 missed=was_missed(season, on, today),
                 treatments=treated_on(season, on), labels=season.labels(),
                 infested=float(season.evening(on)[shown.plant].sum()),
-                closed=() if worked else season.closed(
-                    on, "".join(names[:1]), plan.scene.seconds_left
-                ),
+                closed=() if worked else season.closed(on, whose, plan.scene.seconds_left),
                 skipped=() if worked else left_out_in_words(plan.scene, route),
                 recorded=recorded, otherwise=contradiction_lines(
                     season.inspections.on(on), season.plot.grid, words.isolated
                 ),
+                past_midnight=plants_past_midnight(season, on, who),
+                before=plants_past_midnight(season, on - timedelta(days=1), who)[0],
+                day=on,
             )  # fmt: skip
+
+    @classmethod
+    def each_of_season(
+        cls, season: Season, on: date, today: date | None = None
+    ) -> tuple[DayFacts, ...]:
+        """Return a day as `of_season` does and, where several work, that of each of them.
+
+        Of a day ahead that of each alone: no route is that of all.
+        """
+        with season.store.one_moment():
+            whole = cls.of_season(season, on, today)
+            team = tuple(one.name for one in season.planned_by(on).team)
+            came = {person_key(name): name for name in whole.team if name != NO_ROW}
+            out = {person_key(name): name for name in team} | came
+            if whole.missed or len(out) < 2:
+                return (whole,)
+            is_over = on < default_date(season) or (today is not None and on < today)
+            each = [cls.of_season(season, on, today, name) for name in out.values()]
+            shown = [one for one in each if one.worked or (len(one.route) and not is_over)]
+            together = [whole] if whole.worked or not shown else []
+            return (*together, *shown)
+
+
+def plants_past_midnight(season: Season, on: date, who: str | None = None) -> tuple[int, int]:
+    """Return how many plants were inspected after midnight in a day's shift, and found of these.
+
+    By one of several; None: by all.
+    """
+    done = made_by(past_midnight(season, on), who).inspected
+    return len(np.unique(done.plant)), len(np.unique(done.plant[done.result == FOUND]))
 
 
 def was_missed(season: Season, on: date, today: date | None) -> bool:
@@ -220,6 +284,23 @@ def results_on(season: Season, on: date) -> dict[int, int]:
 
 def day_report(facts: DayFacts, units: Units) -> Report:
     """Return the report of a day."""
+    title = worded(words.DAY_TITLE, day=units.day(facts.on))
+    return Report(facts.name, title, facts.on, (_sheet(facts, units, words.DAY_SHEET),))
+
+
+def day_of_each(each: Sequence[DayFacts], units: Units) -> Report:
+    """Return the report of a day with a page of each of several who work, see `each_of_season`."""
+    sheets = tuple(
+        _sheet(
+            one, units,
+            worded(words.DAY_SHEET_OF, who=words.isolated(one.who)) if one.who else words.DAY_SHEET,
+        )
+        for one in each
+    )  # fmt: skip
+    return replace(day_report(each[0], units), sheets=sheets)
+
+
+def _sheet(facts: DayFacts, units: Units, heading: str) -> Sheet:
     blocks: list[Block] = [
         *(Paragraph(said, lead=True) for said in _leads(facts, units)),
         *([] if facts.missed else [_figures(facts, units)]),
@@ -238,13 +319,11 @@ def day_report(facts: DayFacts, units: Units) -> Report:
         blocks.append(NoteLines(words.NOTES))
     if has_route:
         blocks.append(_every_stop(facts))
-    on = facts.begins.date()
-    title = worded(words.DAY_TITLE, day=units.day(on))
-    return Report(facts.name, title, on, (Sheet(words.DAY_SHEET, tuple(blocks)),))
+    return Sheet(heading, tuple(blocks))
 
 
 def _leads(facts: DayFacts, units: Units) -> list[str]:
-    day = units.day(facts.begins.date())
+    day = units.day(facts.on)
     if facts.missed:
         planned = 0 if facts.held is None else facts.held.planned
         of_plan = [worded(words.MISSED_PLAN, planned=planned)] * bool(planned)
@@ -252,9 +331,12 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
     said: list[str] = []
     if facts.inspected:
         numbers = {"inspected": facts.inspected, "found": len(facts.found)}
-        said.append(worded(words.WORKED, day=day, **numbers))
+        said += [worded(words.WORKED, day=day, **numbers), *_other_shifts(facts, units)]
         if facts.held is not None:
-            said.append(worded(words.PLANNED_DONE, **held_in_words([facts.held])))
+            held = worded(words.PLANNED_DONE, **held_in_words([facts.held]))
+            if facts.before or facts.past_midnight[0]:
+                held = joined(" ", (worded(words.OF_SHIFT, day=day), held))
+            said.append(held)
     if not (facts.worked and said):
         said.append(headline(facts.route, day))
     if facts.who:
@@ -265,6 +347,20 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
         grid = facts.route.aisles.grid
         said += closed_in_words(facts.closed, grid, units)
         said += facts.skipped
+    return said
+
+
+def _other_shifts(facts: DayFacts, units: Units) -> list[str]:
+    """Return what is of another date than its shift: a plan is of a shift, results of a date."""
+    on, said = facts.on, list[str]()
+    if facts.before:
+        day = units.day(on - timedelta(days=1))
+        said.append(worded(words.OF_SHIFT_BEFORE, day=day, n=facts.before))
+    inspected, found = facts.past_midnight
+    if inspected:
+        following = units.day(on + timedelta(days=1))
+        of_shift = {"day": units.day(on), "inspected": inspected, "found": found}
+        said.append(worded(words.PAST_MIDNIGHT, next=following, **of_shift))
     return said
 
 
@@ -288,7 +384,9 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
         # a plant that was come to twice is one
         figure(len(np.unique(route.plant))), worded(words.OF_PLANTS, n=n),
     )  # fmt: skip
-    hours = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
+    pause_s = _between_shifts_s(facts)
+    hours: str = worded(words.FROM_TO, start=_clock(facts, 0.0), end=_clock(facts, route.end_s))
+    hours = hours if len(route) and not pause_s else ""
     ahead = KeyFigure(
         words.FINDS, estimate(route.expected_finds), _of_infested(facts),
     )  # fmt: skip
@@ -302,11 +400,18 @@ def _figures(facts: DayFacts, units: Units) -> KeyFigures:
     return KeyFigures(
         (
             inspected,
-            KeyFigure(words.TIME, hours_figure(route.end_s / 3600), hours if len(route) else ""),
+            KeyFigure(words.TIME, hours_figure((route.end_s - pause_s) / 3600), hours),
             KeyFigure(words.DRIVE, units.metres(route.drive_m)),
             done if facts.worked else ahead,
         )
     )  # fmt: skip
+
+
+def _between_shifts_s(facts: DayFacts) -> float:
+    """Return how long nobody worked between two shifts of one date; 0: one alone was worked."""
+    arrive_s = facts.route.arrive_s
+    is_of_two = facts.worked and 0 < facts.before < facts.inspected and len(arrive_s) > 1
+    return float(np.diff(arrive_s).max()) if is_of_two else 0.0
 
 
 def _of_infested(facts: DayFacts) -> str:

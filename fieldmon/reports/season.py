@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import chance_figure, counted, estimate, figure, joined, worded
+from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.infestation.records import PRESENT
 from fieldmon.monitoring import DayFigures
@@ -45,7 +46,7 @@ from fieldmon.reports.day import (
     which,
 )
 from fieldmon.reports.maps import PlotMap
-from fieldmon.reports.sentences import hot_spot_meanings
+from fieldmon.reports.sentences import changed_later, hot_spot_meanings
 from fieldmon.reports.settings_rows import (
     WorkSettings,
     assumed_sentence,
@@ -269,7 +270,8 @@ def _went(facts: _Facts) -> Iterator[Block]:
     for title, chart in charts.items():
         yield Illustration(title, worded(words.CHART_ALT, title=title), chart.draw, (28.0, 46.0))
     plans = [facts.season.planned_and_done(one.on) for one in facts.days if one.inspected_today]
-    if held := [one for one in plans if one is not None]:
+    # of a date on which only the shift of the day before went on, no plan was worked
+    if held := [one for one in plans if one is not None and one.done + one.added]:
         days = counted(len(held), "day")
         said = worded(words.PLANNED_DONE, **held_in_words(held))
         yield Paragraph(joined(" ", (worded(words.PLANNED_DAYS, days=days), said)))
@@ -335,6 +337,10 @@ def _hot_and_found(facts: _Facts) -> Iterator[Block]:
 
 def _goes_by(facts: _Facts) -> Iterator[Block]:
     yield _batches(facts)
+    if changed := _changed_later(facts):
+        # more than the last ones have no room
+        rest = _left_out(changed, _MOST_CHANGES, words.CHANGED_LATER_REST)
+        yield Listing(words.CHANGED_LATER, (*changed[-_MOST_CHANGES:], *rest))
     if otherwise := facts.season.other_detections(facts.on):
         rest = _left_out(otherwise, _MOST_OTHERWISE, words.REST)
         yield Listing("", (*(one.sentence() for one in otherwise[:_MOST_OTHERWISE]), *rest))
@@ -385,6 +391,15 @@ def _batches(facts: _Facts) -> Block:
         words.BATCHES, words.BATCH_COLUMNS, tuple(rows), (0.2, 0.24, 0.32, 0.14, 0.1),
         rest=words.BATCHES_REST, left=(0, 1, 2, 3),
     )  # fmt: skip
+
+
+def _changed_later(facts: _Facts) -> list[str]:
+    """Return what was taken back and corrected, as the log says; why, where it cannot be read."""
+    try:
+        log = facts.season.log()
+    except FieldmonError as changed:
+        return [str(changed)]
+    return [*changed_later(log, local_clock(facts.season.plot.field), facts.units)]
 
 
 def _counts(one: Batch, kind: str, said: BatchContents | None) -> str:

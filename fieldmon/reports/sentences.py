@@ -2,22 +2,38 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.compute.wording import Worded, counted, estimate, hours_figure, joined, worded
+from fieldmon.compute.wording import (
+    KeptText,
+    Worded,
+    counted,
+    estimate,
+    hours_figure,
+    joined,
+    worded,
+)
 from fieldmon.plot.grid import plant_numbers, row_ends
 from fieldmon.reports import words
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
+    from fieldmon.compute.units import Units
     from fieldmon.infestation.hotspots import HotSpots
+    from fieldmon.monitoring import LogEntry
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.local_clock import LocalClock
 
 _MOST_SPOTS = 8
+# of the corrections of one time
+_MOST_CORRECTED = 3
 
 
 def headline(route: Route, day: str) -> str:
@@ -94,3 +110,25 @@ def _place(grid: PlantGrid, plants: NDArray[np.intp]) -> Worded:
     if first == last:
         return worded(words.HOT_ROW, first=first, low=low, high=high)
     return worded(words.HOT_ROWS, first=first, last=last, low=low, high=high)
+
+
+def changed_later(log: Iterable[LogEntry], clock: LocalClock, units: Units) -> list[Worded]:
+    """Return a sentence for each time that something was taken back or corrected, by whom and when.
+
+    What was done in a copy that was merged is among them, and said to be.
+    """
+    said = []
+    for entry in log:
+        for one in (entry, *entry.theirs):
+            if one.kind not in ("undone", "corrected"):
+                continue
+            at = clock.at(datetime.fromisoformat(one.at))
+            told = words.CHANGED_LATER_LINE if one is entry else words.CHANGED_LATER_THERE
+            said.append(
+                worded(
+                    told, day=units.day(at.date()), time=f"{at:%H:%M}",
+                    who=words.isolated(one.who) if one.who else words.CERT_NOT_SAID,
+                    said=KeptText(one.sentence(_MOST_CORRECTED)),
+                )
+            )  # fmt: skip
+    return said

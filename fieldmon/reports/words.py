@@ -25,6 +25,14 @@ HEADLINE_NONE = "Nothing to inspect on {day}."
 WORKED = (
     "Worked on {day}: {inspected:,} {inspected:plant|plants} inspected, {found:,} found infested."
 )
+PAST_MIDNIGHT = (
+    "After midnight, in the shift that began on {day}, {inspected:,} more "
+    "{inspected:plant was|plants were} inspected, {found:,} found infested: dated {next}."
+)
+OF_SHIFT_BEFORE = (
+    "{n:,} of them {n:was|were} inspected after midnight, in the shift that began on {day}."
+)
+OF_SHIFT = "Of the shift that begins on {day}:"
 MISSED = "{day} is past, and no inspection of it was recorded."
 OTHERWISE = "Clean and found, of the same plant"
 MISSED_PLAN = "Stops planned: {planned:,}."
@@ -47,7 +55,7 @@ SETTINGS, SETTING_COLUMNS = "Settings", ("what", "value", "where from")
 
 # -- the day
 DAY_TITLE = "Day of {day}"
-DAY_SHEET = "The day's work"
+DAY_SHEET, DAY_SHEET_OF = "The day's work", "The day's work: {who}"
 PLANTS_TO_INSPECT, OF_PLANTS = "Plants to inspect", "of {n:,}"
 TEAM = "Team"
 DAY_OF = "The route is that of {who}; the others of the team have their own."
@@ -131,6 +139,10 @@ SOURCES = {
     "added by another program": "added by another program",
 }  # fmt: skip
 BATCHES_REST = "... and {n} earlier; fieldmon status --batches lists all."
+CHANGED_LATER = "Taken back and corrected"
+CHANGED_LATER_LINE = "{day} {time}, by {who}: {said}"
+CHANGED_LATER_THERE = "{day} {time}, by {who}, in a copy that was merged: {said}"
+CHANGED_LATER_REST = "... and {n} earlier; fieldmon log lists all."
 TREATMENTS = "Treatments"
 TREATMENT_COLUMNS = ("day", "product", "plants", "works on", "harvest from")
 TREATMENTS_NONE = "No treatment was noted."

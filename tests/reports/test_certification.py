@@ -120,6 +120,14 @@ def test_several_seasons_are_one_record(season, tmp_path):
     both = certification_report([season, other], Units())
     assert len(cards(both)) == 13
     said = " ".join(both.words())
+    # one plot is no two, and stands among what to beware of
+    assert "13 treatments on 1 plot; 24 inspections" in said
+    beware = next(
+        block
+        for block in both.sheets[0].blocks
+        if isinstance(block, Listing) and block.title == words.CERT_CAUTIONS
+    )
+    assert "are 2 seasons of one plot: each counts." in beware.sentences[0]
     name = season.plot.field.name
     for file in ("other", season.path.stem):
         assert f"{name} ({file})" in said

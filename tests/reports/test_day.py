@@ -8,7 +8,7 @@ import pytest
 
 from fieldmon.compute.units import Units
 from fieldmon.compute.wording import estimate
-from fieldmon.infestation.inspections import FOUND, SKIPPED, Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import PlannedAndDone
 from fieldmon.monitoring.treating.applications import Application
 from fieldmon.planning.members import TeamMember
@@ -24,8 +24,9 @@ from fieldmon.reports.content import (
     Table,
     TickList,
 )
-from fieldmon.reports.day import DayFacts, day_report, which
+from fieldmon.reports.day import DayFacts, day_of_each, day_report, which
 from fieldmon.reports.pdf import pdf_bytes
+from fieldmon.reports.season import season_report
 from fieldmon.reports.sentences import headline
 from tests.monitoring.seasons import BEGINS, ROBOT, a_season, some_results
 from tests.reports.reading import MM, one, opened, table, texts
@@ -313,6 +314,56 @@ def test_a_worked_day_is_held_to_its_plan(done, of_worked_day):
     )
 
 
+def test_each_page_of_a_night_shift_says_which_shift_its_numbers_are_of(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", starts=time(23, 30))
+    plants = season.plan(BEGINS).route.plant
+    until = 23.5 * 3600 + np.arange(1, len(plants) + 1) * 1.4 * 3600 / len(plants)
+    late = until >= 86400
+    dates = np.datetime64(BEGINS) + late
+    found = np.where(np.arange(len(plants)) == len(plants) - 1, FOUND, CLEAN)
+    season.record(Inspections.of(plants, found, dates, second=until % 86400), "night")
+    next_day, n, k = BEGINS + timedelta(days=1), len(plants), int(late.sum())
+    season.plan(next_day)
+    first, second = (
+        paragraphs(day_report(DayFacts.of_season(season, on), Units())) for on in (BEGINS, next_day)
+    )
+    later = f"in the shift that began on 2026-04-06, {k} more plants were inspected, 1 found"
+    held = f"Stops planned: {n}; done: {n}; left out: 0; added: 0."
+    assert first[:3] == [
+        f"Worked on 2026-04-06: {n - k} plants inspected, 0 found infested.",
+        f"After midnight, {later} infested: dated 2026-04-07.",
+        f"Of the shift that begins on 2026-04-06: {held}",
+    ]
+    assert second[:2] == [
+        f"Worked on 2026-04-07: {k} plants inspected, 1 found infested.",
+        f"{k} of them were inspected after midnight, in the shift that began on 2026-04-06.",
+    ]
+    assert second[2].startswith("Of the shift that begins on 2026-04-07: Stops planned: ")
+    # what is left of a shift may begin after midnight: it is the page of the same day
+    late_begin = datetime.combine(next_day, time(0, 40))
+    left = replace(DayFacts.of_season(season, BEGINS), begins=late_begin)
+    assert day_report(left, Units()).on == BEGINS
+    # a plan whose shift has not begun was not worked
+    (said,) = (one for one in said_of(season, next_day) if one.startswith("On 1 day planned and"))
+    assert said.endswith(held)
+    # hours are those of both shifts of one date, without the day between them
+    again = np.setdiff1d(np.arange(len(season.plot.grid)), plants)[:10].astype(np.int32)
+    second = 23.5 * 3600 + np.arange(1, 11) * 120.0
+    on = np.datetime64(next_day)
+    season.record(Inspections.of(again, np.zeros(10, np.int8), on, second=second), "next")
+    over = DayFacts.of_season(season, next_day, next_day + timedelta(days=1))
+    both = figures(day_report(over, Units()))["Hours"]
+    least_h = (float(until[-1]) - 86400 + 1200) / 3600  # and the way back to the gate
+    assert least_h <= float(both.value) <= least_h + 0.1
+    assert not both.note
+
+
+def said_of(season, on):
+    """Return the paragraphs of a season's report."""
+    sheets = season_report(season, on, Units()).sheets
+    return [one.text for sheet in sheets for one in sheet.blocks if isinstance(one, Paragraph)]
+
+
 def test_the_route_of_a_day_on_which_several_are_out_is_said_to_be_nobodys(done):
     alone = replace(done, worked=False, held=PlannedAndDone(9, 5, 1, 2.0))
     several = replace(alone, held=PlannedAndDone(9, 5, 1, 4.0, people=2))
@@ -345,6 +396,18 @@ def test_a_team_s_day_names_who_worked_and_how_and_says_no_times_that_nobody_dro
     assert rows["\u2068R1\u2069: hours, seconds at a plant"] == "1 h, 40 s"
     assert rows["\u2068Ann\u2069: hours, seconds at a plant"] == "0.5 h, 20 s"
     assert "Working hours" not in rows
+    # below it each has a page, with hours and times
+    each = DayFacts.each_of_season(of_a_team, BEGINS, BEGINS + timedelta(days=1))
+    made = day_of_each(each, Units())
+    assert [sheet.heading for sheet in made.sheets] == [
+        "The day's work", "The day's work: \u2068R1\u2069", "The day's work: \u2068Ann\u2069",
+    ]  # fmt: skip
+    assert sum(facts.inspected for facts in each[1:]) == each[0].inspected == each[0].held.done
+    for facts in each[1:]:
+        alone = day_report(facts, Units())
+        assert facts.held.done == facts.inspected == len(facts.results)
+        assert "Hours" in figures(alone)
+        assert "–" not in {row[1] for row in table(alone, "Stops by row, in order").rows}
 
 
 def test_a_day_of_several_without_a_team_is_nobodys_drive_and_counts_a_plant_once(tmp_path):
@@ -370,7 +433,13 @@ def test_a_day_of_several_without_a_team_is_nobodys_drive_and_counts_a_plant_onc
 
 
 def test_the_day_ahead_of_a_team_says_whose_route_it_is(of_a_team):
-    report = day_report(DayFacts.of_season(of_a_team, BEGINS + timedelta(days=1)), Units())
+    report, other = (
+        day_report(facts, Units())
+        for facts in DayFacts.each_of_season(of_a_team, BEGINS + timedelta(days=1))
+    )
+    assert "The route is that of \u2068Ann\u2069; the others of the team" in " ".join(
+        paragraphs(other)
+    )
     leads = [block.text for block in report.sheets[0].blocks if isinstance(block, Paragraph)]
     assert "The route is that of \u2068R1\u2069; the others of the team have their own." in leads
     assert "Hours" in figures(report)

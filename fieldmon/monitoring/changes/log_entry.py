@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from fieldmon.compute.wording import chance_figure, estimate, filled
+from fieldmon.compute.wording import chance_figure, counted, estimate, filled
 
 #: what batches are numbered now, by their numbers of before; None: nobody knows
 Numbers = dict[int, int | None]
@@ -33,6 +33,9 @@ class LogEntry:
     numbers
         What batches that it names are numbered now, where a merge numbered them anew; None: nobody
         knows, as an earlier version merged.
+    theirs
+        Of a merge, the entries of the other copy that were not known here, as they stand there:
+        numbers of entries and of batches are the copy's.
     """
 
     number: int
@@ -42,6 +45,7 @@ class LogEntry:
     what: dict[str, Any]
     digest: str
     numbers: Numbers = field(default_factory=dict)
+    theirs: tuple[LogEntry, ...] = ()
 
     def sentence(self, most: int | None = None) -> str:
         """Return what happened, in words; of corrections so many at `most`, None: each."""
@@ -62,7 +66,11 @@ class LogEntry:
         told = _SAID[kind]
         if not what.get("source", "?"):  # recorded by a program that named no file
             told = told.removeprefix("{source}: ")
-        said = filled(told, what) + chosen + undone + twice + anew
+        what["came"] = f", {counted(n, 'treatment')}" if (n := what.get("treatments")) else ""
+        back = ""
+        if n := what.get("taken_back"):
+            back = f"; {counted(n, 'inspection')} {'was' if n == 1 else 'were'} taken back there"
+        said = filled(told, what) + back + chosen + undone + twice + anew
         for old, now in self.numbers.items():
             said += f"; batch {old} {f'is batch {now}' if now else 'has another number'} now"
         if self.kind in ("seen", "merged") and (added := what.get("more")):
@@ -105,7 +113,7 @@ _SAID = {
     "changed": "settings: {said}",
     "changed back": "settings, the last change taken back: {said}",
     "labels": "{labels} {labels:label|labels} from {source}",
-    "merged": "another copy of the season taken in: {new} {new:inspection|inspections}, "
+    "merged": "another copy of the season taken in: {new} {new:inspection|inspections}{came}, "
     "{entries} {entries:entry|entries}",
     "saved": "saved from a damaged file",
 }

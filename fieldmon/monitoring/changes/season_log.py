@@ -217,13 +217,17 @@ def numbered_anew(db: sqlite3.Connection) -> dict[int, dict[int, int | None]]:
 
 
 def _read(db: sqlite3.Connection) -> tuple[LogEntry, ...]:
-    made = []
-    for content, mark in db.execute("SELECT entry, digest FROM log ORDER BY fid"):
-        said = json.loads(content)
-        made.append(
-            LogEntry(said["entry"], said["at"], said["kind"], said["who"], said["what"], mark)
-        )
-    return _numbered_now(made)
+    rows = db.execute("SELECT entry, digest FROM log ORDER BY fid")
+    return _numbered_now([_entry(content, mark) for content, mark in rows])
+
+
+def _entry(content: str, mark: str, *, is_ours: bool = True) -> LogEntry:
+    """Return an entry as written; what a copy had merged stands beside its entries, not in them."""
+    said = json.loads(content)
+    what = said["what"]
+    inner = what.get("theirs", ()) if is_ours else ()
+    theirs = tuple(_entry(one["entry"], one["digest"], is_ours=False) for one in inner)
+    return LogEntry(said["entry"], said["at"], said["kind"], said["who"], what, mark, theirs=theirs)
 
 
 def _numbered_now(log: list[LogEntry]) -> tuple[LogEntry, ...]:
@@ -413,11 +417,19 @@ def with_those_taken_in(db: sqlite3.Connection) -> Iterator[tuple[str, str]]:
 
 
 def lines(of: Sequence[LogEntry], clock: LocalClock) -> Iterator[str]:
-    """Yield entries as lines for people, with the times that a clock shows."""
-    for entry in of:
+    """Yield entries as lines for people, with the times that a clock shows.
+
+    Those of a copy that was taken in stand indented below that entry, without a number.
+    """
+
+    def line(entry: LogEntry, number: str) -> str:
         at, who = clock.at(datetime.fromisoformat(entry.at)), entry.who or "-"
-        head = f"{entry.number:5d}  {at:%Y-%m-%dT%H:%M}  {entry.kind:9}  {who:12}"
-        yield f"{head}  {entry.sentence()}"
+        return f"{number}  {at:%Y-%m-%dT%H:%M}  {entry.kind:9}  {who:12}  {entry.sentence()}"
+
+    for entry in of:
+        yield line(entry, f"{entry.number:5d}")
+        for inner in entry.theirs:
+            yield line(inner, f"{'':7}in the copy:")
     if of:
         n = len(of)
         entries_ = written(n, "entry|entries")

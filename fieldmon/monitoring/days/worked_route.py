@@ -15,7 +15,7 @@ from fieldmon.monitoring.changes.earlier_settings import settings_on
 from fieldmon.monitoring.estimates.figures_of_day import believed
 from fieldmon.monitoring.estimates.last_days import default_date
 from fieldmon.monitoring.settings.settings import seconds
-from fieldmon.monitoring.settings.shift_work import Shift, aisles_from, made_by
+from fieldmon.monitoring.settings.shift_work import Besides, Shift, aisles_from, made_by
 from fieldmon.planning.route import route_of
 from fieldmon.planning.workday import Workday
 from fieldmon.plot.travel import GATE, driven_s
@@ -39,6 +39,17 @@ def day_was_worked(season: Season, on: date, ahead: Route, today: date | None = 
     """
     passed = on < default_date(season) or (today is not None and on < today)
     return (not len(ahead) or passed) and bool(len(season.history.on(season.settings.day(on))))
+
+
+def past_midnight(season: Season, on: date) -> Inspections:
+    """Return what was inspected after midnight in the shift of a day: it is dated the next day."""
+    if on < season.settings.begins:
+        return season.inspections.take(slice(0))
+    names = tuple(one.name for one in season.planned_by(on).team)
+    each: tuple[str | Besides, ...] = (*names, Besides(names)) if names else ("",)
+    works = [season.work(on, one) for one in each]
+    rows = np.unique(np.concatenate([one.shifts.past_midnight(one.day) for one in works]))
+    return works[0].shifts.inspections.take(rows)
 
 
 def worked_route(season: Season, on: date, who: str | None = None) -> Route:

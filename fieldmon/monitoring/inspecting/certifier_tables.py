@@ -164,18 +164,23 @@ def _each(values: NDArray[np.float64], said: Callable[[float], object]) -> list[
 
 
 def log_table(season: OpenSeason) -> Table:
-    """Return a line for each entry of the log."""
+    """Return a line for each entry of the log, and below a merge those of the copy.
+
+    Of these the entry is the merge's number; the last column has the one that they have there.
+    """
     return _by_column(
         {
             "plot": season.plot.field.name,
-            "entry": one.number,
+            "entry": entry.number,
             "at_utc": one.at,
             "who": one.who,
             "what": one.kind,
             "said": one.sentence(),
             "digest": one.digest,
+            "copy_entry": None if one is entry else one.number,
         }
-        for one in season.log()
+        for entry in season.log()
+        for one in (entry, *entry.theirs)
     )
 
 

@@ -166,25 +166,30 @@ def own_names(season: OpenSeason) -> tuple[str, str, str, str]:
     return name, file, f"{name} ({file})", f"{name} ({folder}/{file})"
 
 
-def of_one_plot(
-    seasons: Iterable[OpenSeason], named: Callable[[str], str] = str
-) -> tuple[Worded, ...]:
-    """Return a sentence on each plot of which there are several seasons; `named` writes a name."""
+def by_plot(seasons: Iterable[OpenSeason]) -> list[list[OpenSeason]]:
+    """Return the seasons of each plot together: as many lists as there are plots."""
     plots: list[list[tuple[OpenSeason, SeasonGround]]] = []
     for season in seasons:
         here = SeasonGround.of(season)
         same = [plot for plot in plots if any(here.is_that_of(ground) for _, ground in plot)]
         plots = [plot for plot in plots if plot not in same]
         plots.append([*chain.from_iterable(same), (season, here)])
+    return [[season for season, _ in plot] for plot in plots]
+
+
+def of_one_plot(
+    seasons: Iterable[OpenSeason], named: Callable[[str], str] = str
+) -> tuple[Worded, ...]:
+    """Return a sentence on each plot of which there are several seasons; `named` writes a name."""
     return tuple(
         worded(
             "{names} and {last} are {n} seasons of one plot: each counts. If somebody began one of "
             "them a second time, leave it away.",
             names=joined(", ", names), last=last, n=len(same),
         )
-        for same in plots
+        for same in by_plot(seasons)
         if len(same) > 1
-        for *names, last in [[_with_pest(season, named) for season, _ in same]]
+        for *names, last in [[_with_pest(season, named) for season in same]]
     )  # fmt: skip
 
 

@@ -115,6 +115,8 @@ def _log_merged(
         "merged",
         states=states,
         new=taken.merged.new,
+        treatments=taken.merged.treatments,
+        taken_back=taken.merged.taken_back,
         entries=len(told),
         theirs=told,
         moved=taken.merged.moved,

@@ -14,6 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fieldmon.compute.units import Units
 from fieldmon.decisions.labels import ProductLabel
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspections import CLEAN, FOUND
@@ -22,10 +23,13 @@ from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.days.advised import advise
 from fieldmon.monitoring.estimates.verifying import check_against_log
 from fieldmon.monitoring.file import schema
+from fieldmon.monitoring.inspecting.certifier_tables import log_table
 from fieldmon.monitoring.phones.findings import take
 from fieldmon.monitoring.phones.scouts import let_in
 from fieldmon.monitoring.treating import treatments
 from fieldmon.plot.local_clock import LocalClock
+from fieldmon.reports.certification import certification_report
+from fieldmon.reports.season import season_report
 from tests.monitoring.phone import NOW, a_finding, without_records
 from tests.monitoring.seasons import BEGINS, state, three_results
 
@@ -238,17 +242,37 @@ def test_corrections_are_added_and_nothing_is_taken_out(path):
 
 
 def test_two_copies_keep_both_logs_when_they_become_one(path, tmp_path):
+    Season(path).record(three_results(40), "before", "Ann")
     other = shutil.copy(path, tmp_path / "other.gpkg")
     here, there = Season(path), Season(other)
     here.record(three_results(), "here", "Ann")
     there.record(three_results(1), "there", "Ben")
     there.treat(BEGINS, 0.5)
-    theirs = there.log()[-2:]
+    first = {one.source: one.number for one in there.batches()}["before"]
+    there.undo(first, who="Ben")
+    theirs = there.log()[-3:]
     here.merge(there)
     last = here.log()[-1]
-    assert (last.kind, last.what["entries"], last.what["new"]) == ("merged", 2, 3)
+    assert (last.kind, last.what["entries"], last.what["new"]) == ("merged", 3, 3)
     assert [one["digest"] for one in last.what["theirs"]] == [one.digest for one in theirs]
     assert check_against_log(here) == ()
+    # who took back what, and when, is shown, and nobody needs to read the entry for it
+    assert last.theirs == theirs
+    came = "3 inspections, 1 treatment, 3 entries; 3 inspections were taken back there"
+    assert came in last.sentence()
+    *_, undone, _ = season_log.lines(here.log(), CLOCK)
+    assert undone.startswith("       in the copy:  ")
+    assert "undone     Ben           Batch 2 was undone: 3 inspections from before." in undone
+    table = log_table(here)
+    assert (table["who"][-1], table["what"][-1], table["copy_entry"][-1]) == (
+        "Ben", "undone", theirs[-1].number,
+    )  # fmt: skip
+    for made in (
+        certification_report([here], Units()),
+        season_report(here, BEGINS, Units()),
+    ):
+        said = " ".join(made.words())
+        assert "by \u2068Ben\u2069, in a copy that was merged: Batch 2 was undone: 3 insp" in said
     n = len(here.log())
     here.merge(there)
     assert len(here.log()) == n  # nothing was new

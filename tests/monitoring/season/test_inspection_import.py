@@ -156,8 +156,10 @@ def test_what_was_taken_back_in_a_copy_and_counts_on_here_is_said(path, tmp_path
     copy.undo(inspection=3)
     copy.undo(inspection=5)
     assert doubts("after") == [
-        "2 inspections were taken back in that copy, and count on here. Take all that it holds "
-        "with: fieldmon merge season.gpkg 'my copy.gpkg'"
+        (
+            "2 inspections were taken back in that copy, and count on here. Take all that it holds "
+            "with: fieldmon merge season.gpkg 'my copy.gpkg'"
+        )
     ]
     season.merge(copy)
     assert doubts("merged") == []

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from fieldmon.cli.outputs import refuse_what_is_read
-from fieldmon.cli.season_files import UNTIL_THE_END
+from fieldmon.cli.season_files import until_the_end
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -36,7 +36,7 @@ class Commands(typer.Typer):
             @wraps(function)
             def called(**told: Any) -> Any:  # noqa: ANN401 - what a command is told is of any type
                 refuse_what_is_read(told)
-                with UNTIL_THE_END:
+                with until_the_end():
                     return function(**told)
 
             known = {"help": flowing(getdoc(function) or "")} | options

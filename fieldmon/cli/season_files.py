@@ -6,7 +6,8 @@ import csv
 import json
 import shlex
 import sqlite3
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, contextmanager
+from contextvars import ContextVar
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -26,17 +27,29 @@ if TYPE_CHECKING:
     from fieldmon.monitoring import Season
     from fieldmon.planning.members import TeamMember
 
-#: what is held until a command ends
-UNTIL_THE_END = ExitStack()
+# what the command that runs holds until it ends; None: none runs
+_HELD: ContextVar[ExitStack | None] = ContextVar("held", default=None)
 # inspections of a day that has not come, of which the numbers are shown
 _NUMBERS_SHOWN = 5
+
+
+@contextmanager
+def until_the_end() -> Iterator[None]:
+    """Hold what a command opens until this block ends."""
+    with ExitStack() as held:
+        before = _HELD.set(held)
+        try:
+            yield
+        finally:
+            _HELD.reset(before)
 
 
 def season_of(file: Path) -> Season:
     """Open a season; until the command ends its file is not opened again for each thing read."""
     from fieldmon.monitoring import Season, kept_open
 
-    UNTIL_THE_END.enter_context(kept_open())
+    if (held := _HELD.get()) is not None:
+        held.enter_context(kept_open())
     return Season(file)
 
 

@@ -492,11 +492,13 @@ def must_be_file(source: Any, what: str = "A file") -> None:  # noqa: ANN401 - a
 
 
 def _written_as(source: Any) -> str:  # noqa: ANN401 - anything
-    """Return how a frame of pandas or GeoPandas is given; empty: it is none."""
+    """Return how a frame of GeoPandas, pandas or polars is given; empty: it is none."""
     if hasattr(source, "to_file"):
         return 'Write it to a file first: frame.to_file("table.gpkg").'
     if hasattr(source, "to_csv"):
         return 'Write it to a file first: frame.to_csv("table.csv", index=False).'
+    if hasattr(source, "write_csv"):
+        return 'Write it to a file first: frame.write_csv("table.csv").'
     return ""
 
 

@@ -19,7 +19,7 @@ def asked(season):
 
 def test_a_photo_of_a_picked_plant_is_asked_for_and_taken_back(season_app, season):
     before = stops(season_app)
-    select(season_app, [PLANT])
+    select(season_app, [PLANT], season().plot)
     season_app.text_input(key="ask_photo_note").set_value("webs?").run()
     press(season_app, texts.ASK_PHOTO_BUTTON.format(plants=texts.PLANTS_COUNTED.format(n=1)))
     assert asked(season) == [(PLANT, "webs?")]

@@ -12,10 +12,11 @@ from tests.app.driving import go, map_of, opened, press, row_box, texts_of, word
 from tests.paths import ROOT
 
 
-def select(app, plants):
-    """Select plants as the map's lasso does, which has no browser here."""
-    gate = fm.read_plot(ROOT / "sample_data" / "paran_estate.zip", feature="Gate")
-    app.session_state["plants picked"] = (chosen(gate).laid, tuple(plants))
+def select(app, plants, plot=None):
+    """Select plants as the map's lasso does, which has no browser here; of the sample plot."""
+    sample = ROOT / "sample_data" / "paran_estate.zip"
+    plot = fm.read_plot(sample, feature="Gate") if plot is None else plot
+    app.session_state["plants picked"] = (chosen(plot).laid, tuple(plants))
     return app.run()
 
 

@@ -618,7 +618,7 @@ DAY_DONE = Plural(
     "Done on {day}: {found:,} found on {inspected:,} plant.",
     "Done on {day}: {found:,} found on {inspected:,} plants.", by="inspected",
 )  # fmt: skip
-TODAY_OVER = "The working day is over: plan the next day below, or give more hours."
+TODAY_OVER = "The working day is over: plan the next day, or give more hours."
 TODAY_DONE = Plural(
     "{inspected:,} plant inspected so far, {found:,} found. The route shows the rest.",
     "{inspected:,} plants inspected so far, {found:,} found. The route shows the rest.",

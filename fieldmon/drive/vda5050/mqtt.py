@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import queue
 import socket
+import ssl
 import threading
 import time
 from contextlib import suppress
@@ -228,6 +229,13 @@ class _End:
         try:
             self.client.connect(broker.host, broker.port, _KEEP_ALIVE_S)
         except OSError as error:
+            if broker.encrypted and isinstance(error, ssl.SSLError | ConnectionResetError):
+                raise BrokerError(
+                    f"The MQTT broker at {broker.host}, port {broker.port}, must encrypt, as "
+                    "mqtts:// says, with a certificate that this machine trusts, but it does not "
+                    f"({error}). Where it need not, give --broker mqtt://HOST:PORT.",
+                    where, answers=True,
+                ) from error  # fmt: skip
             raise BrokerError(
                 f"An MQTT broker must answer at {broker.host}, port {broker.port}, but none does "
                 f"({error}). Start one (docs: drive), or give --broker HOST:PORT.",

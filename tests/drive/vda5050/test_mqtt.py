@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from fieldmon.drive.vda5050.mqtt import Broker, Ear, Watched, Wire
+from fieldmon.drive.vda5050.mqtt import Broker, BrokerError, Ear, Watched, Wire
 from fieldmon.errors import SettingError
 from tests.drive.vda5050.conftest import ROBOT
 
@@ -58,6 +58,12 @@ def test_what_is_no_broker_is_refused(text):
 def test_where_no_broker_answers_it_is_said():
     with pytest.raises(SettingError, match="must answer at"):
         Wire(Broker("127.0.0.1", 1), "a", ROBOT, ())
+
+
+def test_a_broker_that_does_not_encrypt_is_said(broker):
+    with pytest.raises(BrokerError, match=r"must encrypt, .* give --broker mqtt://") as refused:
+        Wire(broker._replace(encrypted=True), "x", ROBOT, ("state",))
+    assert refused.value.answers
 
 
 def test_without_a_client_it_is_said_how_to_get_one(monkeypatch):

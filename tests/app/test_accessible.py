@@ -67,23 +67,47 @@ def kept(served_seasons):
 
 @pytest.fixture(scope="module")
 def tab(new_tab, address, kept):
-    """Return a tab of the app on the season, which stays open from test to test."""
+    """Return a tab of the app on the season, which stays open from test to test.
+
+    It begins in the dark, as who looks at that first then turns the light on once, and not twice.
+    """
     page = new_tab((1400, 1000))
+    page.emulate_media(color_scheme="dark")
     page.goto(f"{address}/?{kept}")
     rest(page)
     yield page
     page.close()
 
 
+def at(page, name):
+    """Turn to the first page of an item of the menu, if that is not shown."""
+    first, *more = menu.MENU[name].pages
+    if not page.locator(f".st-key-item_{name}").count():
+        open_item(page, texts.MENU[name])
+    if more and not page.get_by_role("radio", name=texts.PAGES[first], exact=True).is_checked():
+        open_page(page, texts.PAGES[first])
+
+
 @pytest.fixture
-def today(tab):
-    """Return that tab on the page that it began on."""
+def lit(tab):
+    """Return that tab in front, and in the light."""
     tab.bring_to_front()
-    if not tab.locator(".st-key-item_today").count():
-        open_item(tab, texts.MENU["today"])
-    if not tab.get_by_role("radio", name=texts.PAGES["today"], exact=True).is_checked():
-        open_page(tab, texts.PAGES["today"])
+    in_scheme(tab, "light")
     return tab
+
+
+@pytest.fixture
+def today(lit):
+    """Return that tab on the page that it began on."""
+    at(lit, "today")
+    return lit
+
+
+@pytest.fixture
+def ahead(lit):
+    """Return that tab where strategies are compared."""
+    at(lit, "ahead")
+    return lit
 
 
 def left(page, *rules):
@@ -99,14 +123,6 @@ def left(page, *rules):
     return found
 
 
-def in_the_dark(page):
-    """Return the contrasts that are too weak in the dark."""
-    in_scheme(page, "dark")
-    found = left(page, "color-contrast")
-    in_scheme(page, "light")
-    return found
-
-
 def is_text(page):
     """Hold a page to elements and addresses of our own; tell whether it shows what does harm."""
     assert page.evaluate("window.hit") is None
@@ -118,18 +134,21 @@ def test_axe_finds_nothing_serious_nor_in_the_dark_and_what_does_harm_is_text_on
     tab, address
 ):
     found, seen = [], 0
-    for name, item in menu.MENU.items():
-        open_item(tab, texts.MENU[name])
+    tab.bring_to_front()
+    for name in (DARK, *(other for other in menu.MENU if other != DARK)):
+        at(tab, name)
+        if EVERYTHING or name == DARK:
+            in_scheme(tab, "dark")  # it began so
+            found += left(tab, "color-contrast")
+            in_scheme(tab, "light")
         found += left(tab)
         seen += is_text(tab)
-        if EVERYTHING or name == DARK:
-            found += in_the_dark(tab)
-        for shown in item.pages[1:]:
+        for shown in menu.MENU[name].pages[1:]:
             open_page(tab, texts.PAGES[shown])
             found += left(tab) if EVERYTHING else []
             seen += is_text(tab)
         if name == "ahead":  # for who comes next, by keys alone
-            open_page(tab, texts.PAGES[item.pages[0]])
+            at(tab, name)
     assert found == []
     assert seen >= 2
     assert tab.complaints == []
@@ -255,9 +274,8 @@ def test_a_day_is_done_by_keys_alone(today):
     page.get_by_role("button", name="Undo", exact=True).first.wait_for()
 
 
-def test_a_fraction_typed_with_a_comma_in_spanish_is_not_ten_times_as_much(today):
-    page = today
-    open_item(page, texts.MENU["ahead"])
+def test_a_fraction_typed_with_a_comma_in_spanish_is_not_ten_times_as_much(ahead):
+    page = ahead
     box = page.get_by_role("spinbutton", name=texts.INFESTED)
     for language, typed in (("es", "2.5"), ("en", "25")):
         # a map that is just shown says the page's language, too
@@ -272,9 +290,8 @@ def test_a_fraction_typed_with_a_comma_in_spanish_is_not_ten_times_as_much(today
     page.evaluate("() => { delete document.documentElement.lang; }")
 
 
-def test_a_number_typed_just_before_a_page_is_turned_is_there_again(today):
-    page = today
-    open_item(page, texts.MENU["ahead"])
+def test_a_number_typed_just_before_a_page_is_turned_is_there_again(ahead):
+    page = ahead
     box = page.get_by_role("spinbutton", name=texts.INFESTED)
     for way in ("click", "keys", "back"):
         typed = str(int(float(box.input_value())) + 7)

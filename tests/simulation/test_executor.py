@@ -81,9 +81,63 @@ def same_files(one, other):
     assert parts[0] == parts[1]
 
 
+def _pid(setting, seeds):  # noqa: ARG001
+    time.sleep(0.05)
+    return os.getpid()
+
+
+def test_a_cluster_works_in_processes_of_its_own(two_workers):
+    made = Memory()
+    run(Experiment(tuple(range(12)), range(1), _pid), two_workers, made)
+    assert os.getpid() not in made.values()
+    assert len(set(made.values())) == 2
+
+
+def _holds_ctrl_c(setting, seeds):  # noqa: ARG001
+    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+
+
+def test_ctrl_c_is_heard_here_and_by_no_worker(two_workers):
+    made = Memory()
+    run(Experiment(tuple(range(4)), range(1), _holds_ctrl_c), two_workers, made)
+    assert all(made.values())
+    assert not _holds_ctrl_c(None, None)
+
+
+def _level(setting, seeds):  # noqa: ARG001
+    return logging.getLogger("distributed.worker.state_machine").getEffectiveLevel()
+
+
+def test_workers_say_nothing_of_their_own_at_the_terminal(two_workers):
+    made = Memory()
+    run(Experiment(tuple(range(4)), range(1), _level), two_workers, made)
+    assert set(made.values()) == {logging.CRITICAL}
+
+
 def test_threads_make_the_same_files(plots, undisturbed, tmp_path):
     with executor.threads(2) as workers:
         simulated(tmp_path, plots, SHORT, workers)
+    same_files(tmp_path, undisturbed)
+
+
+def test_the_seasons_do_not_depend_on_how_many_work_nor_on_one_who_dies(
+    plots, undisturbed, two_workers, tmp_path
+):
+    from distributed import default_client
+
+    killed = []
+
+    def kill_one(done, total):
+        assert 0 <= done <= total
+        client = default_client()
+        workers = client.scheduler_info(n_workers=-1)["workers"]
+        if done and not killed and workers:
+            pid = client.run(os.getpid)[next(iter(workers))]
+            os.kill(pid, signal.SIGKILL)
+            killed.append(pid)
+
+    simulated(tmp_path, plots, SHORT, two_workers, kill_one)
+    assert killed
     same_files(tmp_path, undisturbed)
 
 
@@ -135,50 +189,6 @@ def test_no_scheduler_is_a_sentence(monkeypatch):
         pass
 
 
-def test_who_leaves_threads_leaves_no_chunk_that_has_not_begun():
-    def left():
-        with executor.threads(1) as workers:
-            done = [workers.pool.submit(time.sleep, 0.05) for _ in range(50)]
-            raise KeyboardInterrupt(done)
-
-    with pytest.raises(KeyboardInterrupt) as stopped:
-        left()
-    assert sum(one.cancelled() for one in stopped.value.args[0]) >= 45
-
-
-def _pid(setting, seeds):  # noqa: ARG001
-    time.sleep(0.05)
-    return os.getpid()
-
-
-def test_a_cluster_works_in_processes_of_its_own(two_workers):
-    made = Memory()
-    run(Experiment(tuple(range(12)), range(1), _pid), two_workers, made)
-    assert os.getpid() not in made.values()
-    assert len(set(made.values())) == 2
-
-
-def _holds_ctrl_c(setting, seeds):  # noqa: ARG001
-    return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
-
-
-def test_ctrl_c_is_heard_here_and_by_no_worker(two_workers):
-    made = Memory()
-    run(Experiment(tuple(range(4)), range(1), _holds_ctrl_c), two_workers, made)
-    assert all(made.values())
-    assert not _holds_ctrl_c(None, None)
-
-
-def _level(setting, seeds):  # noqa: ARG001
-    return logging.getLogger("distributed.worker.state_machine").getEffectiveLevel()
-
-
-def test_workers_say_nothing_of_their_own_at_the_terminal(two_workers):
-    made = Memory()
-    run(Experiment(tuple(range(4)), range(1), _level), two_workers, made)
-    assert set(made.values()) == {logging.CRITICAL}
-
-
 @pytest.mark.usefixtures("two_workers")
 def test_a_cluster_that_is_there_already_is_used(plots, tmp_path):
     from distributed import default_client
@@ -189,28 +199,6 @@ def test_a_cluster_that_is_there_already_is_used(plots, tmp_path):
         assert default_client().scheduler.address == there
         simulated(tmp_path, plots, short, workers)
     assert results.seasons(tmp_path).num_rows == 2
-
-
-# who kills workers comes last: those that are started anew take the processor from what follows
-def test_the_seasons_do_not_depend_on_how_many_work_nor_on_one_who_dies(
-    plots, undisturbed, two_workers, tmp_path
-):
-    from distributed import default_client
-
-    killed = []
-
-    def kill_one(done, total):
-        assert 0 <= done <= total
-        client = default_client()
-        workers = client.scheduler_info(n_workers=-1)["workers"]
-        if done and not killed and workers:
-            pid = client.run(os.getpid)[next(iter(workers))]
-            os.kill(pid, signal.SIGKILL)
-            killed.append(pid)
-
-    simulated(tmp_path, plots, SHORT, two_workers, kill_one)
-    assert killed
-    same_files(tmp_path, undisturbed)
 
 
 @pytest.mark.usefixtures("two_workers")
@@ -233,3 +221,14 @@ def _allow_no_failure(dask_scheduler):
 
 def _die(setting, seeds):  # noqa: ARG001
     os._exit(1)
+
+
+def test_who_leaves_threads_leaves_no_chunk_that_has_not_begun():
+    def left():
+        with executor.threads(1) as workers:
+            done = [workers.pool.submit(time.sleep, 0.05) for _ in range(50)]
+            raise KeyboardInterrupt(done)
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        left()
+    assert sum(one.cancelled() for one in stopped.value.args[0]) >= 45

@@ -15,8 +15,11 @@ _HERE = Path(__file__).resolve().parent
 _TOP = next(folder for folder in _HERE.parents if not (folder / "__init__.py").is_file())
 # a script belongs to no package by itself: this one to `app`, or to `fieldmon._app` as installed
 __package__ = ".".join(_HERE.relative_to(_TOP).parts)
-# Streamlit puts the script's own folder on the path; the package is found from further up
-sys.path[:] = [p for p in sys.path if Path(p).resolve() != _HERE]
+# Streamlit puts the script's own folder on the path in each run, and takes it out again unless it
+# is there for good: whatever another thread imports while the path gets shorter may not be found
+if str(_HERE) not in sys.path[1:]:
+    sys.path.append(str(_HERE))
+# the package is found from further up
 if str(_TOP) not in sys.path:
     sys.path.insert(0, str(_TOP))
 importlib.import_module(__package__)

@@ -290,6 +290,7 @@ def _as_reached() -> Any:  # noqa: ANN401 - an ASGI application
 
 def main() -> None:
     """Serve the app at the address and port of the environment; `--browser` opens it there."""
+    sys.path.append(str(PAGE.parent))  # before any run: see `streamlit_app`
     address, port = os.environ[ADDRESS], int(os.environ[PORT])
     line = socket.create_server((address, port), backlog=2048)
     process.warm()

@@ -96,3 +96,37 @@ def test_a_process_that_a_page_starts_runs_the_script_without_a_page():
         [sys.executable, "-c", start.format(script)], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
+
+
+class NotedPath(list):
+    """The path of modules, which notes what is done to it."""
+
+    def __init__(self, folders):
+        super().__init__(folders)
+        self.done = []
+
+    def append(self, folder):
+        self.done.append(folder)
+        super().append(folder)
+
+    def insert(self, k, folder):
+        self.done.append(folder)
+        super().insert(k, folder)
+
+    def remove(self, folder):
+        self.done.append(folder)
+        super().remove(folder)
+
+    def __setitem__(self, where, folders):
+        self.done.append(folders)
+        super().__setitem__(where, folders)
+
+
+def test_a_run_leaves_the_path_of_modules_alone_on_which_others_look_meanwhile(app, monkeypatch):
+    """Two runs at once took folders off it for good, and pages failed until the server ended."""
+    path = NotedPath(sys.path)
+    monkeypatch.setattr(sys, "path", path)
+    app.run()
+    path.done.clear()
+    app.run()
+    assert path.done == []

@@ -98,28 +98,25 @@ def test_a_process_that_a_page_starts_runs_the_script_without_a_page():
     assert done.returncode == 0, done.stderr
 
 
+def noting(name):
+    """Return a method of a list that notes what it is given."""
+
+    def noted(self, *told):
+        self.done.append((name, *told))
+        return getattr(list, name)(self, *told)
+
+    return noted
+
+
 class NotedPath(list):
     """The path of modules, which notes what is done to it."""
+
+    append, insert, remove = map(noting, ("append", "insert", "remove"))
+    __setitem__ = noting("__setitem__")
 
     def __init__(self, folders):
         super().__init__(folders)
         self.done = []
-
-    def append(self, folder):
-        self.done.append(folder)
-        super().append(folder)
-
-    def insert(self, k, folder):
-        self.done.append(folder)
-        super().insert(k, folder)
-
-    def remove(self, folder):
-        self.done.append(folder)
-        super().remove(folder)
-
-    def __setitem__(self, where, folders):
-        self.done.append(folders)
-        super().__setitem__(where, folders)
 
 
 def test_a_run_leaves_the_path_of_modules_alone_on_which_others_look_meanwhile(app, monkeypatch):

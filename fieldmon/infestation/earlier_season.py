@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 # what another season learnt counts half as much as what this one learns (power prior: Ibrahim &
 # Chen 2000, Stat. Sci. 15:46), and as so many finds of an origin at most: with five or twenty,
 # intervals held far less often where insects came otherwise than in the earlier season (chosen on
-# twenty seasons in each of six worlds; see docs/seasons.md)
+# twenty seasons in each of six worlds; see docs/season_results.md)
 _WORTH, _MOST_FINDS = 0.5, 2.0
 # plants that stand otherwise by more are not jumped over alike (our choice)
 _SPACED_ALIKE = 0.1

@@ -6,7 +6,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.sandbox import limits
 from tests.paths import ROOT
 
-PAGE = (ROOT / "docs" / "plots_and_records.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "file_limits.md").read_text(encoding="utf-8")
 
 
 def row(start):

@@ -178,7 +178,7 @@ def test_the_thesiss_pest_is_the_thesiss_rule_and_its_robot_the_same():
 
 
 def test_the_example_of_the_documentation_is_a_pest():
-    example = the_fence(PAGES["docs/pests.md"], "toml", "[[stages]]")
+    example = the_fence(PAGES["docs/own_pest.md"], "toml", "[[stages]]")
     pest = pest_from_text(example, "example.toml")
     assert pest.movement.hours == (8, 18)
     assert pest.entry.anywhere_per_day == 0.0002

@@ -3,7 +3,7 @@
 A single ladder puts all aisles in one order up the plot. Where parts lie beside each other, that
 makes long ways short. Here each block of aisles has a ladder of its own, with half the way to what
 is nearest outside as the way to its gate; between blocks, what is left of the true way is charged.
-How that bounds every route is in ``docs/best_routes.md``.
+How that bounds every route is in ``docs/route_bound.md``.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ Rows are swept from the start to the far side. What was walked so far touches th
 one of five ways; for each of them and each number of steps the most reward is kept. A price of
 steps bounds what any walk can hold that comes by a state with so many steps; what cannot come near
 enough to that bound is left out. The claim, its proof and what it assumes are in
-``docs/best_routes.md``.
+``docs/exact_walk.md``.
 """
 
 from __future__ import annotations

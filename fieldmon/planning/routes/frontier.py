@@ -3,7 +3,7 @@
 Every edge of a ladder need be driven at most twice (two passes can be left out of three without
 losing anything but their time). Between two neighbouring elements each headland is therefore
 driven 0, 1 or 2 times, and what lies below either joins the two or not. The tables list all ways
-of going on; how they follow from degrees and connections is in ``docs/best_routes.md``.
+of going on; how they follow from degrees and connections is in ``docs/exact_walk.md``.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 A part that lies beside another is a place of that one's ladder: driving there, through it and back
 is worth what the best drive in it is. The way to it is paid in full, however long it is, and the
 ladder that it hangs on keeps its lengths. How that bounds every route is in
-``docs/best_routes.md``.
+``docs/route_bound.md``.
 """
 
 from __future__ import annotations

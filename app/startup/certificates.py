@@ -106,7 +106,7 @@ def certificates(folder: Path, address: str) -> Certificates:
         raise SettingError(
             f"An address for --lan must be private, as 192.168.1.5, but it is {address}. If this "
             "machine has a private one, say it with --address; on the internet put the app behind "
-            "a server with a certificate of its own (see the documentation, Scouting)."
+            "a server with a certificate of its own (see the documentation, Serving phones)."
         )
     folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     authority = _kept(folder, "authority") or _made_authority(folder)

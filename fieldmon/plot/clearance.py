@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 #: taken where nobody said how far plants reach to each side of their middle
 USUAL_HALF_CANOPY_M = 0.25
-#: how far a robot may stray from its line: simulated drives strayed 8 cm at most, see docs/drive
+#: how far a robot may stray from its line: simulated drives strayed 8 cm at most, see
+#: docs/physical_simulation
 STRAY_M = 0.1
 
 

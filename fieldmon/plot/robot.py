@@ -147,8 +147,9 @@ class RobotTimes(NamedTuple):
     stop_s: float
 
 
-#: those of days driven in a physical simulation (docs/drive), of a robot with two driven wheels
-#: whose mast looks to both sides, so that it need not turn in an aisle; and those of the thesis
+#: those of days driven in a physical simulation (docs/physical_simulation), of a robot with two
+#: driven wheels whose mast looks to both sides, so that it need not turn in an aisle; and those of
+#: the thesis
 ROBOT_TIMES = {"measured": RobotTimes(9.0, 0.0, 1.13), "thesis": RobotTimes(25.0, 23.0, 0.0)}
 USUAL_TIMES = "measured"
 #: our choice
@@ -355,7 +356,8 @@ def scout(**fields: Any) -> Robot:  # noqa: ANN401 - of `Robot`
 def rover(**fields: Any) -> Robot:  # noqa: ANN401 - as above
     """Return a small robot with two driven wheels: the usual one, with its size.
 
-    It is the robot of `fieldmon drive --robot mujoco`; docs/drive tells how its times were found.
+    It is the robot of `fieldmon drive --robot mujoco`; docs/physical_simulation
+    tells how its times were found.
     Its mast looks to both sides, and it drives as well backwards: it need not turn in an aisle.
 
     Parameters

@@ -21,7 +21,8 @@ _NO_WAY_M = 0.02
 #: bends are driven at so much of the speed, before a robot sets out it steers for so long, and so
 #: much speed it gains or loses in a second
 IN_BENDS, STEERS_S, GATHERS_M_S2 = 0.6, 0.5, 0.5
-#: and each corner takes so much more, as it straightens up (simulated drives, see docs/drive)
+#: and each corner takes so much more, as it straightens up (simulated drives, see
+#: docs/physical_simulation)
 CORNER_S = 0.3
 
 

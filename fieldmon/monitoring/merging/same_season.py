@@ -125,6 +125,15 @@ def _pests(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, str]
     return settings_log.pest(db), settings_log.pest(other)
 
 
+def are_copies(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:
+    """Return whether two files are copies of one season, however far they went apart."""
+    try:
+        refuse_strangers(db, other)
+    except FileProblem:
+        return False
+    return not are_of_two_pests(db, other) or hold_in_common(db, other)
+
+
 def hold_in_common(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:
     """Return whether an inspection or a treatment that counts stands in both."""
     held = []

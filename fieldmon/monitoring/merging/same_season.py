@@ -78,7 +78,7 @@ def _strangers(why: Worded) -> FileProblem:
         worded(
             "Two copies of one season can be merged, but {why}. Leave each in its file. If both "
             "are of one plot and look for the same, record what was found in the one into the "
-            "other with: fieldmon record",
+            "other with Record in the app, or with: fieldmon record",
             why=why,
         )
     )
@@ -109,9 +109,10 @@ def of_no_pest(db: sqlite3.Connection, other: sqlite3.Connection) -> Iterator[st
     """Yield a sentence where `db` names a pest, and another names none but found something."""
     pest, named = _pests(db, other)
     if pest and not named and counting(other) - counting(db):
-        yield (
-            f"Only one copy names a pest, {pest}: what the other found counts as found of it, too. "
-            "If that one looked for another pest, undo its batches."
+        yield worded(
+            "Only one copy names a pest, {pest}: what the other found counts as found of it, too. "
+            "If that one looked for another pest, undo its batches.",
+            pest=pest,
         )
 
 

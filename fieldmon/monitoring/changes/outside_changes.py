@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from shapely.errors import ShapelyError
 
-from fieldmon.compute.wording import Worded, joined, worded
+from fieldmon.compute.wording import Worded, day_said, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import (
@@ -371,7 +371,7 @@ def _with_face(said: str, grid: PlantGrid, plant: object) -> str:
         plant=with_face(grid, plant, int(number))
         if isinstance(plant, int) and 0 <= plant < len(grid)
         else number,
-        day=day,
+        day=day_said(day),
     )
 
 

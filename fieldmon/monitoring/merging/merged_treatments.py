@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import joined, worded
+from fieldmon.compute.wording import day_said, joined, worded
 from fieldmon.decisions.labels import plain_name
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.file.rows_that_count import COUNTS, NOTHING_CORRECTED, TAKEN_BACK
@@ -137,7 +137,7 @@ def _in_words(row: Row) -> Worded:
 def _named(row: Row) -> Worded:
     """Return a treatment by its product and its day."""
     product = row["product"] or worded("a product that nobody named")
-    return worded("{product} on {day}", product=product, day=row["date"])
+    return worded("{product} on {day}", product=product, day=day_said(row["date"]))
 
 
 def _or_none(value: object) -> str:

@@ -8,7 +8,7 @@ import streamlit as st
 
 from fieldmon.errors import FieldmonError
 from fieldmon.io.options import Upload
-from fieldmon.monitoring.season.copies_to_merge import merge_file
+from fieldmon.monitoring.season.copies_to_merge import ChangedElsewhere, merge_file
 
 from ..state import cached_files, notices, seasons_folder
 from ..state.brought_files import FINDINGS, file_of
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 # things to look at that are shown
 _MOST = 20
+# what was merged here last: into which season, its name, and what came of it
+_LAST = "merged here"
 
 
 def show(choices: Choices, boxes: FreshBoxes, brought: UploadedFile) -> bool:
@@ -45,6 +47,9 @@ def show(choices: Choices, boxes: FreshBoxes, brought: UploadedFile) -> bool:
     with st.container(border=True, key="merging"):
         try:
             ahead = cached_files.merging(key, season, copy)
+        except ChangedElsewhere as problem:
+            st.info(f"{of_error(problem)}\n\n{texts.MERGE_OR_CORRECT}")
+            return False
         except FieldmonError as problem:
             st.info(of_error(problem))
             return False
@@ -53,12 +58,25 @@ def show(choices: Choices, boxes: FreshBoxes, brought: UploadedFile) -> bool:
             st.markdown(texts.MERGE_BRINGS_NOTHING.format(name=name))
             return False
         st.markdown(texts.MERGE_COPY.format(name=name))
-        st.markdown(_paragraph(texts.MERGE_BRINGS, [*_brought(choices, ahead.merged)]))
-        if to_look_at := _to_look_at(ahead):
-            st.warning(_differing(to_look_at))
+        _show_what(choices, texts.MERGE_BRINGS, ahead)
         acting.at_press(texts.MERGE, _merge, choices, boxes, key="merge", boxes=boxes,
                         type="primary", icon=":material/merge:")  # fmt: skip
     return True
+
+
+def show_last(choices: Choices) -> None:
+    """Show what the copy brought that was merged last here, until it was looked at."""
+    key, name, done = st.session_state.get(_LAST, ("", "", None))
+    if key != choices.key or done is None:
+        return
+    with st.container(border=True, key="merged"):
+        _show_what(choices, texts.MERGE_BROUGHT.format(name=texts.isolated(name)), done)
+        st.caption(texts.MERGE_BACK)
+        st.button(texts.NOTICE_CLOSE, key="merged_close", on_click=_forget)
+
+
+def _forget() -> None:
+    st.session_state.pop(_LAST, None)
 
 
 @notices.reporting
@@ -72,11 +90,20 @@ def _merge(choices: Choices, boxes: FreshBoxes) -> str:
     boxes.empty()
     if not done.merged.changed:
         return texts.MERGED_NOTHING.format(name=name)
-    said = [_paragraph(texts.MERGED.format(name=name), [*_brought(choices, done.merged)])]
-    if to_look_at := _to_look_at(done):
+    st.session_state[_LAST] = choices.key, brought.name, done
+    if _to_look_at(done):
         notices.warn()
-        said.append(_differing(to_look_at))
-    return "\n\n".join([*said, texts.MERGE_BACK])
+    return texts.MERGED.format(name=name)
+
+
+def _show_what(choices: Choices, first: str, done: MergedFile) -> None:
+    """Show what a copy brings, or brought, and what is to be looked at because of it."""
+    st.markdown(_paragraph(first, [*_brought(choices, done.merged)]))
+    if to_look_at := _to_look_at(done):
+        shown = [in_words(one) for one in to_look_at[:_MOST]]
+        if (more := len(to_look_at) - _MOST) > 0:
+            shown.append(texts.AND_MORE.format(n=more))
+        st.warning(_paragraph(texts.MERGE_DIFFERS.format(n=len(to_look_at)), shown))
 
 
 def _brought(choices: Choices, merged: Merged) -> Iterator[str]:
@@ -111,13 +138,6 @@ def _brought(choices: Choices, merged: Merged) -> Iterator[str]:
 def _to_look_at(done: MergedFile) -> tuple[str, ...]:
     """Return what the copies tell differently, and what is to beware of since, a sentence each."""
     return *done.merged.contradictions, *done.entered, *done.merged.overlaps
-
-
-def _differing(sentences: Sequence[str]) -> str:
-    shown = [in_words(one) for one in sentences[:_MOST]]
-    if (more := len(sentences) - _MOST) > 0:
-        shown.append(texts.AND_MORE.format(n=more))
-    return _paragraph(texts.MERGE_DIFFERS.format(n=len(sentences)), shown)
 
 
 def _paragraph(first: str, lines: Sequence[str]) -> str:

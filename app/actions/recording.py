@@ -238,7 +238,9 @@ def _show_file(choices: Choices) -> None:
     key = boxes.key
     brought = st.file_uploader(texts.RECORD_FILE_IN, key=key("findings_file"))
     st.checkbox(texts.TAKE_DOUBTFUL, key=key("take_doubtful"))
-    if brought is not None:
+    if brought is None:
+        merging.show_last(choices)
+    else:
         _ask_who(boxes, texts.INSPECTED_BY_HELP)
         merges = merging.show(choices, boxes, brought)
         if brought.getvalue().startswith(MAGIC):

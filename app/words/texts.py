@@ -959,7 +959,12 @@ MERGE_COPY = (
     "**{name} is a copy of this season.** Merge takes in all that it holds, each once; Record "
     "takes its results alone. Nothing is written yet."
 )
-MERGE_BRINGS, MERGED = "It holds what this season lacks:", "{name} was merged. It brought:"
+MERGE_BRINGS, MERGE_BROUGHT = (
+    "It holds what this season lacks:",
+    "**{name} was merged.** It brought:",
+)
+MERGED = "{name} was merged. What it brought stands under *A file*."
+MERGE_OR_CORRECT = "Record takes what was changed there as corrections: say who corrected."
 MERGE_BRINGS_NOTHING = "**{name} is a copy of this season**, and holds nothing that this one lacks."
 MERGED_NOTHING = "{name} held nothing that this season lacks, any more. Nothing changed."
 MERGE_NEW = Plural(

@@ -10,14 +10,20 @@ from fieldmon.compute.wording import Worded, worded
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import FileProblem
 from fieldmon.io.options import Upload
+from fieldmon.monitoring.changes import outside_changes
 from fieldmon.monitoring.changes.transactions import copy_season
 from fieldmon.monitoring.estimates.last_days import last_date
+from fieldmon.monitoring.merging.other_seasons import is_copy
 from fieldmon.monitoring.season.season_file import Season
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from fieldmon.monitoring.merging.merge import Merged
+
+
+class ChangedElsewhere(FileProblem):
+    """A copy of the season that cannot be merged, as another program changed what stands in it."""
 
 
 class MergedFile(NamedTuple):
@@ -39,11 +45,17 @@ class MergedFile(NamedTuple):
 def merge_file(season: Season, source: Path | Upload) -> MergedFile:
     """Merge a copy of a season into it; the file itself stays as it is, one of old, too.
 
-    Raise `FileProblem` if it is no copy of this season.
+    Raise `FileProblem` if it is no copy of this season, `ChangedElsewhere` if another program
+    changed it: what was changed there can be recorded as corrections.
     """
     early = _entered_early(season)
     with _opened(source) as there:
-        merged = season.merge(there)
+        try:
+            merged = season.merge(there)
+        except FileProblem as problem:
+            if _is_changed(there) and is_copy(season, there.path):
+                raise ChangedElsewhere(*problem.args) from problem
+            raise
     return MergedFile(merged, tuple(one for one in _entered_early(season) if one not in early))
 
 
@@ -73,6 +85,11 @@ def _opened(source: Path | Upload) -> Iterator[Season]:
             named = source.name if isinstance(source, Upload) else str(source)
             raise FileProblem(_said_of(problem.args[0], str(copy), named)) from problem
         yield season
+
+
+def _is_changed(season: Season) -> bool:
+    with season.store.reading() as db:
+        return bool(outside_changes.waiting(db))
 
 
 def _said_of(sentence: str, path: str, named: str) -> str:

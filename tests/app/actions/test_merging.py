@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.actions import merging
-from app.words import language
+from app.words import language, texts
 from app.words.signs import marked_as_english
 from app.words.texts import isolated
 from fieldmon.decisions.labels import ProductLabel
@@ -21,6 +21,7 @@ from fieldmon.monitoring.phones import scouts
 from fieldmon.monitoring.season.copies_to_merge import merge_ahead
 from tests.app.chosen import in_season
 from tests.app.driving import apart, boxed, go, metric, opened, texts_of
+from tests.monitoring.changes.test_outside_changes import outside
 
 DAY = date(2026, 11, 16)
 ENGLISH_MARK = marked_as_english("").removeprefix("\u2066\u2069")
@@ -84,12 +85,14 @@ def test_what_a_copy_holds_is_shown_before_and_after_it_is_merged_and_comes_with
     assert differs in shown
     assert content(kept.path) == before
     season_app.button(key="merge").click().run()
-    said = apart(season_app.warning[0].value)
-    assert said.startswith(f"{isolated('copy.gpkg')} was merged. It brought:\n\n- 2 inspections")
-    assert brought in said
+    assert f"{isolated('copy.gpkg')} was merged. What it brought" in season_app.warning[0].value
+    said = texts_of(season_app)
+    assert f"**{isolated('copy.gpkg')} was merged.** It brought:\n\n{brought}" in said
     assert differs in said
     assert "each recording that came can be taken back" in said
     assert not offered(season_app)
+    season_app.button(key="merged_close").click().run()
+    assert "was merged" not in texts_of(season_app)
     assert season().verify() == ()
     # the map and all figures are of the season as it is now
     assert metric(go(season_app, "season"), "Found") == "2"
@@ -117,11 +120,14 @@ def test_of_two_sessions_that_merge_one_copy_the_second_changes_nothing(
     assert not offered(other)
 
 
-def test_another_season_and_one_of_a_newer_fieldmon_are_refused_and_nothing_is_written(
+def test_other_seasons_newer_files_and_those_that_qgis_changed_are_refused_and_nothing_written(
     season_app, season, season_named, tmp_path
 ):
     kept = season()
     twin = Season.create(tmp_path / "twin.gpkg", kept.plot, kept.records, kept.settings)
+    record(kept, [3, 4], CLEAN)
+    changed = copied(kept, tmp_path, "changed.gpkg").path
+    outside(changed, "UPDATE inspections SET result = 'found' WHERE fid = 1")
     newer = copied(kept, tmp_path, "newer.gpkg").path
     with closing(connect(newer)) as db:
         db.execute("UPDATE fieldmon SET value = '99' WHERE key = 'version'")
@@ -130,10 +136,12 @@ def test_another_season_and_one_of_a_newer_fieldmon_are_refused_and_nothing_is_w
         (twin.path, "they are two seasons"),
         (season_named.path, "one is of the plot Gate and the other of own"),
         (newer, "newer.gpkg was made by a newer fieldmon (format 99"),
+        (changed, "another program changed it"),
     ):
         bring(season_app, file)
         (said,) = [one.value for one in season_app.info if why in apart(one.value)]
         assert str(tmp_path) not in said
+        assert (texts.MERGE_OR_CORRECT in said) == (file == changed)
         assert not offered(season_app)
         assert content(kept.path) == before
 

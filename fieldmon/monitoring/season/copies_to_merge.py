@@ -74,10 +74,10 @@ def merge_ahead(season: Season, source: Path | Upload) -> MergedFile:
 def _opened(source: Path | Upload) -> Iterator[Season]:
     """Give a copy of a season's file; what is wrong with that is said of the file itself."""
     with working_folder() as folder:
-        copy = Path(folder) / Path(source.name).name
         if isinstance(source, Upload):
-            copy.write_bytes(source.data)
+            copy = _written(source, Path(folder))
         else:
+            copy = Path(folder) / source.name
             copy_season(source, copy)
         try:  # one of an earlier version is brought up to date in the copy
             season = Season(copy)
@@ -85,6 +85,17 @@ def _opened(source: Path | Upload) -> Iterator[Season]:
             named = source.name if isinstance(source, Upload) else str(source)
             raise FileProblem(_said_of(problem.args[0], str(copy), named)) from problem
         yield season
+
+
+def _written(upload: Upload, folder: Path) -> Path:
+    """Write an upload into a folder, by another name where no file here can have its own."""
+    try:
+        copy = folder / Path(upload.name).name
+        copy.write_bytes(upload.data)
+    except (OSError, ValueError):
+        copy = folder / "copy.gpkg"
+        copy.write_bytes(upload.data)
+    return copy
 
 
 def _is_changed(season: Season) -> bool:

@@ -1,6 +1,7 @@
 """A file is merged whole or not at all, and told before as it is merged."""
 
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -56,3 +57,20 @@ def test_a_merge_that_fails_at_its_end_leaves_the_season_as_it_was(path, copy, m
     monkeypatch.undo()
     assert (len(Season(path).inspections), len(Season(path).log())) == (12, before)
     assert merge_file(season, copy.path).merged.new == 5
+
+
+def test_a_copy_of_an_earlier_version_is_merged_and_stays_as_it_is(tmp_path):
+    old = Path(shutil.copy(OLD / "of_format_11.gpkg", tmp_path / "old.gpkg"))
+    before = old.read_bytes()
+    season = Season(shutil.copy(old, tmp_path / "season.gpkg"))
+    n = len(season.inspections)
+    season.undo(inspection=1)
+    merged = merge_file(season, old).merged
+    assert (merged.new, len(season.inspections)) == (0, n - 1)
+    assert old.read_bytes() == before
+    assert not [*tmp_path.glob("old.gpkg.*")]
+
+
+@pytest.mark.parametrize("name", ["..", "", "x" * 300, "a\0b"])
+def test_an_upload_may_have_a_name_that_no_file_can_have(path, copy, name):
+    assert merge_ahead(Season(path), Upload(name, copy.path.read_bytes())).merged.new == 5

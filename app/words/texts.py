@@ -983,7 +983,7 @@ MERGE_CODES = (
 )
 MERGE_MOVED = "recordings get other numbers; the log has both"
 MERGE_LOG = Plural("{n:,} entry of its log", "{n:,} entries of its log")
-MERGE_DIFFERS = Plural("{n} thing to look at:", "{n} things to look at:")
+MERGE_DIFFERS = Plural("{n} thing to check:", "{n} things to check:")
 MERGE_BACK = (
     "Below, under *Recorded so far*, each recording that came can be taken back. The season's log "
     "has this merge, and the copy's own entries below it; the copy itself stayed as it is."

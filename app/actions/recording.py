@@ -26,7 +26,7 @@ from ..show.recorded_batches import GONE
 from ..state import brought_files, chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..words import texts
-from . import acting, bringing_files, choosing, contradicting, correcting, treating
+from . import acting, bringing_files, choosing, contradicting, correcting, merging, treating
 from .recording_results import as_kept, listed, recorded, said_of, warn_of_lost
 
 if TYPE_CHECKING:
@@ -238,13 +238,16 @@ def _show_file(choices: Choices) -> None:
     key = boxes.key
     brought = st.file_uploader(texts.RECORD_FILE_IN, key=key("findings_file"))
     st.checkbox(texts.TAKE_DOUBTFUL, key=key("take_doubtful"))
-    if brought is not None:
+    if brought is None:
+        merging.show_last(choices)
+    else:
         _ask_who(boxes, texts.INSPECTED_BY_HELP)
+        merges = merging.show(choices, boxes, brought)
         if brought.getvalue().startswith(MAGIC):
             st.text_input(texts.CORRECTED_BY, key=key("corrected_by"),
                           help=texts.CORRECTED_BY_HELP)  # fmt: skip
         acting.at_press(texts.RECORD_BUTTON, _record_file, choices, key="record_file",
-                        boxes=boxes, type="primary")  # fmt: skip
+                        boxes=boxes, type="secondary" if merges else "primary")  # fmt: skip
         if unconfirmed.refused(_corrections_in(choices, brought.name, brought.getvalue())):
             acting.at_press(texts.CORRECT_BOTH, _record_file_both, choices, key="correct_both",
                             boxes=boxes)  # fmt: skip

@@ -18,6 +18,8 @@ from . import contradicting, recording_results, undoing
 from .recording import TYPED_IN
 
 if TYPE_CHECKING:
+    from fieldmon.monitoring import Batch
+
     from ..state.choices import Choices
 
 # what was recorded here last: of which season, and when; merging changes numbers of batches
@@ -46,7 +48,7 @@ def show(choices: Choices) -> None:
             st.button(texts.UNDO, key="here_undo", icon=":material/undo:",
                       on_click=undoing.undo, args=(choices, batch))  # fmt: skip
     # the plant shown now may be another one
-    if batch is not None and (said := choices.season.contents([batch]).get(batch)):
+    if batch and (said := choices.season.contents([batch.number]).get(batch.number)):
         st.caption(recorded_batches.last(choices, said))
     contradicting.ask_about_contradictions(choices)
 
@@ -61,10 +63,10 @@ def _record(choices: Choices, plant: int, result: int) -> str:
     return recording_results.said_of(choices, done, results)
 
 
-def _last(choices: Choices) -> int | None:
+def _last(choices: Choices) -> Batch | None:
     """Return the batch that was recorded here last, unless it was taken back."""
     key, at = st.session_state.get(_LAST, ("", None))
     if key != choices.key or at is None:
         return None
-    kept = (one.number for one in choices.open_season.batches() if one.at == at and not one.undone)
+    kept = (one for one in choices.open_season.batches() if one.at == at and not one.undone)
     return next(kept, None)

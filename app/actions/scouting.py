@@ -20,7 +20,7 @@ from . import handing_out, recording_results, undoing
 if TYPE_CHECKING:
     from streamlit.delta_generator import DeltaGenerator
 
-    from fieldmon.monitoring import MonitoringSettings
+    from fieldmon.monitoring import Batch, MonitoringSettings
     from fieldmon.planning.members import TeamMember
 
     from ..state.choices import Choices
@@ -70,7 +70,7 @@ def tap(choices: Choices, plant: int, result: int, after: int) -> None:
     st.session_state["scout_count"] = None
 
 
-def undo(choices: Choices, batch: int, after: int) -> None:
+def undo(choices: Choices, batch: Batch, after: int) -> None:
     """Take a tap back; a second press of the same button takes no other one back."""
     if after != taps():
         return
@@ -78,19 +78,17 @@ def undo(choices: Choices, batch: int, after: int) -> None:
     undoing.undo(choices, batch, choices.whose_day or "")
 
 
-def last_tap(choices: Choices) -> tuple[int, str] | None:
+def last_tap(choices: Choices) -> tuple[Batch, str] | None:
     """Return the batch of this person's last tap of the day that counts, and what it said."""
     who, season = choices.whose_day or "", choices.open_season
-    taps = (
-        b.number for b in season.batches() if (b.source, b.who, b.undone) == (SOURCE, who, False)
-    )
-    number = next(taps, None)
-    if number is None:
+    taps = (b for b in season.batches() if (b.source, b.who, b.undone) == (SOURCE, who, False))
+    last = next(taps, None)
+    if last is None:
         return None
-    tapped = season.contents([number]).get(number)
+    tapped = season.contents([last.number]).get(last.number)
     if tapped is None or (tapped.n, tapped.first) != (1, str(choices.on)):
         return None
-    return number, recorded_batches.last(choices, tapped)
+    return last, recorded_batches.last(choices, tapped)
 
 
 def offer_undo(choices: Choices) -> None:

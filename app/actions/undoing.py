@@ -50,30 +50,35 @@ def _show_more(choices: Choices) -> None:
 def _show_batch(choices: Choices, batch: Batch, contents: BatchContents | None) -> None:
     said = recorded_batches.line(choices, batch, contents)
     why = recorded_batches.why_to_ask(choices, batch, contents)
-    n, asked = batch.number, _undo_asked(choices) == batch.number and not batch.undone
+    n, asked = batch.number, _undo_asked(choices) == _known_by(batch) and not batch.undone
     # side by side, not in columns: a button takes what its word needs in each language
     with st.container(horizontal=True, vertical_alignment="center", key=f"batch_{n}"):
         st.markdown(said, width="stretch")
         if batch.undone:
-            st.button(texts.REDO, key=f"redo {n}", on_click=redo, help=said, args=(choices, n))
+            st.button(texts.REDO, key=f"redo {n}", on_click=redo, help=said, args=(choices, batch))
         elif not asked:
             act = _ask_undo if why else undo
-            st.button(texts.UNDO, key=f"undo {n}", on_click=act, help=said, args=(choices, n))
+            st.button(texts.UNDO, key=f"undo {n}", on_click=act, help=said, args=(choices, batch))
     if asked:
         st.warning(" ".join([texts.UNDO_ASK, *why]))
         with st.container(horizontal=True, key=f"undo_asked_{n}"):
-            st.button(texts.UNDO_YES, key=f"undo_yes {n}", on_click=undo, args=(choices, n))
+            st.button(texts.UNDO_YES, key=f"undo_yes {n}", on_click=undo, args=(choices, batch))
             st.button(texts.UNDO_NO, key=f"undo_no {n}", on_click=_ask_no_undo)
 
 
-def _undo_asked(choices: Choices) -> int | None:
-    """Return the batch of which it is asked whether it is to be undone."""
+def _known_by(batch: Batch) -> tuple[str, ...]:
+    """Return what a batch is known by: its number is another one once a copy was merged."""
+    return batch.at, batch.kind, batch.source, batch.who
+
+
+def _undo_asked(choices: Choices) -> tuple[str, ...] | None:
+    """Return what the batch is known by of which it is asked whether it is to be undone."""
     key, batch = st.session_state.get(_UNDO_ASKED, ("", None))
     return batch if key == choices.key else None
 
 
-def _ask_undo(choices: Choices, batch: int) -> None:
-    st.session_state[_UNDO_ASKED] = choices.key, batch
+def _ask_undo(choices: Choices, batch: Batch) -> None:
+    st.session_state[_UNDO_ASKED] = choices.key, _known_by(batch)
 
 
 def _ask_no_undo() -> None:
@@ -81,17 +86,25 @@ def _ask_no_undo() -> None:
 
 
 @notices.reporting
-def undo(choices: Choices, batch: int, who: str = "") -> str:
+def undo(choices: Choices, batch: Batch, who: str = "") -> str:
     """Take a batch back, unless somebody did so in another window; `who` does, for the log."""
     _ask_no_undo()
-    if batch not in {one.number for one in choices.open_season.batches() if not one.undone}:
+    number = _number_now(choices, batch, undone=False)
+    if number is None:
         raise SettingError(texts.UNDONE_BEFORE)
-    return recorded_batches.undone(choices.open_season.undo(batch, who=who))
+    return recorded_batches.undone(choices.open_season.undo(number, who=who))
 
 
 @notices.reporting
-def redo(choices: Choices, batch: int) -> str:
+def redo(choices: Choices, batch: Batch) -> str:
     """Let a batch that was undone count again, unless somebody did so in another window."""
-    if batch not in {one.number for one in choices.open_season.batches() if one.undone}:
+    number = _number_now(choices, batch, undone=True)
+    if number is None:
         raise SettingError(texts.REDONE_BEFORE)
-    return recorded_batches.counts_again(choices.open_season.redo(batch))
+    return recorded_batches.counts_again(choices.open_season.redo(number))
+
+
+def _number_now(choices: Choices, batch: Batch, *, undone: bool) -> int | None:
+    """Return the number that a batch has by now, if it is still `undone` or not; else None."""
+    now = (one for one in choices.open_season.batches() if _known_by(one) == _known_by(batch))
+    return next((one.number for one in now if one.undone == undone), None)

@@ -10,6 +10,7 @@ from fieldmon.io import plot_records, prepare, read
 from fieldmon.io.rasters.read import looks_like_heights as _looks_like_heights
 from fieldmon.io.rasters.read import read_backdrop, read_relief
 from fieldmon.io.readers import nearby
+from fieldmon.monitoring.season.copies_to_merge import merge_ahead
 from fieldmon.plot.row_detection import rows_from_plants
 
 from .cached import FEW, WORKING
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
     from fieldmon.infestation.records import Records
     from fieldmon.io.import_report import Imported
-    from fieldmon.io.options import PlotOptions, ReadOptions, Source
+    from fieldmon.io.options import PlotOptions, ReadOptions, Source, Upload
     from fieldmon.io.plot_request import (
         CanopySource,
         PlantingChoices,
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.places import Plants
     from fieldmon.io.readers.points_and_lines import DrawnBlocks
     from fieldmon.io.readers.weather_options import WeatherOptions
+    from fieldmon.monitoring import Season
+    from fieldmon.monitoring.season.copies_to_merge import MergedFile
     from fieldmon.pests.weather import Weather
     from fieldmon.plot.field import Field
     from fieldmon.plot.plot import Plot
@@ -68,6 +71,12 @@ def records(
     They may name one of `_fields`, or rows and plants, the measured ones by their own labels.
     """
     return plot_records.records_on(_plot, _source, lambda: _fields, _measured)
+
+
+@st.cache_resource(max_entries=FEW, show_spinner=WORKING)
+def merging(key: str, _season: Season, _copy: Upload) -> MergedFile:
+    """Return what merging a copy of a season would bring; `key` stands for both as they are."""
+    return merge_ahead(_season, _copy)
 
 
 @st.cache_resource(max_entries=_MANY, show_spinner=WORKING)

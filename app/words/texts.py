@@ -950,10 +950,44 @@ CORRECT_BOTH = "Correct it all the same, both hold"
 CORRECTED = Plural("{n} correction taken", "{n} corrections taken")
 RECORD_FILE_IN = (
     "The route file with its found column filled in, any table or GPS file with plants, rows "
-    "or positions, a copy of this season that QGIS or QField changed, or what a phone saved as not "
-    "sent"
+    "or positions, a copy of this season that somebody worked on or QGIS or QField changed, or "
+    "what a phone saved as not sent"
 )
 TAKE_DOUBTFUL = "Take doubtful results too"
+MERGE = "Merge"
+MERGE_COPY = (
+    "**{name} is a copy of this season.** Merge takes in all that it holds, each once; Record "
+    "takes its results alone. Nothing is written yet."
+)
+MERGE_BRINGS, MERGE_BROUGHT = (
+    "It holds what this season lacks:",
+    "**{name} was merged.** It brought:",
+)
+MERGED = "{name} was merged. What it brought stands under *A file*."
+MERGE_OR_CORRECT = "Record takes what was changed there as corrections: say who corrected."
+MERGE_BRINGS_NOTHING = "**{name} is a copy of this season**, and holds nothing that this one lacks."
+MERGED_NOTHING = "{name} held nothing that this season lacks, any more. Nothing changed."
+MERGE_NEW = Plural(
+    "{n:,} inspection, {found:,} found ({days})",
+    "{n:,} inspections of {plants:,} {plants:plant|plants}, {found:,} found ({days})",
+)
+MERGE_BY, MERGE_BY_ONE, MERGE_NOBODY = "inspected by {who}", "{who} ({n:,})", "nobody named"
+MERGE_TREATED = Plural("{n} treatment: {what}", "{n} treatments: {what}")
+MERGE_TAKEN_BACK = Plural(
+    "{n:,} inspection that counts here was taken back or corrected there",
+    "{n:,} inspections that count here were taken back or corrected there",
+)
+MERGE_CHOSEN = "choices: {what}"
+MERGE_CODES = (
+    "codes of {who}, which read this season and record into it: take back what you do not know"
+)
+MERGE_MOVED = "recordings get other numbers; the log has both"
+MERGE_LOG = Plural("{n:,} entry of its log", "{n:,} entries of its log")
+MERGE_DIFFERS = Plural("{n} thing to check:", "{n} things to check:")
+MERGE_BACK = (
+    "Below, under *Recorded so far*, each recording that came can be taken back. The season's log "
+    "has this merge, and the copy's own entries below it; the copy itself stayed as it is."
+)
 RECORD_ONE, RECORD_ROUTE, RECORD_UPLOAD = "One plant", "Today's route", "A file"
 RESULT, COUNT, RESULTS_OF = "Result", "Count", {
     0: "clean", 1: "found", 2: "could not inspect", 3: "gone",

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.status import lines
-from fieldmon.compute.working_folder import working_folder
-from fieldmon.errors import FileProblem, SettingError
-
-if TYPE_CHECKING:
-    from fieldmon.monitoring import Season
+from fieldmon.errors import SettingError
 
 OtherCopy = Annotated[Path, typer.Argument(help="The other copy of the season; it is not changed.")]
 
@@ -29,21 +25,14 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     Example: fieldmon merge season.gpkg "season (conflict).gpkg"
     """
     from fieldmon.compute.wording import counted, joined
-    from fieldmon.monitoring import Season, copy_season
+    from fieldmon.monitoring import Season
     from fieldmon.monitoring.estimates.last_days import default_date
+    from fieldmon.monitoring.season.copies_to_merge import merge_file
 
     if other.exists() and other.samefile(season):
         raise SettingError(f"{other} must be another copy of the season, but it is the same file.")
     kept = Season(season)
-    early = _entered_early(kept)
-    with working_folder() as folder:
-        copy = Path(folder) / other.name
-        copy_season(other, copy)  # an older one is brought up to date in the copy
-        try:
-            there = Season(copy)
-        except FileProblem as problem:  # it names the file that it was given
-            raise FileProblem(str(problem).replace(str(copy), str(other))) from problem
-        done = kept.merge(there)
+    done, entered = merge_file(kept, other)
     n_gone = done.taken_back
     gone = f", {n_gone} {'was' if n_gone == 1 else 'were'} taken back there" if n_gone else ""
     parts = [counted(done.new, "inspection")]
@@ -52,6 +41,11 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     were = "was" if len(parts) == 1 and done.new == 1 else "were"
     noted = f", {done.more}" if done.more else ""
     typer.echo(f"{other.name}: {joined(', ', parts)} {were} new{noted}{gone}")
+    if done.of_new.by:
+        by = (f"{who or 'nobody named'} {n:,}" for who, n in done.of_new.by)
+        typer.echo(f"  by: {', '.join(by)}")
+    for treatment in done.treated:
+        typer.echo(f"  treatment: {treatment}")
     if done.moved:
         typer.echo(
             "  numbered anew: batches have other numbers now than before; the log shows both"
@@ -60,9 +54,8 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
         typer.echo(f"  taken over: {joined('; ', done.chosen)}")
     for sentence in done.contradictions:
         typer.echo(f"  differs: {sentence}")
-    for sentence in _entered_early(kept):
-        if sentence not in early:
-            typer.echo(f"  warning: {sentence}")
+    for sentence in entered:
+        typer.echo(f"  warning: {sentence}")
     if done.codes:
         typer.echo(
             f"  codes: of {joined(', ', [*dict.fromkeys(done.codes)])}. They read this season and "
@@ -71,11 +64,3 @@ def merge(season: SeasonFile, other: OtherCopy) -> None:
     for sentence in done.overlaps:
         typer.echo(f"  codes: {sentence}")
     typer.echo("\n".join(lines(kept, kept.status(default_date(kept)))))
-
-
-def _entered_early(season: Season) -> list[str]:
-    """Return who was where before entry was allowed: one copy may know who, the other why."""
-    from fieldmon.monitoring.estimates.last_days import last_date
-
-    beware = season.cautions(last_date(season))
-    return [one.sentence for one in beware if one.kind == "entered"]

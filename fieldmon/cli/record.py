@@ -163,16 +163,11 @@ def _refuse_changed(season: Season, files: list[Path], read: list[BroughtFile]) 
 
 def _record(season: Season, read: list[BroughtFile], flags: RecordFlags) -> date | None:
     """Record what files say, all of it or nothing; return the last day of it."""
-    from fieldmon.monitoring.merging.other_seasons import is_copy
-
     if not read:
         return None
     # in a copy of this season, who is named corrected
     found = [
-        one.findings
-        if one.copy and is_copy(season, one.copy)
-        else _of(flags.who, one.findings, one.name)
-        for one in read
+        one.findings if one.is_copy else _of(flags.who, one.findings, one.name) for one in read
     ]
     named = [(inspections, one.name) for inspections, one in zip(found, read, strict=True)]
     copies = [one.copy if one.corrections else None for one in read]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
+from datetime import date
 from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
@@ -222,6 +224,19 @@ def first_few(names: Sequence[str], most: int = 5) -> str:
     'north, south, ...'
     """
     return ", ".join(names[:most]) + (", ..." if len(names) > most else "")
+
+
+def day_said(text: object) -> date | str:
+    """Return a day that a file has as text, so that a page says it as it says days.
+
+    Examples
+    --------
+    >>> day_said("2026-11-16"), day_said("16/11")
+    (datetime.date(2026, 11, 16), '16/11')
+    """
+    with suppress(ValueError):
+        return date.fromisoformat(str(text))
+    return str(text)
 
 
 def runs(numbers: Iterable[int]) -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from shapely.errors import ShapelyError
 
-from fieldmon.compute.wording import Worded, joined, worded
+from fieldmon.compute.wording import Worded, day_said, joined, worded
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT
 from fieldmon.infestation.inspections import (
@@ -47,8 +47,15 @@ if TYPE_CHECKING:
     from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
 _MOST_NAMED = 5
-# the number in the row, where `INSPECTED` has it
+# what `INSPECTED` says, and where it has the number in the row
+_TOLD = re.compile(r"(.*) at row (.*), plant (\d+) on (.*)")
 _NUMBER = re.compile(r", plant (\d+) on ")
+# columns of inspections, in words
+_CALLED = {
+    "date": worded("date"), "time": worded("time"), "result": worded("result"),
+    "count": worded("count"), "who": worded("who"), "notes": worded("notes"),
+    "detects": worded("detects"),
+}  # fmt: skip
 _DONE = {
     "update": worded("was changed"),
     "delete": worded("was deleted"),
@@ -317,7 +324,7 @@ def keep_before(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) 
 
 
 def in_words(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> str:
-    """Return what a correction made of a row, for the log."""
+    """Return what a correction made of a row, for the log and for people."""
     names = f"{INSPECTED}, line, number, {', '.join(SEEN)}"
     row = db.execute(f"SELECT {names} FROM inspections AS old WHERE fid = ?", (change.row,))  # noqa: S608 - ours
     says, line, number, *values = row.fetchone() or ("", 0, 0, *(None for _ in SEEN))
@@ -325,28 +332,47 @@ def in_words(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> 
     before = rows_that_count.as_it_was(change.before) if change.before else {}
     was = _with_face(change.was, grid, before.get("plant", now["plant"]))
     if change.what == "delete":
-        return f"{was} was deleted"
+        return worded("{was} was deleted", was=was)
     says = _with_face(str(says), grid, now["plant"])
     if change.what == "insert":
-        return f"{says} was added"
+        return worded("{says} was added", says=says)
     is_gone = now["result"] == RESULT_NAMES[SKIPPED] and begins_gone(now["notes"] or "")
     is_gone &= any(before.get(name) != now[name] for name in ("result", "notes"))
     parts = [now["notes"]] if is_gone else []
     parts += [
-        f"at row {line}, plant {with_face(grid, value, int(number or 0))}" if name == "plant"
-        else f"{name} {value:g}" if isinstance(value, float) else f"{name} {value or 'none'}"
+        worded("at row {row}, plant {plant}", row=line,
+               plant=with_face(grid, value, int(number or 0))) if name == "plant"
+        else worded("{name} {value}", name=_CALLED.get(name, name), value=_told(value))
         for name, value in now.items()
         if name in before and before[name] != value
         and not (is_gone and name in {"result", "count", "notes"})
     ]  # fmt: skip
-    return f"{was} is now {', '.join(parts) or says}"
+    return worded("{was} is now {now}", was=was, now=joined(", ", parts) if parts else says)
+
+
+def _told(value: object) -> str:
+    """Return what a column of an inspection says, in words."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    text = str(value or "")
+    return worded(text) if text in RESULT_CODES else text or worded("none")
 
 
 def _with_face(said: str, grid: PlantGrid, plant: object) -> str:
     """Return what `INSPECTED` says of an inspection, with the face where its plant has two."""
-    if not isinstance(plant, int) or not 0 <= plant < len(grid):
+    told = _TOLD.fullmatch(said)
+    if told is None:
         return said
-    return _NUMBER.sub(lambda of: f", plant {with_face(grid, plant, int(of[1]))} on ", said, 1)
+    result, row, number, day = told.groups()
+    return worded(
+        "{result} at row {row}, plant {plant} on {day}",
+        result=worded(result) if result in RESULT_CODES else result,
+        row=row,
+        plant=with_face(grid, plant, int(number))
+        if isinstance(plant, int) and 0 <= plant < len(grid)
+        else number,
+        day=day_said(day),
+    )
 
 
 def take_row(

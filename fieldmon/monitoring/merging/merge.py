@@ -18,6 +18,7 @@ from fieldmon.monitoring.merging import (
     merged_treatments,
     same_season,
 )
+from fieldmon.monitoring.merging.merged_inspections import NOTHING_NEW, NewInspections
 from fieldmon.monitoring.treating import treatments
 
 if TYPE_CHECKING:
@@ -54,6 +55,14 @@ class Merged:
         Settings that were otherwise before, each from what to what, and the table of labels.
     noted
         Inspections known before that have more notes now.
+    of_new
+        Who made the new inspections, of which plants and days, and how many found pests.
+    treated
+        Each new treatment, in words.
+    entries
+        Entries of the other copy's log that were not known.
+    changed
+        Whether anything was taken in.
     """
 
     new: int
@@ -65,6 +74,10 @@ class Merged:
     overlaps: tuple[str, ...] = ()
     chosen: tuple[str, ...] = ()
     noted: int = 0
+    of_new: NewInspections = NOTHING_NEW
+    treated: tuple[str, ...] = ()
+    entries: int = 0
+    changed: bool = True
 
     @property
     def more(self) -> str:
@@ -127,10 +140,11 @@ def merge_copies(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCop
     for batch, _ in phone_tables.bring_together(db, phones):
         close_if_empty(db, batch)
     after = _Standing.of(db, stay)
-    n_treated, undone = merged_treatments.changed(db, applied)
+    new_treatments, undone = merged_treatments.changed(db, applied)
     renumbered = {old: number for old, number in numbers[0].items() if old != number}
     merged = Merged(
-        new=len(after.counting - before.counting),
+        new=len(new := after.counting - before.counting),
+        of_new=merged_inspections.told_of(db, new, stay),
         contradictions=(
             *differing,
             *unnamed,
@@ -139,7 +153,8 @@ def merge_copies(db: sqlite3.Connection, other: sqlite3.Connection) -> MergedCop
         ),
         taken_back=len(before.counting - after.counting),
         moved=bool(renumbered),
-        treatments=n_treated,
+        treatments=len(new_treatments),
+        treated=new_treatments,
         codes=tuple(sorted(name for key, name in after.keys.items() if key not in before.keys)),
         chosen=(*chosen, *other_labels),
         noted=repeated_recordings.n_noted(

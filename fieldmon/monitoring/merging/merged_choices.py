@@ -6,7 +6,7 @@ import json
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import first_few
+from fieldmon.compute.wording import first_few, joined, worded
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.merging import merged_rows
@@ -20,6 +20,12 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.treating.treatments import Row
 
 _KNOWN_BY = ("changed", "name", "value")
+# parts of what is chosen, as a season's file calls them
+_NAMES = {
+    "robot": worded("robot"), "prior": worded("prior"), "beliefs": worded("beliefs"),
+    "season": worded("season"), "team": worded("team"), "sampler": worded("sampler"),
+    "pest": worded("pest"), "weather": worded("weather"),
+}  # fmt: skip
 
 
 def merge_settings(
@@ -50,8 +56,14 @@ def _differing(copies: list[TableRows], merged: list[Row]) -> tuple[str, ...]:
         if values[0] != values[1]:
             here, there = _chosen(name, *values)
             said.append(
-                f"The setting {name} differs: {here} here, {there} there. What was chosen last "
-                f"counts: {here if now[name] == values[0] else there}."
+                worded(
+                    "The setting {name} differs: {here} here, {there} there. What was chosen last "
+                    "counts: {now}.",
+                    name=_NAMES.get(name, name),
+                    here=here,
+                    there=there,
+                    now=here if now[name] == values[0] else there,
+                )
             )
     return tuple(said)
 
@@ -63,23 +75,29 @@ def _chosen(name: str, ours: str, theirs: str) -> tuple[str, str]:
     if name not in ("pest", "weather"):
         return _apart(ours, theirs)
     short = settings_log.pest_in if name == "pest" else _weather
-    here, there = (short(one) or "none" for one in (ours, theirs))
+    here, there = (short(one) or worded("none") for one in (ours, theirs))
     if here != there:
         return here, there
-    return f"{here} (this copy's figures)", f"{there} (the other copy's figures)"
+    return (
+        worded("{name} (this copy's figures)", name=here),
+        worded("{name} (the other copy's figures)", name=there),
+    )
 
 
 def _members(team: str) -> str:
     """Return who is in a team as it is kept, each with the hours: all else is in the log."""
     members = (json.loads(team) or {}).get("members", ())
-    each = (f"{one['name']} {one['robot']['hours']:g} h" for one in members)
-    return ", ".join(each) or "none"
+    each = [
+        worded("{name} {hours:g} h", name=one["name"], hours=one["robot"]["hours"])
+        for one in members
+    ]
+    return joined(", ", each) or worded("none")
 
 
 def _weather(weather: str) -> str:
     """Return until when weather is, in UTC; "" where there is none."""
     at = (json.loads(weather) or {}).get("at", ())
-    return f"until {datetime.fromtimestamp(max(at), UTC):%Y-%m-%d}" if at else ""
+    return worded("until {day}", day=datetime.fromtimestamp(max(at), UTC).date()) if at else ""
 
 
 def _apart(ours: str, theirs: str) -> tuple[str, str]:
@@ -89,7 +107,7 @@ def _apart(ours: str, theirs: str) -> tuple[str, str]:
         return ours, theirs
     names = [name for name in {**one, **other} if one.get(name) != other.get(name)]
     here, there = (
-        ", ".join(_with_unit(name, told.get(name)) for name in names) for told in (one, other)
+        joined(", ", [_with_unit(name, told.get(name)) for name in names]) for told in (one, other)
     )
     return here, there
 
@@ -97,7 +115,7 @@ def _apart(ours: str, theirs: str) -> tuple[str, str]:
 def _with_unit(name: str, value: object) -> str:
     """Return what a part of a setting says; other names end in their unit."""
     if name == "hours" and isinstance(value, int | float):
-        return f"{value:g} h"
+        return worded("{n:g} h", n=value)
     return f"{name} {json.dumps(value, ensure_ascii=False)}"
 
 
@@ -130,11 +148,19 @@ def _kept_last(
     last = [(max(kept[k].values(), default=""), own[k][-1:], repr(lines[k])) for k in (0, 1)]
     if bool(own[0]) != bool(own[1]):
         return tables[int(bool(own[1]))], ()
-    said = (
-        f"The table of labels differs ({_products_apart(*tables)}): each copy replaced it. "
-        "What was kept last counts, as a whole: "
-        f"the one {'here' if last[0] > last[1] else 'there'}."
-    )
+    products = _products_apart(*tables)
+    if last[0] > last[1]:
+        said = worded(
+            "The table of labels differs ({products}): each copy replaced it. What was kept last "
+            "counts, as a whole: the one here.",
+            products=products,
+        )
+    else:
+        said = worded(
+            "The table of labels differs ({products}): each copy replaced it. What was kept last "
+            "counts, as a whole: the one there.",
+            products=products,
+        )
     return tables[int(last[1] > last[0])], (said,)
 
 
@@ -147,4 +173,4 @@ def _products_apart(one: list[Row], other: list[Row]) -> str:
 def _other_labels(before: list[Row], after: list[Row]) -> list[str]:
     """Return that the table of labels is another one now, if it is."""
     apart = _products_apart(before, after)
-    return [f"table of labels ({apart})"] if apart else []
+    return [worded("table of labels ({products})", products=apart)] if apart else []

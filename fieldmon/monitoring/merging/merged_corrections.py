@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from fieldmon.compute.wording import worded
 from fieldmon.monitoring.changes.outside_changes import OutsideChange, in_words
 from fieldmon.monitoring.merging.merged_batches import CHANGE_KNOWN_BY
 from fieldmon.monitoring.merging.merged_rows import key_of
@@ -52,12 +53,23 @@ def sentences(
     for one in twice:
         here, there = (_made(db, row, grid) for row in one[:2])
         row = _row(db, one.holds)
-        what = f"batch {one.holds['batch']}" if row is None else f"inspection {row}"
-        yield (
-            f"Both copies corrected one inspection: {here} here; {there} there. What was corrected "
-            f"last counts: the one {'here' if one.holds == one.here else 'there'}. If the other is "
-            f"right, undo {what}."
+        what = (
+            worded("batch {n}", n=one.holds["batch"])
+            if row is None
+            else worded("inspection {n}", n=row)
         )
+        if one.holds == one.here:
+            yield worded(
+                "Both copies corrected one inspection: {here} here; {there} there. What was "
+                "corrected last counts: the one here. If the other is right, undo {what}.",
+                here=here, there=there, what=what,
+            )  # fmt: skip
+        else:
+            yield worded(
+                "Both copies corrected one inspection: {here} here; {there} there. What was "
+                "corrected last counts: the one there. If the other is right, undo {what}.",
+                here=here, there=there, what=what,
+            )  # fmt: skip
 
 
 def _made(db: sqlite3.Connection, one: Row, grid: PlantGrid) -> str:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections import Counter
+from typing import TYPE_CHECKING, NamedTuple
 
 from fieldmon.infestation import inspection_columns
+from fieldmon.infestation.inspections import FOUND, RESULT_NAMES
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.merging import merged_rows
 from fieldmon.monitoring.merging.merged_recordings import recordings_of_both
@@ -28,6 +30,45 @@ _TOGETHER = (
     + ", ".join([*map("count({})".format, _SAYS), *map("group_concat({})".format, _SAYS)])
     + " FROM inspections WHERE batch = ?"
 )
+
+
+class NewInspections(NamedTuple):
+    """What is told of the inspections that count once copies were merged, and did not before.
+
+    Parameters
+    ----------
+    by
+        How many each person made, who made most first; "": nobody was named.
+    plants
+        Of how many plants they are.
+    found
+        How many found pests.
+    days
+        Their days (ISO), in order.
+    """
+
+    by: tuple[tuple[str, int], ...] = ()
+    plants: int = 0
+    found: int = 0
+    days: tuple[str, ...] = ()
+
+
+NOTHING_NEW = NewInspections()
+
+
+def told_of(db: sqlite3.Connection, new: set[str], stay: int) -> NewInspections:
+    """Return what there is to tell of new inspections; none is of the first that `stay`."""
+    said = (
+        "SELECT digest, coalesce(who, ''), plant, result, date FROM inspections "
+        "WHERE undone = 0 AND fid > ?"
+    )
+    rows = [row for mark, *row in db.execute(said, (stay,)) if mark in new]
+    if not rows:
+        return NOTHING_NEW
+    who, plants, results, days = zip(*rows, strict=True)
+    by = sorted(Counter(who).items(), key=lambda one: (-one[1], one[0]))
+    found = results.count(RESULT_NAMES[FOUND])
+    return NewInspections(tuple(by), len({*plants}), found, tuple(sorted({*days})))
 
 
 def counting(db: sqlite3.Connection, stay: int = 0) -> set[str]:

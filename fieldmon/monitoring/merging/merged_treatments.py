@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from fieldmon.compute.wording import day_said, joined, worded
 from fieldmon.decisions.labels import plain_name
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.file.rows_that_count import COUNTS, NOTHING_CORRECTED, TAKEN_BACK
@@ -16,13 +17,20 @@ if TYPE_CHECKING:
     import sqlite3
     from collections.abc import Iterator
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.monitoring.merging.merged_rows import Numbers, TableRows
     from fieldmon.monitoring.treating.treatments import Row
 
 #: digests and batches of now of the treatments that a copy had
 Held = set[tuple[str | None, int | None]]
 #: what a label may fill in, in words
-_FILLED = dict(zip(treatments.FILLED, ("waiting days", "re-entry hours", "group"), strict=True))
+_FILLED = dict(
+    zip(
+        treatments.FILLED,
+        (worded("waiting days"), worded("re-entry hours"), worded("group")),
+        strict=True,
+    )
+)
 # of two treatments, which copies had each
 _EACH_BY_ONE = [True, False], [False, True]
 
@@ -42,21 +50,22 @@ def merge(
 
 def changed(
     db: sqlite3.Connection, applied: list[dict[int, frozenset[str]]]
-) -> tuple[int, tuple[set[int], set[int], set[int]]]:
-    """Return how many treatments are new, and the numbers of those that count no more.
+) -> tuple[tuple[Worded, ...], tuple[set[int], set[int], set[int]]]:
+    """Return which treatments are new, in words, and the numbers of those that count no more.
 
     `applied` is what those that counted in each copy are known by, by their numbers there; what
     counts no more is told apart as in `MergedCopy.gone`.
     """
-    counting = treatments.counting(db)
+    rows = treatments.rows_counting(db)
+    counting = [treatments.known_by(row) for row in rows]
     known, theirs = (frozenset().union(*one.values()) for one in applied)
-    n_new = sum(known.isdisjoint(marks) for marks in counting)
+    new = (row for row, marks in zip(rows, counting, strict=True) if known.isdisjoint(marks))
     now = frozenset().union(*counting)
     here, there = ({n: marks for n, marks in one.items() if marks.isdisjoint(now)}
                    for one in applied)  # fmt: skip
     twice = {n for n, marks in here.items() if marks & theirs}
     alone = {n for n, marks in there.items() if marks.isdisjoint(known)}
-    return n_new, ({*here} - twice, alone, twice)
+    return tuple(map(_in_words, new)), ({*here} - twice, alone, twice)
 
 
 def alike_but_for_labels(treated: list[Row], held: list[Held]) -> Iterator[str]:
@@ -75,10 +84,13 @@ def alike_but_for_labels(treated: list[Row], held: list[Held]) -> Iterator[str]:
         if not names or of not in (_EACH_BY_ONE, _EACH_BY_ONE[::-1]):
             continue
         here, there = (one, other) if of == _EACH_BY_ONE else (other, one)
-        differ = ", ".join(
-            f"{_FILLED[name]} {_or_none(here[name])} here, {_or_none(there[name])} there"
+        differ = joined(", ", [
+            worded(
+                "{what} {here} here, {there} there", what=_FILLED[name],
+                here=_or_none(here[name]), there=_or_none(there[name]),
+            )
             for name in names
-        )
+        ])  # fmt: skip
         counting = [row["undone"] for row in (one, other)].count(COUNTS)
         if counting == 1 and treatments.known_by(one) & treatments.known_by(other):
             yield _of_one(one, differ)
@@ -92,9 +104,11 @@ def _held_by(row: Row, held: list[Held]) -> list[bool]:
 
 
 def _of_one(row: Row, differ: str) -> str:
-    return (
-        f"The treatment with {_named(row)} was recorded in both, and labels added different "
-        f"values: {differ}. It counts once; the longer waits and all groups hold."
+    return worded(
+        "The treatment with {named} was recorded in both, and labels added different values: "
+        "{differ}. It counts once; the longer waits and all groups hold.",
+        named=_named(row),
+        differ=differ,
     )
 
 
@@ -102,19 +116,38 @@ def _of_two(one: Row, other: Row, names: list[str], differ: str) -> str:
     old = any(
         row["by_label"] is None and row[name] is not None for row in (one, other) for name in names
     )
-    why = " (an earlier version did not note whether a label added that)" if old else ""
-    return (
-        f"Treatments with {_named(one)}, batches {one['batch']} and {other['batch']}, say the "
-        f"same but for {differ}{why}. Both count; if they are one, undo a batch."
-    )
+    if old:
+        differ = worded(
+            "{differ} (an earlier version did not note whether a label added that)", differ=differ
+        )
+    return worded(
+        "Treatments with {named}, batches {first} and {second}, say the same but for {differ}. "
+        "Both count; if they are one, undo a batch.",
+        named=_named(one), first=one["batch"], second=other["batch"], differ=differ,
+    )  # fmt: skip
 
 
-def _named(row: Row) -> str:
-    return f"{row['product'] or 'a product that nobody named'} on {row['date']}"
+def _in_words(row: Row) -> Worded:
+    """Return a treatment by its product, its day and who made it."""
+    if not row["operator"]:
+        return _named(row)
+    return worded("{named} by {who}", named=_named(row), who=row["operator"])
+
+
+def _named(row: Row) -> Worded:
+    """Return a treatment by its product and its day."""
+    product = row["product"] or worded("a product that nobody named")
+    return worded("{product} on {day}", product=product, day=day_said(row["date"]))
 
 
 def _or_none(value: object) -> str:
-    return "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+    return (
+        worded("none")
+        if value is None
+        else f"{value:g}"
+        if isinstance(value, float)
+        else str(value)
+    )
 
 
 def of_one_product(treated: list[Row], held: list[Held]) -> Iterator[tuple[int, int]]:

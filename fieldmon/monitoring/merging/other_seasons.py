@@ -18,6 +18,7 @@ from fieldmon.monitoring.merging import same_season
 from fieldmon.monitoring.treating import treatments
 
 if TYPE_CHECKING:
+    import sqlite3
     from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
@@ -40,6 +41,64 @@ def is_another_now(season: OpenSeason) -> bool:
         return not is_ours or f"{season.path} {season_log.first(db)}" != season.key
 
 
+class BroughtSeason(NamedTuple):
+    """What is in another season's file beside its findings, held to a season.
+
+    Parameters
+    ----------
+    is_copy
+        Whether it is a copy of this season.
+    corrections
+        What another program changed of inspections in such a copy.
+    taken_back
+        How many inspections that count here were taken back in such a copy.
+    treatments
+        Product and day of the treatments that count there alone.
+    """
+
+    is_copy: bool
+    corrections: tuple[OutsideChange, ...]
+    taken_back: int
+    treatments: list[tuple[str, str]]
+
+
+def brought_season(season: OpenSeason, file: Path, name: str) -> BroughtSeason:
+    """Return what is in another season's file of that name, beside its findings.
+
+    Raise `FileProblem` where it looks for another pest, or where a copy has taken corrections that
+    this season has not: recorded from there, what was corrected would count twice, and what was
+    deleted would still count.
+    """
+    with season.store.reading() as db, Store(file).reading() as theirs:
+        same_season.refuse_another_pest(db, theirs)
+        alone = treatments.counting_alone(db, theirs)
+        if not same_season.are_copies(db, theirs):
+            return BroughtSeason(is_copy=False, corrections=(), taken_back=0, treatments=alone)
+        if n := copy_corrections.n_alone(db, theirs):
+            raise FileProblem(
+                worded(
+                    "A copy of a season whose findings are recorded must have no corrections of "
+                    "its own, but {n} {n:inspection of this one was|inspections of this one were} "
+                    "corrected or deleted there. {remedy}",
+                    n=n,
+                    remedy=take_all(season, name),
+                )
+            )
+        return BroughtSeason(
+            is_copy=True,
+            corrections=copy_corrections.waiting(theirs),
+            taken_back=_n_taken_back(db, theirs),
+            treatments=alone,
+        )
+
+
+def _n_taken_back(db: sqlite3.Connection, theirs: sqlite3.Connection) -> int:
+    """Return how many inspections that count here were taken back in a copy."""
+    wanted = "SELECT DISTINCT digest FROM inspections WHERE undone = ?"
+    here, there = ({*one.execute(wanted, (COUNTS,))} for one in (db, theirs))
+    return len(({*theirs.execute(wanted, (TAKEN_BACK,))} & here) - there)
+
+
 def is_copy(season: OpenSeason, file: Path) -> bool:
     """Return whether a file is this season or a copy of it, however far they went apart.
 
@@ -49,68 +108,19 @@ def is_copy(season: OpenSeason, file: Path) -> bool:
     if file.resolve() == season.path.resolve():
         return True
     with season.store.reading() as db, Store(file).reading() as theirs:
-        try:
-            same_season.refuse_strangers(db, theirs)
-        except FileProblem:
-            return False
-        apart = same_season.are_of_two_pests(db, theirs)
-        return not apart or same_season.hold_in_common(db, theirs)
+        return same_season.are_copies(db, theirs)
 
 
-def merge_command(season: OpenSeason, name: str) -> str:
-    """Return the command that takes in all that a file of this name holds."""
-    return f"fieldmon merge {shlex.quote(season.path.name)} {shlex.quote(name)}"
-
-
-def taken_back_in(season: OpenSeason, copy: Path) -> int:
-    """Return how many inspections that count here were taken back in a copy of this season."""
-    if not is_copy(season, copy):
-        return 0
-    wanted = "SELECT DISTINCT digest FROM inspections WHERE undone = ?"
-    with season.store.reading() as db, Store(copy).reading() as theirs:
-        here, there = ({*one.execute(wanted, (COUNTS,))} for one in (db, theirs))
-        return len(({*theirs.execute(wanted, (TAKEN_BACK,))} & here) - there)
-
-
-def corrections_in(season: OpenSeason, copy: Path, name: str) -> tuple[OutsideChange, ...]:
-    """Return what another program changed of inspections in a copy of this season of that name.
-
-    A file that is no copy of it has none. Raise `FileProblem` where a copy has taken corrections
-    that this season has not: recorded from there, what was corrected would count twice, and what
-    was deleted would still count.
-    """
-    if not is_copy(season, copy):
-        return ()
-    with season.store.reading() as db, Store(copy).reading() as theirs:
-        if n := copy_corrections.n_alone(db, theirs):
-            raise FileProblem(
-                worded(
-                    "A copy of a season whose findings are recorded must have no corrections of "
-                    "its own, but {n} {n:inspection of this one was|inspections of this one were} "
-                    "corrected or deleted there. Take all that it holds with: {merge}",
-                    n=n,
-                    merge=merge_command(season, name),
-                )
-            )
-        return copy_corrections.waiting(theirs)
+def take_all(season: OpenSeason, name: str) -> Worded:
+    """Return how all that a copy of this name holds is taken in, not its findings alone."""
+    merge = f"fieldmon merge {shlex.quote(season.path.name)} {shlex.quote(name)}"
+    return worded("Take all that it holds with Merge in the app, or with: {merge}", merge=merge)
 
 
 def is_of_another_pest(season: OpenSeason, file: Path) -> bool:
     """Return whether this and the season in a file name pests that differ."""
     with season.store.reading() as db, Store(file).reading() as theirs:
         return same_season.are_of_two_pests(db, theirs)
-
-
-def refuse_another_pest(season: OpenSeason, file: Path) -> None:
-    """Raise `FileProblem` where the season in a file looks for another pest than this one."""
-    with season.store.reading() as db, Store(file).reading() as theirs:
-        same_season.refuse_another_pest(db, theirs)
-
-
-def treatments_alone_in(season: OpenSeason, file: Path) -> list[tuple[str, str]]:
-    """Return product and day of the treatments that count in another season's file alone."""
-    with season.store.reading() as db, Store(file).reading() as theirs:
-        return treatments.counting_alone(db, theirs)
 
 
 class SeasonGround(NamedTuple):

@@ -78,7 +78,7 @@ def _strangers(why: Worded) -> FileProblem:
         worded(
             "Two copies of one season can be merged, but {why}. Leave each in its file. If both "
             "are of one plot and look for the same, record what was found in the one into the "
-            "other with: fieldmon record",
+            "other with Record in the app, or with: fieldmon record",
             why=why,
         )
     )
@@ -109,9 +109,10 @@ def of_no_pest(db: sqlite3.Connection, other: sqlite3.Connection) -> Iterator[st
     """Yield a sentence where `db` names a pest, and another names none but found something."""
     pest, named = _pests(db, other)
     if pest and not named and counting(other) - counting(db):
-        yield (
-            f"Only one copy names a pest, {pest}: what the other found counts as found of it, too. "
-            "If that one looked for another pest, undo its batches."
+        yield worded(
+            "Only one copy names a pest, {pest}: what the other found counts as found of it, too. "
+            "If that one looked for another pest, undo its batches.",
+            pest=pest,
         )
 
 
@@ -123,6 +124,15 @@ def are_of_two_pests(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:
 
 def _pests(db: sqlite3.Connection, other: sqlite3.Connection) -> tuple[str, str]:
     return settings_log.pest(db), settings_log.pest(other)
+
+
+def are_copies(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:
+    """Return whether two files are copies of one season, however far they went apart."""
+    try:
+        refuse_strangers(db, other)
+    except FileProblem:
+        return False
+    return not are_of_two_pests(db, other) or hold_in_common(db, other)
 
 
 def hold_in_common(db: sqlite3.Connection, other: sqlite3.Connection) -> bool:

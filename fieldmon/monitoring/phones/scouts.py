@@ -167,8 +167,11 @@ def overlaps(db: sqlite3.Connection, n_lines: int) -> tuple[str, ...]:
     """Return a sentence for each two codes whose rows overlap, as they may in merged copies."""
     settings, known = settings_of(db), scouts_in(db)
     return tuple(
-        f"{one.name} has rows {low} to {high}, and {other.name} rows {first} to {last}: both go to "
-        "plants that are in both. Make one of them a code with other rows."
+        worded(
+            "{name} has rows {low} to {high}, and {other} rows {first} to {last}: both go to "
+            "plants that are in both. Make one of them a code with other rows.",
+            name=one.name, low=low, high=high, other=other.name, first=first, last=last,
+        )
         for k, one in enumerate(known)
         for other in overlapping(one, known[k + 1 :], settings, n_lines)
         for (low, high), (first, last) in [(one.rows or (1, n_lines), other.rows or (1, n_lines))]

@@ -15,15 +15,7 @@ from fieldmon.monitoring.changes.transactions import MAGIC, copy_season, is_seas
 from fieldmon.monitoring.file.connections import connect
 from fieldmon.monitoring.inspecting import repeated_recordings
 from fieldmon.monitoring.inspecting.batches import Recorded
-from fieldmon.monitoring.merging.other_seasons import (
-    corrections_in,
-    is_copy,
-    merge_command,
-    own_names,
-    refuse_another_pest,
-    taken_back_in,
-    treatments_alone_in,
-)
+from fieldmon.monitoring.merging.other_seasons import brought_season, own_names, take_all
 from fieldmon.monitoring.phones import findings
 from fieldmon.monitoring.season.exported_inspections import edits_in, own_rows, read_exported
 from fieldmon.plot.local_clock import local_clock
@@ -37,6 +29,7 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_options import InspectionOptions
     from fieldmon.io.readers.phone_file import PhoneFile
     from fieldmon.monitoring import Season
+    from fieldmon.monitoring.merging.other_seasons import BroughtSeason
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +51,8 @@ class BroughtFile:
         What a phone saved, instead of findings; `record_saved` takes it.
     copy
         A copy of the file to read where it is a season, else None.
+    is_copy
+        Whether that is a copy of this season.
     corrections
         How many inspections another program corrected or deleted in that copy. Who did is asked.
     changed
@@ -71,6 +66,7 @@ class BroughtFile:
     messages: tuple[ImportMessage, ...] = ()
     saved: PhoneFile | None = None
     copy: Path | None = None
+    is_copy: bool = False
     corrections: int = 0
     changed: int = 0
 
@@ -128,24 +124,23 @@ def read_brought(
         return BroughtFile(name, Inspections.none(), saved.messages, saved=saved.value)
     copy = season_copied(source, folder)
     if copy is not None:
-        refuse_another_pest(season, copy)
-    corrected = [] if copy is None else [one.row for one in corrections_in(season, copy, name)]
-    apart = [] if copy is None else _about_copy(season, copy, name)
-    if copy is not None:
+        held = brought_season(season, copy, name)
+        corrected = [one.row for one in held.corrections]
         (folder / "new").mkdir()
-        source = counting_copy(copy, folder / "new", corrected)
-    if copy is None:
-        rows = read_exported(season, source, options)
-    else:
-        rows = read_inspection_rows(source, options)
-    read = _dated_on_plot(season, rows, options)
-    n_changed = 0
-    if copy is None and rows.value.exported.any():
+        rows = read_inspection_rows(counting_copy(copy, folder / "new", corrected), options)
+        read = _dated_on_plot(season, rows, options)
+        messages = (*read.messages, *_about_copy(season, held, name))
+        return BroughtFile(
+            name, read.value, messages, None, copy, held.is_copy, corrections=len(corrected)
+        )
+    rows = read_exported(season, source, options)
+    read, n_changed = _dated_on_plot(season, rows, options), 0
+    if rows.value.exported.any():
         here, _ = own_rows(season, rows.value, options)
         edits = edits_in(season, here, options)
         n_changed = sum(one.is_seen_otherwise for one in edits.changed) + len(edits.unsure)
-    messages = (*read.messages, *apart, *_about_changed(n_changed))
-    return BroughtFile(name, read.value, messages, None, copy, len(corrected), n_changed)
+    messages = (*read.messages, *_about_changed(n_changed))
+    return BroughtFile(name, read.value, messages, changed=n_changed)
 
 
 def _about_changed(n: int) -> list[ImportMessage]:
@@ -187,23 +182,22 @@ def _dated_on_plot(
     return read if season.settings.begins > today else come(read, options, today)
 
 
-def _about_copy(season: Season, copy: Path, name: str) -> list[ImportMessage]:
+def _about_copy(season: Season, held: BroughtSeason, name: str) -> list[ImportMessage]:
     """Return doubts about what of another season is not taken: only its findings are asked for."""
-    about = _about_treatments(season, copy, name)
-    if n := taken_back_in(season, copy):
+    about = _about_treatments(season, held, name)
+    if n := held.taken_back:
         said = worded(
             "{n} {n:inspection was|inspections were} taken back in that copy, and {n:counts|count} "
-            "on here. Take all that it holds with: {merge}",
+            "on here. {remedy}",
             n=n,
-            merge=merge_command(season, name),
+            remedy=take_all(season, name),
         )
         about.append(doubtful(said))
     return about
 
 
-def _about_treatments(season: Season, copy: Path, name: str) -> list[ImportMessage]:
-    alone = treatments_alone_in(season, copy)
-    if not alone:
+def _about_treatments(season: Season, held: BroughtSeason, name: str) -> list[ImportMessage]:
+    if not held.treatments:
         return []
     named = [
         worded(
@@ -211,22 +205,21 @@ def _about_treatments(season: Season, copy: Path, name: str) -> list[ImportMessa
             product=product or worded("a product that nobody named"),
             day=day,
         )
-        for product, day in alone
+        for product, day in held.treatments
     ]
-    if is_copy(season, copy):
+    told = {"n": len(named), "some": first_few(named)}
+    if held.is_copy:
         said = worded(
             "{n} {n:treatment|treatments} of that copy {n:is|are} not taken ({some}), nor "
-            "{n:its|their} waiting periods. Take all that it holds with: {merge}",
-            n=len(alone),
-            some=first_few(named),
-            merge=merge_command(season, name),
+            "{n:its|their} waiting periods. {remedy}",
+            remedy=take_all(season, name),
+            **told,
         )
     else:
         said = worded(
             "{n} {n:treatment|treatments} of that season {n:is|are} not taken ({some}), nor "
             "{n:its|their} waiting periods. Record {n:it|them} here, too.",
-            n=len(alone),
-            some=first_few(named),
+            **told,
         )
     return [doubtful(said)]
 

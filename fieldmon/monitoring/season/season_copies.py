@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.kinds import checked
+from fieldmon.compute.wording import worded
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.file import label_table
 from fieldmon.monitoring.file.connections import kept_open
@@ -26,9 +27,9 @@ if TYPE_CHECKING:
 
 #: why treatments do not count any more after merging, as `MergedCopy` has them
 _GONE = (
-    "counted here, but was undone there",
-    "counted there, but was undone here",
-    "counted in both, but each undid another recording of it",
+    worded("counted here, but was undone there"),
+    worded("counted there, but was undone here"),
+    worded("counted in both, but each undid another recording of it"),
 )
 
 
@@ -59,7 +60,7 @@ class SeasonCopies(OpenSeason):
             ended = _ended(here, there, taken)
             corrected = tuple(merged_corrections.sentences(db, taken.twice, self.plot.grid))
             states, labels = season_log.states(db), label_table.read(db)
-            if states != was:
+            if changed := states != was:
                 _log_merged(db, states, told, taken, (ended, corrected))
             kept = treatments.by_vine(treatments.kept(db, self._inside, clock), self.plot.grid)
             twice = _recorded_twice(kept, taken)
@@ -77,6 +78,8 @@ class SeasonCopies(OpenSeason):
                 *no_more,
             ),
             overlaps=overlaps,
+            entries=len(told),
+            changed=changed,
         )
 
 

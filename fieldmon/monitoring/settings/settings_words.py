@@ -97,7 +97,10 @@ def differences(before: Parts, after: Parts) -> list[str]:
     if before.get("weather") == after.get("weather"):  # a year of hours takes time to read
         before, after = ({**parts, "weather": "null"} for parts in (before, after))
     each = _differing(from_json(before), from_json(after), whole=True)
-    return [f"{name} {was} to {now}" if was or now else name for name, was, now in each]
+    return [
+        worded("{name} {was} to {now}", name=name, was=was, now=now) if was or now else name
+        for name, was, now in each
+    ]
 
 
 def _differing(

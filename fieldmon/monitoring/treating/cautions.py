@@ -228,13 +228,19 @@ def harvest_unsaid(one: KeptTreatment, units: Units | None = None) -> str:
 
 def counts_no_more(one: KeptTreatment, label: ProductLabel | None, why: str) -> str:
     """Return that a treatment of two copies does not count any more, what ends, and `why`."""
-    first = waits(one, label).harvest_from
-    wait = "" if first is None else f" and its wait (harvest from {first})"
-    return (
-        f"The treatment with {one.application.product or 'a product that nobody named'} on "
-        f"{one.on} {why}: it does not count, nor do its warnings{wait}. If it was done, record it "
-        f"again with: fieldmon treat"
-    )
+    first, named = waits(one, label).harvest_from, _named(one, Units()) | {"day": one.on}
+    if first is None:
+        return worded(
+            "The treatment with {product} on {day} {why}: it does not count, nor do its warnings. "
+            "If it was done, record it again: in the app, or with: fieldmon treat",
+            why=why, **named,
+        )  # fmt: skip
+    return worded(
+        "The treatment with {product} on {day} {why}: it does not count, nor do its warnings and "
+        "its wait (harvest from {first}). If it was done, record it again: in the app, or with: "
+        "fieldmon treat",
+        why=why, first=first, **named,
+    )  # fmt: skip
 
 
 def same_plants_twice(one: KeptTreatment, other: KeptTreatment, units: Units | None = None) -> str:

@@ -223,7 +223,12 @@ def but_for_labels(row: Mapping[str, Any]) -> str:
 
 def counting(db: sqlite3.Connection) -> list[frozenset[str]]:
     """Return what each treatment that counts is known by."""
-    return [known_by(row) for row in _rows(db, "undone = 0")]
+    return [known_by(row) for row in rows_counting(db)]
+
+
+def rows_counting(db: sqlite3.Connection) -> list[Row]:
+    """Return the rows of the treatments that count."""
+    return _rows(db, "undone = 0")
 
 
 def counting_alone(db: sqlite3.Connection, other: sqlite3.Connection) -> list[tuple[str, str]]:

@@ -4,6 +4,7 @@ from collections import Counter
 
 import pytest
 
+from fieldmon.compute.wording import Worded
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.inspecting import batches, inspection_table, undone_batches
 from tests.monitoring.merging.copies import (
@@ -34,6 +35,8 @@ def test_merged_is_the_union_once_each_and_the_same_either_way(first):
         done = merge(ours, other).merged
         assert done.new == len(that_count(ours) - that_count(one))
         assert done.taken_back == len(that_count(one) - that_count(ours))
+        assert sum(n for _, n in done.of_new.by) == done.new
+        assert all(isinstance(said, Worded) for said in done.contradictions)
         merge(theirs, one)
         for db, before in ((ours, one), (theirs, other)):
             assert season_log.differing(db) == ()

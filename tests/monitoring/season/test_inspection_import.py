@@ -17,6 +17,7 @@ from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.merging import same_season
 from fieldmon.monitoring.season.inspection_import import counting_copy, read_brought, record_saved
 from fieldmon.monitoring.treating.applications import Application
 from tests.monitoring.changes.test_outside_changes import outside
@@ -158,11 +159,25 @@ def test_what_was_taken_back_in_a_copy_and_counts_on_here_is_said(path, tmp_path
     assert doubts("after") == [
         (
             "2 inspections were taken back in that copy, and count on here. Take all that it holds "
-            "with: fieldmon merge season.gpkg 'my copy.gpkg'"
+            "with Merge in the app, or with: fieldmon merge season.gpkg 'my copy.gpkg'"
         )
     ]
     season.merge(copy)
     assert doubts("merged") == []
+
+
+def test_whether_a_file_is_a_copy_of_the_season_is_asked_once(path, tmp_path, monkeypatch):
+    asked, ask = [], same_season.refuse_strangers
+    monkeypatch.setattr(
+        same_season, "refuse_strangers", lambda *both: asked.append(both) or ask(*both)
+    )
+    season, copy = Season(path), Season(shutil.copy(path, tmp_path / "copy.gpkg"))
+    copy.treat(BEGINS, 0.5)
+    copy.undo(inspection=3)
+    (own := tmp_path / "own").mkdir()
+    read = read_brought(season, copy.path, OPTIONS, own)
+    told = " ".join(one.sentence for one in read.messages)
+    assert (read.is_copy, told.count("Take all that it holds"), len(asked)) == (True, 2, 1)
 
 
 def test_treatments_of_another_season_are_said_to_stay_there(path, tmp_path):

@@ -70,7 +70,7 @@ def test_a_spraying_undone_in_one_copy_is_named_with_the_wait_that_ends(path, ot
     said = (
         f"The treatment with Acarol on {BEGINS} counted {{}}, but was undone {{}}: it does not "
         f"count, nor do its warnings and its wait (harvest from {BEGINS + timedelta(days=15)}). "
-        f"If it was done, record it again with: fieldmon treat"
+        f"If it was done, record it again: in the app, or with: fieldmon treat"
     )
     assert done.contradictions == (said.format("there", "here"),)
     n = len(there.log())
@@ -100,8 +100,8 @@ def test_a_spraying_that_both_recorded_is_named_where_each_undid_another_recordi
     done = one.merge(another)
     said = (
         f"The treatment with Acarol on {BEGINS} counted in both, but each undid another recording "
-        f"of it: it does not count, nor do its warnings. If it was done, record it again with: "
-        f"fieldmon treat"
+        f"of it: it does not count, nor do its warnings. If it was done, record it again: in the "
+        f"app, or with: fieldmon treat"
     )
     assert done.contradictions == (said,)
     assert f"; undone there: Acarol on {BEGINS}" in one.log()[-1].sentence()

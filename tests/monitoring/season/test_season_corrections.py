@@ -9,7 +9,7 @@ import pytest
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.monitoring import Season
-from fieldmon.monitoring.merging.other_seasons import corrections_in
+from fieldmon.monitoring.merging.other_seasons import brought_season
 from tests.monitoring.changes.test_outside_changes import outside
 from tests.monitoring.seasons import BEGINS, a_season
 
@@ -23,7 +23,8 @@ def test_corrections_have_an_author(path, tmp_path):
 
 def test_a_file_that_is_no_copy_of_the_season_has_none(path, tmp_path):
     other = a_season(tmp_path / "other.gpkg")
-    assert corrections_in(Season(path), other.path, "other.gpkg") == ()
+    held = brought_season(Season(path), other.path, "other.gpkg")
+    assert (held.is_copy, held.corrections) == (False, ())
     assert other.status(BEGINS).found == 0
 
 

@@ -140,6 +140,6 @@ def _bring(place: str, usual: time, box: str) -> None:
     try:
         limits.check("bytes", brought.size, _TABLE_BYTES, brought.name)
         stated = team_of_table(brought.getvalue(), brought.name)
-        told_team.take(place, *team_stated(stated, usual))
+        told_team.bring(place, *team_stated(stated, usual))
     except FieldmonError as error:
         st.session_state[_PROBLEM + place] = of_error(error)

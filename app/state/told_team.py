@@ -138,7 +138,7 @@ class TeamDraft:
     def told(self) -> TeamChoice:
         """Return what the boxes say; raise `SettingError` where that cannot be."""
         members = [row.told() for row in self.rows]
-        must_differ(members)
+        must_differ([one.name for one in members])
         made = _choice(members, [row.starts() for row in self.rows], self._teamwork())
         return self.begun if made == self.plain else made
 

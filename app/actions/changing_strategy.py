@@ -212,7 +212,9 @@ def _offer_undo(choices: Choices) -> None:
     if before is None:
         return
     what = in_words(changed(choices.open_season.settings, before))
-    label = texts.UNDO_CHANGE.format(what=what) if what else texts.UNDO_NO_CHANGE
+    if what:  # on the button a team of many is too long for a phone
+        st.caption(texts.LAST_CHANGE.format(what=what))
+    label = texts.UNDO_CHANGE if what else texts.UNDO_NO_CHANGE
     st.button(label, key="undo_change", icon=":material/undo:", on_click=_undo, args=(choices,))
 
 

@@ -317,8 +317,8 @@ def _work(work: Work) -> tuple[Robot, str]:
         )  # fmt: skip
         if who != changing_strategy.SCOUT:
             base = robot_boxes.of_files(base, _OF_FILES)
-        sampler = show(
-            st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
+        sampler = strategy_boxes.show(
+            st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), place=_OF_FILES, key="sampler",
             counts=USUAL_SAMPLER, **changing_strategy.named(),
         )  # fmt: skip
         st.caption(sampler_does(sampler))

@@ -61,9 +61,11 @@ def of_season(robot: Robot, place: str, key: str) -> Robot:
         help=texts.ROBOT_TURNS_HELP,
     )  # fmt: skip
     names = [*ROBOT_TIMES, *([_OWN] if robot.times is None else [])]
-    times = show(st.selectbox, texts.ROBOT_TIMES_LABEL, names, counts=robot.times or _OWN,
-                 key=f"robot_times {key}", filter_mode=None, help=texts.ROBOT_TIMES_HELP,
-                 format_func=lambda name: _times_name(robot, name))  # fmt: skip
+    times = strategy_boxes.show(
+        st.selectbox, texts.ROBOT_TIMES_LABEL, names, place=place, counts=robot.times or _OWN,
+        key=f"robot_times {key}", filter_mode=None, help=texts.ROBOT_TIMES_HELP,
+        format_func=lambda name: _times_name(robot, name),
+    )  # fmt: skip
     charged = robot if times == _OWN else robot.with_times(times)
     # what is shown is rounded: what nobody changed stays as it was
     return charged if (width, radius) == was else _with_size(charged, width, radius)

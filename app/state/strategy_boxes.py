@@ -6,7 +6,7 @@ It is there again on another page and, by `kept_files`, after a reload.
 from __future__ import annotations
 
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 import streamlit as st
 
@@ -33,8 +33,23 @@ def all_of(place: str) -> Iterator[None]:
             widget_memory.forget(key)
 
 
+# as in `widget_memory`
+@overload
 def show(
-    widget: Callable[..., T], *arguments: object, place: str, key: str, counts: object,
+    widget: Callable[[str, list[str]], T], label: str, options: list[str], /, *, place: str,
+    key: str, counts: object, **settings: object,
+) -> T: ...  # fmt: skip
+
+
+@overload
+def show(
+    widget: Callable[..., T], /, *arguments: object, place: str, key: str, counts: object,
+    **settings: object,
+) -> T: ...  # fmt: skip
+
+
+def show(
+    widget: Callable[..., T], /, *arguments: object, place: str, key: str, counts: object,
     **settings: object,
 ) -> T:  # fmt: skip
     """Show a box of a place; it begins with what counts, or with what was said in it since."""

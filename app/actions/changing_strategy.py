@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import streamlit as st
@@ -14,7 +15,7 @@ from fieldmon.monitoring.estimates.told_anew import telling_anew
 from fieldmon.monitoring.settings.settings_words import changed, taken_back
 from fieldmon.plot.robot import Robot, scout
 
-from ..state import notices, told_team
+from ..state import notices, strategy_boxes, told_team
 from ..state.told_team import TeamChoice
 from ..words import texts
 from ..words.language import in_words, listed
@@ -80,7 +81,8 @@ def show(name: str, choices: Choices, work: Work, by: MonitoringSettings) -> Non
             st.caption(_earlier(by, choices.on))
             _offer_as_now(choices)
             return
-        wanted, hours = _wanted(name, choices, work)
+        with strategy_boxes.all_of(choices.key):
+            wanted, hours = _wanted(name, choices, work)
         if wanted is None:  # what is said of a team cannot be used, and says why
             st.session_state[_UNUSED] = True
             wanted = settings
@@ -152,16 +154,16 @@ def _with_team(name: str, choices: Choices) -> MonitoringSettings | None:
     settings = choices.open_season.settings
     now = TeamChoice(settings.team, settings.starts, settings.teamwork)
     told = telling_team.show(choices.key, now, settings.robot)
-    wanted = _with_sampler(settings, f"{name} {settings.sampler}")
+    wanted = _with_sampler(choices, settings, f"{name} {settings.sampler}")
     return None if told is None else replace(wanted, **told._asdict())
 
 
-def _with_sampler(settings: MonitoringSettings, key: str) -> MonitoringSettings:
+def _with_sampler(choices: Choices, settings: MonitoringSettings, key: str) -> MonitoringSettings:
     """Show the box of the sampler; return the settings with the one that is chosen."""
-    names = list(texts.SAMPLERS)
-    sampler = st.selectbox(
-        texts.SAMPLER, names, names.index(settings.sampler), key=f"sampler {key}", **named()
-    )
+    sampler = strategy_boxes.show(
+        st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), place=choices.key,
+        key=f"sampler {key}", counts=settings.sampler, **named(),
+    )  # fmt: skip
     wanted = settings if sampler == settings.sampler else settings.with_sampler(sampler)
     st.caption(sampler_does(sampler, wanted.sampler_settings.get("every")))
     return wanted
@@ -179,9 +181,9 @@ def _wanted(
     key = f"{name} {robot.hours} {robot.look_s} {settings.sampler} {robot.speed_m_s}"
     alone = SCOUT if robot.on_foot else ROBOT
     was = TEAM if settings.team else alone
-    who = st.segmented_control(texts.WHO, [*WHO, TEAM], default=was, required=True,
-                               format_func=who_name, key=f"who {key} {was}",
-                               label_visibility="collapsed")  # fmt: skip
+    show = partial(strategy_boxes.show, place=choices.key)
+    who = show(st.segmented_control, texts.WHO, [*WHO, TEAM], key=f"who {key} {was}", counts=was,
+               required=True, format_func=who_name, label_visibility="collapsed")  # fmt: skip
     if who == TEAM:
         return _with_team(name, choices), nullcontext()
     settings = replace(settings, team=())
@@ -192,13 +194,15 @@ def _wanted(
     usual_h, usual_s = float(robot.hours), float(robot.look_s)
     place = work.hours()
     with place:
-        hours = st.slider(texts.HOURS, min(0.5, usual_h), max(16.0, usual_h), usual_h,
-                          0.5, format=in_hours(), key=f"hours {key}")  # fmt: skip
-    inspection_s = st.slider(texts.INSPECTION_S, min(20.0, usual_s), max(60.0, usual_s), usual_s,
-                             5.0, format="%g", key=f"inspection_s {key}")  # fmt: skip
+        hours = show(st.slider, texts.HOURS, min(0.5, usual_h), max(16.0, usual_h), step=0.5,
+                     format=in_hours(), key=f"hours {key}", counts=usual_h)  # fmt: skip
+    inspection_s = show(
+        st.slider, texts.INSPECTION_S, min(20.0, usual_s), max(60.0, usual_s), step=5.0,
+        format="%g", key=f"inspection_s {key}", counts=usual_s,
+    )  # fmt: skip
     if who != SCOUT:
-        robot = robot_boxes.of_season(robot, key)
-    wanted = _with_sampler(settings, key)
+        robot = robot_boxes.of_season(robot, choices.key, key)
+    wanted = _with_sampler(choices, settings, key)
     robot = replace(robot, hours=float(hours), look_s=float(inspection_s))
     return replace(wanted, robot=robot), place
 
@@ -208,7 +212,9 @@ def _offer_undo(choices: Choices) -> None:
     if before is None:
         return
     what = in_words(changed(choices.open_season.settings, before))
-    label = texts.UNDO_CHANGE.format(what=what) if what else texts.UNDO_NO_CHANGE
+    if what:  # on the button a team of many is too long for a phone
+        st.caption(texts.LAST_CHANGE.format(what=what))
+    label = texts.UNDO_CHANGE if what else texts.UNDO_NO_CHANGE
     st.button(label, key="undo_change", icon=":material/undo:", on_click=_undo, args=(choices,))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from datetime import date, timedelta
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
@@ -31,6 +32,7 @@ from ..state import (
     sample_estate,
     season_held,
     seasons_folder,
+    strategy_boxes,
     unit_boxes,
     widget_memory,
     work_day,
@@ -60,6 +62,8 @@ if TYPE_CHECKING:
     #: waits until plants can be laid, while a plot's outline may be shown
     Wait = Callable[[Field | None], None]
 
+# where boxes of who works stand that no season keeps
+_OF_FILES = "files"
 # in the box names look alike that begin with the same letters, so many
 _CUT_ALIKE = 14
 _MOST_MEASURED = 500
@@ -294,27 +298,28 @@ def _labels(fields: tuple[Field, ...], units: UnitsInLanguage) -> list[str]:
 
 
 def _work(work: Work) -> tuple[Robot, str]:
+    show = partial(strategy_boxes.show, place=_OF_FILES)
     with work.foot, st.expander(texts.WHO, expanded=work.day is not None):
-        who = widget_memory.show(
+        who = show(
             st.segmented_control, texts.WHO, list(changing_strategy.WHO), key="who",
-            default=changing_strategy.ROBOT, required=True, label_visibility="collapsed",
+            counts=changing_strategy.ROBOT, required=True, label_visibility="collapsed",
             format_func=changing_strategy.who_name, on_change=_keep_hours,
         )  # fmt: skip
         base = robots.scout() if who == changing_strategy.SCOUT else robots.Robot()
         with work.hours():
-            day_h = widget_memory.show(
+            day_h = show(
                 st.slider, texts.HOURS, 0.5, 16.0, step=0.5, key=f"hours {who}",
-                default=base.hours, format=changing_strategy.in_hours(),
+                counts=base.hours, format=changing_strategy.in_hours(),
             )  # fmt: skip
-        inspection_s = widget_memory.show(
+        inspection_s = show(
             st.slider, texts.INSPECTION_S, 20, 60, step=5, key=f"inspection_s {who}",
-            default=int(base.look_s),
+            counts=int(base.look_s),
         )  # fmt: skip
         if who != changing_strategy.SCOUT:
-            base = robot_boxes.of_files(base)
-        sampler = widget_memory.show(
-            st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), key="sampler",
-            default=USUAL_SAMPLER, **changing_strategy.named(),
+            base = robot_boxes.of_files(base, _OF_FILES)
+        sampler = strategy_boxes.show(
+            st.selectbox, texts.SAMPLER, list(texts.SAMPLERS), place=_OF_FILES, key="sampler",
+            counts=USUAL_SAMPLER, **changing_strategy.named(),
         )  # fmt: skip
         st.caption(sampler_does(sampler))
         st.caption(texts.TEAM_IN_SEASON)

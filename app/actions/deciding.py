@@ -87,6 +87,9 @@ def _box(key: str, learnt: float | None = None) -> None:
         type(step)(deciding.shown(key, high)), step=step, key=key, default=begins,
         placeholder=None if learnt is None else f"{100 * learnt:.3g}",
     )  # fmt: skip
+    said = widget_memory.value(key)
+    if key == deciding.WORKS and said is not None and said <= 1:  # as commands take it
+        st.warning(texts.TREAT_SHARE.format(said=said, meant=100 * said))
 
 
 def known_thresholds(choices: Choices) -> None:

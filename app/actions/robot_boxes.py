@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import streamlit as st
 
 from fieldmon.plot.robot import ROBOT_TIMES, USUAL_TIMES
 
-from ..state import widget_memory
+from ..state import strategy_boxes
 from ..state.chosen_units import units
 from ..words import texts
 from ..words.language import number
@@ -22,44 +23,49 @@ _OWN = "own"
 _WIDTHS_M, _RADII_M = (0.1, 10.0), (0.1, 20.0)
 
 
-def of_files(robot: Robot) -> Robot:
+def of_files(robot: Robot, place: str) -> Robot:
     """Show the boxes of a plot that no season keeps; return the robot that they say."""
+    show = partial(strategy_boxes.show, place=place)
     unit = texts.UNITS[units().length]
-    width = widget_memory.show(
+    width = show(
         st.number_input, texts.ROBOT_WIDTH.format(unit=unit), *units().limits(*_WIDTHS_M),
-        step=0.05, key="robot_width", help=texts.ROBOT_WIDTH_HELP,
+        step=0.05, key="robot_width", counts=None, help=texts.ROBOT_WIDTH_HELP,
     )  # fmt: skip
-    radius = widget_memory.show(
+    radius = show(
         st.number_input, texts.ROBOT_TURNS.format(unit=unit), *units().limits(*_RADII_M),
-        step=0.1, key="robot_turns", disabled=width is None, help=texts.ROBOT_TURNS_HELP,
+        step=0.1, key="robot_turns", counts=None, disabled=width is None,
+        help=texts.ROBOT_TURNS_HELP,
     )  # fmt: skip
-    times = widget_memory.show(
+    times = show(
         st.selectbox, texts.ROBOT_TIMES_LABEL, list(ROBOT_TIMES), key="robot_times",
-        default=robot.times, filter_mode=None, format_func=lambda name: _times_name(robot, name),
+        counts=robot.times, filter_mode=None, format_func=lambda name: _times_name(robot, name),
         help=texts.ROBOT_TIMES_HELP,
     )  # fmt: skip
     return _with_size(robot.with_times(times or USUAL_TIMES), width, radius)
 
 
-def of_season(robot: Robot, key: str) -> Robot:
+def of_season(robot: Robot, place: str, key: str) -> Robot:
     """Show the boxes of a season's robot; return the robot that they say."""
+    show = partial(strategy_boxes.show, place=place)
     size = f"{robot.width_m} {robot.turning_radius_m}"
     now, key = units(), f"{key} {size} {robot.times} {units().length}"
     unit, was = texts.UNITS[now.length], (_shown(robot.width_m, _WIDTHS_M),
                                           _shown(robot.turning_radius_m, _RADII_M))  # fmt: skip
-    width = widget_memory.anew(
+    width = show(
         st.number_input, texts.ROBOT_WIDTH.format(unit=unit), *now.limits(*_WIDTHS_M),
-        value=was[0], step=0.05, key=f"robot_width {key}", help=texts.ROBOT_WIDTH_HELP,
+        counts=was[0], step=0.05, key=f"robot_width {key}", help=texts.ROBOT_WIDTH_HELP,
     )  # fmt: skip
-    radius = widget_memory.anew(
+    radius = show(
         st.number_input, texts.ROBOT_TURNS.format(unit=unit), *now.limits(*_RADII_M),
-        value=was[1], step=0.1, key=f"robot_turns {key}", disabled=width is None,
+        counts=was[1], step=0.1, key=f"robot_turns {key}", disabled=width is None,
         help=texts.ROBOT_TURNS_HELP,
     )  # fmt: skip
     names = [*ROBOT_TIMES, *([_OWN] if robot.times is None else [])]
-    times = st.selectbox(texts.ROBOT_TIMES_LABEL, names, names.index(robot.times or _OWN),
-                         key=f"robot_times {key}", filter_mode=None, help=texts.ROBOT_TIMES_HELP,
-                         format_func=lambda name: _times_name(robot, name))  # fmt: skip
+    times = strategy_boxes.show(
+        st.selectbox, texts.ROBOT_TIMES_LABEL, names, place=place, counts=robot.times or _OWN,
+        key=f"robot_times {key}", filter_mode=None, help=texts.ROBOT_TIMES_HELP,
+        format_func=lambda name: _times_name(robot, name),
+    )  # fmt: skip
     charged = robot if times == _OWN else robot.with_times(times)
     # what is shown is rounded: what nobody changed stays as it was
     return charged if (width, radius) == was else _with_size(charged, width, radius)

@@ -40,6 +40,17 @@ def show(place: str, now: TeamChoice, robot: Robot) -> TeamChoice | None:
     """
     draft = told_team.draft(place, now, robot)
     is_late = draft.seen != now
+    # whatever is said among the rows, what stands below them is in its place, and stays open
+    with st.container():
+        told = _rows(place, draft, now, is_late=is_late)
+    with st.expander(texts.TEAM_MORE):
+        _together(draft)
+        _table(place, draft, told)
+    return None if is_late else told
+
+
+def _rows(place: str, draft: TeamDraft, now: TeamChoice, *, is_late: bool) -> TeamChoice | None:
+    """Show the rows; return what they say, None where that cannot be."""
     if is_late:
         st.warning(texts.TEAM_LATE)
         st.button(texts.TEAM_NOW, key="team_now", on_click=told_team.drop, args=(place,))
@@ -53,11 +64,7 @@ def show(place: str, now: TeamChoice, robot: Robot) -> TeamChoice | None:
             for who, label in ((ROBOT, texts.TEAM_ADD_ROBOT), (SCOUT, texts.TEAM_ADD_SCOUT)):
                 st.button(label, key=f"team_add_{who}", icon=":material/add:",
                           on_click=told_team.add, args=(place, who))  # fmt: skip
-    told = _told(draft)
-    with st.expander(texts.TEAM_MORE):
-        _together(draft)
-        _table(place, draft, told)
-    return None if is_late else told
+    return _told(draft)
 
 
 def _told(draft: TeamDraft) -> TeamChoice | None:
@@ -140,6 +147,6 @@ def _bring(place: str, usual: time, box: str) -> None:
     try:
         limits.check("bytes", brought.size, _TABLE_BYTES, brought.name)
         stated = team_of_table(brought.getvalue(), brought.name)
-        told_team.take(place, *team_stated(stated, usual))
+        told_team.bring(place, *team_stated(stated, usual))
     except FieldmonError as error:
         st.session_state[_PROBLEM + place] = of_error(error)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from ..state.class_changes import ClassChanges
 from ..state.map_store import JSON, STORE
+from ..state.news_since import NewsSince
 from ..words import texts
 from . import field_map, map_layers
 from .map_view import MapContent
@@ -57,12 +59,9 @@ def content(choices: Choices, scene: Scene, day: DayInTime | None) -> MapContent
 
 
 def live_content(choices: Choices, live: LiveDrive, key: str) -> MapContent:
-    """Return the plot, and where the browser asks every second how the robots' day goes."""
-
-    def now() -> bytes:
-        return json.dumps(as_live(live), separators=(",", ":")).encode()
-
-    begins = as_live(live) | {"poll": STORE.attach(key, now)}
+    """Return the plot, and where the browser asks every second what is new of the robots' day."""
+    news = live.news = live.news or NewsSince(partial(as_live, live))
+    begins = news.whole() | {"poll": STORE.attach(key, news.since)}
     first = STORE.publish(json.dumps(begins, separators=(",", ":")).encode(), JSON)
     alt = texts.DRIVE_ALT.format(name=choices.plot.field.name)
     return replace(content(choices, live.scene, None), drive=first, alt=alt)
@@ -115,7 +114,7 @@ def _robot(k: int, name: str, trace: Trace, robot: Robot) -> dict[str, Any]:
         "lon": np.round(lon, 7).tolist(),
         "lat": np.round(lat, 7).tolist(),
         "heading": np.round(heading, 1).tolist(),
-        "unseen": trace.unseen,
+        "unseen": list(trace.unseen),
         "stops": [[round(s.done_s, 1), s.plant, s.found] for s in trace.stops],
         "end": round(trace.end_s, 1),
     }

@@ -65,6 +65,8 @@ _KINDS = mimetypes.MimeTypes()
 # closed in by themselves, see there
 _FOR_PHONES = (scout_page.PATH, "/api/")
 # one reading process looks tiles up, one after the other: each takes a millisecond
+# of an answer that a browser had
+_NUMBER = re.compile(r"[0-9]{1,15}")
 _TILES = ThreadPoolExecutor(1, "tiles")
 _LOG = logging.getLogger(__name__)
 
@@ -100,7 +102,7 @@ class Server:
         elif scope["path"] in self._files and scope.get("method") == "GET":
             await self._hand_out(scope["path"], send)
         elif scope["type"] == "http" and scope["path"].startswith(map_store.PATH):
-            await _hand_out_map(scope["path"], send)
+            await _hand_out_map(scope, send)
         elif scope["type"] == "http" and scope["path"].startswith(map_tiles.PATH):
             await _hand_out_tile(scope["path"], send)
         else:
@@ -176,9 +178,11 @@ def _closed_in(send: Send, scope: Message) -> Send:
     return send_closed_in
 
 
-async def _hand_out_map(path: str, send: Send) -> None:
+async def _hand_out_map(scope: Message, send: Send) -> None:
+    path = scope["path"]
     if (made := map_store.STORE.changing(path)) is not None:
-        now = await asyncio.to_thread(made)
+        had = scope.get("query_string", b"").removeprefix(b"since=").decode("latin-1")
+        now = await asyncio.to_thread(made, int(had) if _NUMBER.fullmatch(had) else None)
         await _answer(send, 200, map_store.JSON, now, [(b"cache-control", b"no-store")])
         return
     found = map_store.STORE.get(path)

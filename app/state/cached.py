@@ -27,6 +27,7 @@ from fieldmon.monitoring.estimates import figures_of_day, treatment_effect
 from fieldmon.monitoring.estimates.plant_states import hot_spots_on
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed
 from fieldmon.reports import season as reports
+from fieldmon.reports.day import DayFacts
 
 from ..words import language, texts
 from ..words.language import Late
@@ -343,6 +344,22 @@ def season_report(
 ) -> Report:
     """Return the report of a season up to a day."""
     return reports.season_report(_season, date.fromisoformat(day), units)
+
+
+@st.cache_resource(max_entries=FEW, show_spinner=WORKING)
+def day_of_each(
+    key: str,
+    now: tuple[str, str],
+    days: tuple[str, date | None],
+    _season: Season,
+    wished: tuple[Wishes, bool],
+) -> tuple[DayFacts, ...]:
+    """Return a day (ISO, and today's) of a season and, where several work, that of each of them.
+
+    `now` is `revision_on` and the minute of today, which is empty on another day.
+    """
+    day, today = days
+    return DayFacts.each_of_season(_season, date.fromisoformat(day), today, wished)
 
 
 def layers(key: str, make: Callable[[], list[Layer]]) -> list[Layer]:

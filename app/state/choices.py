@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
     from fieldmon.plot.plot import Plot
     from fieldmon.plot.robot import Robot
+    from fieldmon.reports.day import DayFacts
     from fieldmon.samplers.base import Sampler
 
     from ..words.units import UnitsInLanguage
@@ -194,14 +195,29 @@ class Choices:
         if self.season is not None:
             of = self.day, who
             now = cached.revision_on(self.season, self.on, who)
-            wished = self.wishes, wishes.were_told(self.laid, self.day)
-            minute = f"{self.clock.now():%F %H:%M}" if self.is_today else ""
-            return cached.season_plan_now(self.key, now, minute, of, self.season, wished)
+            return cached.season_plan_now(self.key, now, self._minute, of, self.season, self.wished)
         known = self.records, self.risk
         settings = PlanSettings(self.robot, self.decides, self.prior)
         return cached.day_plan(
             self.key, self.day, settings, self.sampler, self.plot, known, self.wishes
         )
+
+    def day_of_each(self) -> tuple[DayFacts, ...]:
+        """Return the season's day for its report and, where several work, that of each of them."""
+        season = self.open_season
+        now = cached.revision_on(season, self.on), self._minute
+        days = self.day, self.today
+        return cached.day_of_each(self.key, now, days, season, self.wished)
+
+    @property
+    def wished(self) -> tuple[Wishes, bool]:
+        """Return what people want of the day, and whether anybody ever wanted something of it."""
+        return self.wishes, wishes.were_told(self.laid, self.day)
+
+    @property
+    def _minute(self) -> str:
+        """The minute by the plot's clock while the day is today: hours run by it."""
+        return f"{self.clock.now():%F %H:%M}" if self.is_today else ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -172,7 +172,7 @@ def _held() -> dict[str, tuple[object, object]]:
     return held
 
 
-def unfinished() -> dict[str, Any]:
+def said() -> dict[str, Any]:
     """Return what was said in all boxes and not kept yet, as JSON can hold it; empty: nothing.
 
     What stayed in a box counts beside what was said since alone: of itself it is this tab's.
@@ -189,7 +189,7 @@ def unfinished() -> dict[str, Any]:
 
 
 def take(said: dict[str, Any]) -> None:
-    """Let boxes begin with what was said in them before a reload, as `unfinished` returned it."""
+    """Let boxes begin with what was said in them before a reload, as `said` returned it."""
     st.session_state.update(said.get("times", {}))
     for key, (of, value) in said.get("boxes", {}).items():
         _shown()[key] = of

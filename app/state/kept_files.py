@@ -1,4 +1,4 @@
-"""What a session brought, said of it, typed and did not record yet, or wants, is kept here.
+"""What a session brought, said of it, typed and did not use or record yet, or wants, is kept here.
 
 A reload finds it again.
 The way back is a long random word in the address. Whoever has it sees the files; who does not
@@ -26,7 +26,15 @@ import streamlit as st
 from fieldmon.io.atomic_write import write_whole
 from fieldmon.io.options import Upload
 
-from . import brought_files, fresh_boxes, plot_edits, widget_memory, wishes
+from . import (
+    brought_files,
+    fresh_boxes,
+    plot_edits,
+    strategy_boxes,
+    told_team,
+    widget_memory,
+    wishes,
+)
 from .brought_files import File
 
 #: the word in the address that leads back to the files
@@ -37,6 +45,10 @@ _WORD = re.compile(r"[\w-]{22}")
 _MADE = re.compile(rf"{_WORD.pattern}|ground-.+")
 _SESSION, _CAME_BY, _SAVED = "files key", "files came by", "files saved"
 _MANIFEST = "files.json"
+# what was said and is not used or recorded yet
+_UNUSED: dict[str, Any] = {
+    "unfinished": fresh_boxes, "wishes": wishes, "strategy": strategy_boxes, "team": told_team,
+}  # fmt: skip
 #: boxes that say how files are read and plants are laid
 _BOXES = frozenset(
     {"row_bearing", "row_spacing", "plant_spacing", "headland", "both_faces", "feature"}
@@ -107,8 +119,8 @@ def _restore(word: str) -> None:
     st.session_state.update(edits)
     for key, value in said["boxes"].items():
         widget_memory.first(key, value)
-    fresh_boxes.take(said.get("unfinished", {}))
-    wishes.take(said.get("wishes", {}))
+    for of, kept in _UNUSED.items():
+        kept.take(said.get(of, {}))
     st.session_state[_CAME_BY], st.session_state[_SAVED] = word, _said(brought_files.brought())
     os.utime(here)
 
@@ -127,7 +139,7 @@ def _keep() -> None:
     if st.session_state.get(_SAVED) == said or not _can_keep():
         return
     word, came_by = st.session_state[_SESSION], st.session_state.pop(_CAME_BY, "")
-    if not files and not said["unfinished"] and not said["wishes"]:
+    if not files and not any(said[of] for of in _UNUSED):
         if word:
             shutil.rmtree(folder() / word, ignore_errors=True)
         st.session_state[_SESSION], st.session_state[_SAVED] = "", said
@@ -163,11 +175,8 @@ def _said(files: dict[str, File]) -> dict[str, Any]:
     }
     named = {k: (file.key, [part.name for part in _parts(file)]) for k, file in files.items()}
     boxes = widget_memory.values_of(_BOXES)
-    unfinished = fresh_boxes.unfinished()
-    return {
-        "files": named, "answers": answers, "edits": edits, "boxes": boxes,
-        "unfinished": unfinished, "wishes": wishes.said(),
-    }  # fmt: skip
+    unused = {of: kept.said() for of, kept in _UNUSED.items()}
+    return {"files": named, "answers": answers, "edits": edits, "boxes": boxes, **unused}
 
 
 def _parts(file: File) -> tuple[Upload, ...]:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from fieldmon.samplers.base import Scene
 
     from .class_changes import ClassChange, Classes
+    from .news_since import NewsSince
 
 _EVERY_S = 0.25
 
@@ -81,6 +82,8 @@ class LiveDrive(BackgroundWork):
         self._lock = threading.Lock()
         #: when days are planned to end, by name, as of when it was begun; None: nobody asked yet
         self.ends: dict[str, str] | None = None
+        #: what browsers are told of it; None: none asked yet
+        self.news: NewsSince | None = None
 
     def start(self) -> None:
         """Begin to listen."""

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    Changing = Callable[[int | None], bytes]
+
 #: where the server hands it out
 PATH = "/map_data/"
 JSON, BYTES = "application/json", "application/octet-stream"
@@ -36,7 +38,7 @@ class MapStore:
         self._at_most, self._size = at_most, 0
         self._kept: OrderedDict[str, tuple[str, bytes]] = OrderedDict()
         self._lock = threading.Lock()
-        self._changing: OrderedDict[str, Callable[[], bytes]] = OrderedDict()
+        self._changing: OrderedDict[str, Changing] = OrderedDict()
 
     def publish(self, data: bytes, kind: str = BYTES) -> str:
         """Keep some bytes; return the address at which browsers find them."""
@@ -55,10 +57,11 @@ class MapStore:
     def _address(self, of: bytes) -> str:
         return PATH + hashlib.blake2b(of, digest_size=20, key=self._secret).hexdigest()
 
-    def attach(self, name: str, made: Callable[[], bytes]) -> str:
+    def attach(self, name: str, made: Changing) -> str:
         """Return an address at which browsers find what is made (JSON) whenever they ask.
 
-        The same name has the same address; only the last few are kept.
+        It takes the number of the answer that they had last, or None. The same name has the same
+        address; only the last few are kept.
         """
         address = self._address(name.encode())
         with self._lock:
@@ -68,7 +71,7 @@ class MapStore:
                 self._changing.popitem(last=False)
         return address
 
-    def changing(self, address: str) -> Callable[[], bytes] | None:
+    def changing(self, address: str) -> Changing | None:
         """Return what makes the bytes at an address that change, or None."""
         with self._lock:
             return self._changing.get(address)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from datetime import datetime, time, timedelta
+from datetime import date, datetime, time, timedelta
 from itertools import count
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,7 +12,12 @@ import streamlit as st
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
-from fieldmon.monitoring.settings.settings import seconds
+from fieldmon.monitoring.settings.settings import (
+    MonitoringSettings,
+    as_json,
+    from_json,
+    seconds,
+)
 from fieldmon.planning.members import TeamMember, Teamwork, must_differ, person_key
 from fieldmon.planning.stated_team import usual_kind
 
@@ -27,6 +32,8 @@ if TYPE_CHECKING:
 
 ROBOT, SCOUT = "robot", "scout"
 _MADE, _DRAFT = "team rows made", "team told "
+# the boxes of a row, and those of how all work together
+_BOXES, _TOGETHER = ("name", "who", "hours", "look", "start"), ("contact", "least_gain", "passing")
 _DAY_S, _MIN_S = 24 * 3600.0, 60.0
 
 
@@ -131,7 +138,7 @@ class TeamDraft:
     def told(self) -> TeamChoice:
         """Return what the boxes say; raise `SettingError` where that cannot be."""
         members = [row.told() for row in self.rows]
-        must_differ(members)
+        must_differ([one.name for one in members])
         made = _choice(members, [row.starts() for row in self.rows], self._teamwork())
         return self.begun if made == self.plain else made
 
@@ -143,7 +150,7 @@ class TeamDraft:
             return True
 
     def _teamwork(self) -> Teamwork:
-        shown = {box: self.first(box) for box in ("contact", "least_gain", "passing")}
+        shown = {box: self.first(box) for box in _TOGETHER}
         said = {box: widget_memory.value(self.key(box), one) for box, one in shown.items()}
         # what is shown is rounded: what nobody changed stays as it was
         in_units: dict[str, tuple[str, Callable[[float], float]]] = {
@@ -178,7 +185,7 @@ def go_on(place: str, now: TeamChoice) -> None:
     _keep(place, replace(_kept(place), seen=now))
 
 
-def take(place: str, team: Iterable[TeamMember], starts: time) -> None:
+def bring(place: str, team: Iterable[TeamMember], starts: time) -> None:
     """Let the rows be of another team, as of a table (for callbacks)."""
     _keep(place, replace(_kept(place), rows=_rows(team, starts)))
 
@@ -210,10 +217,62 @@ def turn_kind(row: MemberRow) -> None:
     widget_memory.put(row.key("look"), float(usual_kind(row.said("who")).look_s))
 
 
+def said() -> dict[str, Any]:
+    """Return what is being told and not used yet, by its place, as JSON can hold it."""
+    drafts = {str(key): st.session_state[key] for key in st.session_state
+              if str(key).startswith(_DRAFT)}  # fmt: skip
+    return {key: _written(one) for key, one in drafts.items() if one.is_told()}
+
+
+def take(said: dict[str, Any]) -> None:
+    """Go on telling what was being told before a reload, as `said` returned it."""
+    for key, told in said.items():
+        st.session_state[key] = draft = _read(told)
+        numbers = [draft.number, *(row.number for row in draft.rows)]
+        st.session_state[_MADE] = max([st.session_state.get(_MADE, 0), *(k + 1 for k in numbers)])
+        for box, value in told["boxes"].items():
+            is_start = box.startswith("team_start ")
+            widget_memory.put(box, time.fromisoformat(value) if is_start else value)
+
+
+def _written(draft: TeamDraft) -> dict[str, Any]:
+    rows = [(row.number, _settings(TeamChoice((row.member,))), row.starts_s) for row in draft.rows]
+    keys = [*map(draft.key, _TOGETHER), *(row.key(box) for row in draft.rows for box in _BOXES)]
+    said = {key: widget_memory.value(key) for key in keys}
+    return {
+        "number": draft.number, "rows": rows,
+        "seen": _settings(draft.seen), "begun": _settings(draft.begun),
+        "boxes": {key: f"{one}" if isinstance(one, time) else one
+                  for key, one in said.items() if one is not None},
+    }  # fmt: skip
+
+
+def _read(told: dict[str, Any]) -> TeamDraft:
+    begun = _of_settings(told["begun"])
+    rows = tuple(MemberRow(number, _of_settings(one).team[0], starts_s)
+                 for number, one, starts_s in told["rows"])  # fmt: skip
+    return TeamDraft(told["number"], _of_settings(told["seen"]), begun, rows, _plain(begun))
+
+
+def _settings(choice: TeamChoice) -> dict[str, str]:
+    """Return a team as a season's file has it."""
+    return as_json(MonitoringSettings(begins=date.min, **choice._asdict()))
+
+
+def _of_settings(kept: dict[str, str]) -> TeamChoice:
+    settings = from_json(kept)
+    return TeamChoice(settings.team, settings.starts, settings.teamwork)
+
+
 def _begun(seen: TeamChoice, choice: TeamChoice) -> TeamDraft:
     rows = _rows(choice.team, choice.starts)
-    plain = _choice(choice.team, [row.starts_s for row in rows], choice.teamwork)
-    return TeamDraft(_next(), seen, choice, rows, plain)
+    return TeamDraft(_next(), seen, choice, rows, _plain(choice))
+
+
+def _plain(choice: TeamChoice) -> TeamChoice:
+    """Return a team whose first member starts when the team does."""
+    starts_s = [seconds(choice.starts) + one.starts_s for one in choice.team]
+    return _choice(choice.team, starts_s, choice.teamwork)
 
 
 def _rows(team: Iterable[TeamMember], starts: time) -> tuple[MemberRow, ...]:

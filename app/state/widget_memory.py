@@ -94,6 +94,12 @@ def put(key: str, new: object) -> None:
         st.session_state[key] = new
 
 
+def forget(key: str) -> None:
+    """Let a widget that is not shown any more begin anew, should it be shown again."""
+    _values().pop(key, None)
+    st.session_state.get(_BEGINS, {}).pop(key, None)
+
+
 # of Streamlit's signatures of a box of options, the first is that of a box without any
 @overload
 def show(

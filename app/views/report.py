@@ -11,6 +11,7 @@ import streamlit as st
 from fieldmon.reports.html import html_text
 from fieldmon.reports.pdf import PAPERS, pdf_bytes
 
+from ..actions import choosing
 from ..show import map_layers, plant_history, report
 from ..state import widget_memory
 from ..words import texts
@@ -23,6 +24,10 @@ def show(choices: Choices) -> None:
     """Show the report, and hand it out."""
     plant_history.want(choices, map_layers.day_map(choices))
     about = "day" if choices.season is None else _about()
+    if about == "day" and len(choices.team_that_day) > 1:
+        widget_memory.show(st.checkbox, texts.REPORT_EACH, key=report.EACH, default=True)
+        if not widget_memory.value(report.EACH):
+            choosing.whose_day(choices)
     made = _MADE[about](choices)
     paper = widget_memory.show(
         st.selectbox, texts.REPORT_PAPER, [*PAPERS], key="report paper", default="a4",

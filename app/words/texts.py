@@ -439,7 +439,8 @@ CHANGE, CHANGE_NOTE = "Use from now on", "Not in use yet. Earlier days stay as t
 CHANGED_LATE = "{day} goes by this too: nothing is recorded of it yet."
 CHANGED_LATER = "It counts from now on. {day} stays as it was planned: something is recorded of it."
 PLAN_AS_NOW = "Plan this day by what counts now: {strategy}"
-UNDO_CHANGE, UNDO_NO_CHANGE = "Take back: {what}", "Take the last change back"
+LAST_CHANGE = "Changed last: {what}."
+UNDO_CHANGE, UNDO_NO_CHANGE = "Take back", "Take the last change back"
 DISPLAY, LENGTH, AREA, DATE_LIKE = "Units and dates", "Lengths", "Areas", "Dates like"
 LANGUAGE = "Language"
 #: said in the other languages only: see `language.is_machine_made`
@@ -1349,6 +1350,8 @@ REPORT_ABOUT, REPORT_KINDS = (
 )
 REPORT_PAPER, REPORT_PAPERS = "Paper", {"a4": "A4", "letter": "Letter"}
 REPORT_WAS = "result"
+#: of a team's day; else of the one who is chosen
+REPORT_EACH = "A page for each of the team"
 REPORT_PDF, REPORT_HTML, REPORT_PREVIEW = "Download as PDF", "Download as HTML", "Preview"
 
 PRIOR = "The thesis, with records"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import contextmanager, suppress
-from datetime import time
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
@@ -31,9 +30,9 @@ from fieldmon.cli.files_to_plot import prepared
 from fieldmon.cli.messages import tell_assumed, tell_past_midnight
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.options import sampler_of
-from fieldmon.cli.season_files import refuse_what_was_chosen, season_of
+from fieldmon.cli.season_files import is_told, refuse_what_was_chosen, season_of
 from fieldmon.cli.stopped import STOPPED_CODE
-from fieldmon.cli.times import day, day_on
+from fieldmon.cli.times import clock, day, day_on
 from fieldmon.cli.told_to_end import as_at_ctrl_c, told_to_end
 from fieldmon.errors import SettingError
 
@@ -76,6 +75,10 @@ def drive(context: typer.Context, options: DriveOptions) -> None:
 
     with told_to_end(as_at_ctrl_c):
         if options.plot is None or not is_season(options.plot):
+            if options.robot is Drives.VDA5050 and is_told(context, "start"):
+                raise SettingError(
+                    "--start goes with a simulated robot: a live one begins with its order."
+                )
             _plot(options)
             return
         refuse_what_was_chosen(context, _OF_A_SEASON)
@@ -98,6 +101,7 @@ def _plot(options: DriveOptions) -> None:
     from fieldmon.planning.assumptions import assumed_by
     from fieldmon.plot.local_clock import local_clock, utc_now
 
+    starts = clock(options.start)
     refuse_written_over(None, (options,))
     worker = options.worker.robot()
     if options.steering == "ackermann":
@@ -115,7 +119,7 @@ def _plot(options: DriveOptions) -> None:
     tell_assumed(assumed_by((), prior, worker, plot.grid))
     if told := aisles.narrow_sentence():
         typer.echo(told)
-    clock, so_far = local_clock(plot.field), DrivenDay()
+    local, so_far = local_clock(plot.field), DrivenDay()
 
     def tables(*, stopped: bool) -> None:
         write_tables(so_far, on, options, options.name)
@@ -124,8 +128,8 @@ def _plot(options: DriveOptions) -> None:
 
     with monitor.day() as today, _driver(options, plot, worker, (chance, on)) as driver:
         robot, recording = driver
-        is_now = _live(robot) is not None and on == clock.today()
-        begins = utc_now() if is_now else clock.moment(on, time(6))
+        is_now = _live(robot) is not None and on == local.today()
+        begins = utc_now() if is_now else local.moment(on, starts)
         bag = partial(write_bag_of, (recording, so_far), begins, options)
         watch = recording.note if _live(robot) is None else recording.note_live
         with _written(bag, tables), _home_when_told(robot, so_far, options.serial):

@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from fieldmon.cli.option_ranges import refusing, within
-from fieldmon.cli.options import Every, Feature, MaybePlotFile, PlotFiles, RecordsFile, WorkDate
+from fieldmon.cli.options import (
+    Every,
+    Feature,
+    MaybePlotFile,
+    PlotFiles,
+    RecordsFile,
+    StartTime,
+    WorkDate,
+)
 from fieldmon.cli.sampler_names import OneSampler
 from fieldmon.cli.worker_options import WorkerOptions
 from fieldmon.compute.ranges import CHANCE, SEED
@@ -95,6 +103,7 @@ class DriveOptions:
     sampler: OneSampler = USUAL_SAMPLER
     every: Every = None
     on: WorkDate = None
+    start: StartTime = "06:00"
     infested: Annotated[
         float,
         typer.Option(

@@ -17,7 +17,7 @@ from fieldmon.cli.driven_files import (
     write_tables,
 )
 from fieldmon.cli.messages import tell_assumed, tell_past_midnight
-from fieldmon.cli.season_files import refuse_too_wide, season_of
+from fieldmon.cli.season_files import is_told, refuse_too_wide, season_of
 from fieldmon.cli.stopped import STOPPED_CODE
 from fieldmon.cli.times import day, day_on
 from fieldmon.errors import SettingError
@@ -46,7 +46,7 @@ def drive_as_team(context: typer.Context, options: DriveOptions, file: Path) -> 
             f"A season's team drives by VDA 5050, but --robot is {options.robot.value}. Give "
             "--robot vda5050; fieldmon stand-in simulates the robots."
         )
-    if (told := context.get_parameter_source("serial")) and told.name == "COMMANDLINE":
+    if is_told(context, "serial"):
         names = ", ".join(one.name for one in settings.team)
         raise SettingError(
             f"A team's robots have their names as serial numbers ({names}), but --serial was given "

@@ -15,12 +15,20 @@ AllMornings = Annotated[
     typer.Option("--mornings", help="Work all mornings of a long season out again: half a minute."),
 ]
 
+AllEntries = Annotated[
+    bool,
+    typer.Option("--all", help="Show every entry: of a driven day there is one for each plant."),
+]
+
 
 def log(
     season: SeasonFile,
     mornings: AllMornings = False,  # noqa: FBT002 - a flag
+    every: AllEntries = False,  # noqa: FBT002 - as above
 ) -> None:
     """Show the log of a season, and check it and the file for changes to the past.
+
+    A day that a robot or a phone told plant by plant is one line; --all shows every entry.
 
     A changed past is refused, with the entry that was changed. Give the last digest to somebody
     else: then nobody can rewrite the whole log unnoticed.
@@ -36,7 +44,7 @@ def log(
     from fieldmon.plot.local_clock import local_clock
 
     kept = season_of(season)
-    typer.echo("\n".join(lines(kept.log(), local_clock(kept.plot.field))))
+    typer.echo("\n".join(lines(kept.log(), local_clock(kept.plot.field), whole=every)))
     refuse_unlike_log(check_against_log(kept))
     whole = mornings or is_short(kept)
     with counting("Mornings worked out again") as count:

@@ -12,7 +12,7 @@ from fieldmon.cli.messages import tell_assumed
 from fieldmon.cli.outputs import write_chance_map
 from fieldmon.cli.pest_options import prior_of
 from fieldmon.cli.progress import counting
-from fieldmon.cli.season_files import refuse_unrecorded
+from fieldmon.cli.season_files import is_told, refuse_unrecorded
 from fieldmon.cli.team_files import (
     files_of_each,
     members_of,
@@ -33,8 +33,7 @@ def plan_team(context: typer.Context, options: PlanOptions, robots: str) -> None
     from fieldmon.planning.assumptions import assumed_by_team
 
     for name in ("sampler", "every", "every_plot"):
-        source = context.get_parameter_source(name)
-        if source is not None and source.name == "COMMANDLINE":
+        if is_told(context, name):
             flag = "all" if name == "every_plot" else name
             raise SettingError(f"--robots plans best routes on one plot: leave out --{flag}.")
     members, first = members_of(robots, options.starts().at, options.worker)

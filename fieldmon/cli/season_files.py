@@ -162,17 +162,18 @@ def refuse_too_wide(season: Season, team: Iterable[TeamMember]) -> None:
         raise SettingError(f"{error} Give the team anew with: {pasted} TEAM.csv") from error
 
 
+def is_told(context: typer.Context, name: str) -> bool:
+    """Return whether a parameter of a command was given to it."""
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
+
+
 def refuse_what_was_chosen(context: typer.Context, takes: Collection[str]) -> None:
     """Raise `SettingError` where an option was given that a season has kept since it began.
 
     `takes` names the parameters of a command that do go with a season.
     """
-    told = {
-        name
-        for name in context.params
-        if (source := context.get_parameter_source(name)) is not None
-        and source.name == "COMMANDLINE"
-    }
+    told = {name for name in context.params if is_told(context, name)}
     if more := sorted(told.difference(takes)):
         flags = ", ".join(f"--{name.replace('_', '-')}" for name in more)
         raise SettingError(

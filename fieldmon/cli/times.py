@@ -41,7 +41,6 @@ class WorkStart:
 
 def clock(text: str, flag: str = "--start") -> time:
     """Return the local time of the day that is meant."""
-    try:
-        return datetime.strptime(text, "%H:%M").time()  # noqa: DTZ007 - local time
-    except ValueError as error:
-        raise SettingError(f"{flag} must be a time as HH:MM, but it is {text!r}.") from error
+    from fieldmon.compute.day_arguments import clock_of
+
+    return clock_of(flag, text)

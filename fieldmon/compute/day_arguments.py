@@ -11,6 +11,7 @@ from contextlib import suppress
 from datetime import date, datetime, time
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from fieldmon.compute.wording import worded
 from fieldmon.errors import ObservationError, SettingError
 
 if TYPE_CHECKING:
@@ -200,3 +201,19 @@ def day_of(
     if isinstance(day, str):
         raise SettingError(f"{what} must be a day as 2026-11-18, but it is {given!r}.")
     return day
+
+
+def clock_of(what: str, told: str) -> time:
+    """Return the local time of the day that is told as HH:MM; else raise `SettingError`.
+
+    Examples
+    --------
+    >>> clock_of("--start", "07:30")
+    datetime.time(7, 30)
+    """
+    try:
+        return datetime.strptime(told, "%H:%M").time()  # noqa: DTZ007 - local time
+    except ValueError as error:
+        raise SettingError(
+            worded("{what} must be a time as HH:MM, but it is {told!r}.", what=what, told=told)
+        ) from error

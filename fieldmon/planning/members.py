@@ -217,17 +217,29 @@ def refuse_too_wide(team: Iterable[TeamMember], plot: Plot) -> None:
             ways_of(one.robot, aisles, one.name)
 
 
-def must_differ(members: Sequence[TeamMember]) -> None:
-    """Refuse a team of none, or one in which two share a name."""
-    names = [person_key(member.name) for member in members]
+def must_differ(names: Sequence[str], where: Sequence[str] = ()) -> None:
+    """Refuse a team of none, or one in which two share a name; of a table say `where` they do."""
     if not names:
         raise SettingError(
             worded("A team must have 1 member or more, but it has none. Give one: team_of(1).")
         )
-    if len(set(names)) < len(names):
+    known: dict[str, int] = {}
+    for k, name in enumerate(names):
+        if (first := known.setdefault(person_key(name), k)) == k:
+            continue
+        if where:
+            raise SettingError(
+                worded(
+                    "{where}: members of a team must have names of their own, but {name} is that "
+                    "of {first} too. Change one.",
+                    where=where[k],
+                    name=name,
+                    first=where[first],
+                )
+            )
         raise SettingError(
             worded(
                 "A team must have members of different names, but they are {names}.",
-                names=", ".join(member.name for member in members),
+                names=", ".join(names),
             )
         )

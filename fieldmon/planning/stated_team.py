@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import datetime, time
 from typing import TYPE_CHECKING, TypeVar
 
+from fieldmon.compute.day_arguments import clock_of
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
 from fieldmon.io.readers.team import StatedMember
-from fieldmon.planning.members import TeamMember, person_key, refuse_too_many
+from fieldmon.planning.members import TeamMember, must_differ, refuse_too_many
 from fieldmon.plot.robot import SAID_IN, Robot, scout
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
+    from datetime import time
 
 _Made = TypeVar("_Made")
 
@@ -51,8 +52,11 @@ def team_stated(
     (datetime.time(6, 0), 5400.0, 0.0)
     """
     refuse_too_many(len(stated))
-    _must_differ(stated)
-    starts = [usual if one.start is None else _told_at(one, _start, one.start) for one in stated]
+    must_differ([one.name for one in stated], [one.where for one in stated])
+    starts = [
+        usual if one.start is None else _told_at(one, clock_of, "start", one.start)
+        for one in stated
+    ]
     first = min(starts)
 
     def member(one: StatedMember, start: time) -> TeamMember:
@@ -107,15 +111,6 @@ def _stated(member: TeamMember, starts: time) -> StatedMember:
     return StatedMember(member.name, who, settings, start, member.gate, member.name)
 
 
-def _start(text: str) -> time:
-    try:
-        return datetime.strptime(text, "%H:%M").time()  # noqa: DTZ007 - local time
-    except ValueError as error:
-        raise SettingError(
-            worded("start must be a time as HH:MM, but it is {text!r}.", text=text)
-        ) from error
-
-
 def _told_at(one: StatedMember, make: Callable[..., _Made], *told: object) -> _Made:
     """Return what is made of a line of a table; what is wrong with it is said with file and line.
 
@@ -131,19 +126,3 @@ def _told_at(one: StatedMember, make: Callable[..., _Made], *told: object) -> _M
         raise SettingError(
             worded("{where}: {problem}", where=one.where, problem=problem)
         ) from error
-
-
-def _must_differ(stated: Iterable[StatedMember]) -> None:
-    known: dict[str, StatedMember] = {}
-    for one in stated:
-        first = known.setdefault(person_key(one.name), one)
-        if first is not one:
-            raise SettingError(
-                worded(
-                    "{where}: members of a team must have names of their own, but {name} is that "
-                    "of {first} too. Change one.",
-                    where=one.where,
-                    name=one.name,
-                    first=first.where,
-                )
-            )

@@ -176,7 +176,7 @@ def plan_team(
     >>> [f"{route.notes.who} {route.notes.start:%H:%M}" for route in team.routes]
     ['Ann 05:30', 'robot 05:30']
     """
-    must_differ(members)
+    must_differ([one.name for one in members])
     refuse_far_gates(members, plot.field)
     refuse_too_wide(members, plot)
     chance, begins = chances_of(chance, plot.n_plants), starts_at(on, plot)

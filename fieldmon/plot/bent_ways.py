@@ -182,15 +182,22 @@ def row_steps(grid: PlantGrid, clearance_m: float) -> tuple[Float, Float]:
 
 
 @routine
+def tallest_of(box_m: Float) -> float:
+    """Return how far the tallest of boxes reaches from its low y to its high y."""
+    tallest = 0.0
+    for b in range(len(box_m)):  # numba's `max` of an array compiles for half a second
+        tallest = max(tallest, box_m[b, 3] - box_m[b, 1])
+    return tallest
+
+
+@routine
 def off_steps(
     rows: tuple[Float, Float], clearance_m: float, from_m: Float, to_m: Float, off: Mask
 ) -> None:
     """Set `off` to False for the straight lines that come as near as this to a step."""
     box_m, step_m = rows
     low_y = box_m[:, 1]
-    tallest = 0.0
-    for b in range(low_y.size):  # numba's `max` of an array compiles for half a second
-        tallest = max(tallest, box_m[b, 3] - low_y[b])
+    tallest = tallest_of(box_m)
     near = clearance_m + _THIN_M
     for k in range(off.size):
         x0, x1 = min(from_m[k, 0], to_m[k, 0]), max(from_m[k, 0], to_m[k, 0])

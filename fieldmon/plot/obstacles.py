@@ -13,7 +13,7 @@ from shapely import Polygon
 
 from fieldmon.compute.jit import kept, routine
 from fieldmon.compute.wording import counted
-from fieldmon.plot.bent_ways import off_steps, row_steps
+from fieldmon.plot.bent_ways import off_steps, row_steps, tallest_of
 from fieldmon.plot.row_course import row_courses
 
 if TYPE_CHECKING:
@@ -230,9 +230,7 @@ def _bends(area: shapely.Geometry, coarse_m: float, sign: float) -> Float:
 def _off_boxes(box_m: Float, from_m: Float, to_m: Float, off: Mask) -> None:
     """Set `off` to False for the straight lines that touch a box; boxes are sorted by low y."""
     low_y = box_m[:, 1]
-    tallest = 0.0
-    for b in range(low_y.size):  # numba's `max` of an array compiles for half a second
-        tallest = max(tallest, box_m[b, 3] - low_y[b])
+    tallest = tallest_of(box_m)
     for k in range(off.size):
         x, y = from_m[k]
         way_x, way_y = to_m[k, 0] - x, to_m[k, 1] - y

@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.treating.closures import Closure
     from fieldmon.monitoring.treating.treatments import KeptTreatment
     from fieldmon.planning.route import Route
+    from fieldmon.planning.wishes import Wishes
     from fieldmon.plot.grid import PlantGrid
 
 #: stands where plants have no row, a stop no time, or somebody no name
@@ -171,17 +172,18 @@ class DayFacts:
 
     @classmethod
     def of_season(
-        cls, season: Season, on: date, today: date | None = None, who: str | None = None
-    ) -> DayFacts:
+        cls, season: Season, on: date, today: date | None = None, who: str | None = None,
+        wished: tuple[Wishes | None, bool] = (None, False),
+    ) -> DayFacts:  # fmt: skip
         """Return what a season knows of a day; nothing is kept by it.
 
         `today` as in `day_was_worked`. `who` is whose day it is, of several; None: that of all or,
-        of a team ahead, of its first.
+        of a team ahead, of its first. `wished` is what `plan_ahead` takes: `wishes` and `anew`.
         """
         with season.store.one_moment():
             first = "".join([one.name for one in season.planned_by(on).team][:1])
             whose = first if who is None else who
-            plan = plan_ahead(season, on, WorkPart(name=whose))
+            plan = plan_ahead(season, on, WorkPart(name=whose), wishes=wished[0], anew=wished[1])
             route = plan.route
             told = made_by(season.history.on(season.settings.day(on)), who)
             worked = bool(len(told)) and day_was_worked(season, on, route, today)
@@ -219,21 +221,22 @@ class DayFacts:
 
     @classmethod
     def each_of_season(
-        cls, season: Season, on: date, today: date | None = None
-    ) -> tuple[DayFacts, ...]:
+        cls, season: Season, on: date, today: date | None = None,
+        wished: tuple[Wishes | None, bool] = (None, False),
+    ) -> tuple[DayFacts, ...]:  # fmt: skip
         """Return a day as `of_season` does and, where several work, that of each of them.
 
         Of a day ahead that of each alone: no route is that of all.
         """
         with season.store.one_moment():
-            whole = cls.of_season(season, on, today)
+            whole = cls.of_season(season, on, today, None, wished)
             team = tuple(one.name for one in season.planned_by(on).team)
             came = {person_key(name): name for name in whole.team if name != NO_ROW}
             out = {person_key(name): name for name in team} | came
             if whole.missed or len(out) < 2:
                 return (whole,)
             is_over = on < default_date(season) or (today is not None and on < today)
-            each = [cls.of_season(season, on, today, name) for name in out.values()]
+            each = [cls.of_season(season, on, today, name, wished) for name in out.values()]
             shown = [one for one in each if one.worked or (len(one.route) and not is_over)]
             together = [whole] if whole.worked or not shown else []
             return (*together, *shown)

@@ -1,6 +1,10 @@
 """`fieldmon drive`: a day driven on a plot, or recorded in a season."""
 
+from datetime import datetime
+from zoneinfo import ZoneInfo
+
 import pytest
+from rosbags.highlevel import AnyReader
 
 from fieldmon.drive.bag import read_bag
 from fieldmon.drive.charged_robot import ChargedRobot
@@ -33,6 +37,21 @@ def test_a_day_is_driven_with_wheels_and_kept_as_a_bag(run, tmp_path):
     assert {"d.mcap", "d.rviz", "d.foxglove.json"} <= {path.name for path in made}
     (day,) = table(tmp_path / "day.csv")
     assert 0 < float(day["worst_cross_track_m"]) < 0.1
+
+
+def test_a_day_on_a_plot_begins_when_it_is_told_to(run, tmp_path):
+    words = (*PLOT, "--hours", "0.05", "--bag", "day.mcap")
+    for start, told in (("06:00", ()), ("07:30", ("--start", "07:30"))):
+        code, _, err, _ = run(*words, *told)
+        assert code == 0, err
+        with AnyReader([tmp_path / "day.mcap"]) as bag:
+            begins = datetime.fromtimestamp(bag.start_time / 1e9, ZoneInfo("Asia/Jerusalem"))
+        assert f"{begins:%F %H:%M}" == f"{BEGINS} {start}"
+    code, _, err, _ = run(*words, "--start", "7.30")
+    assert (code, err) == (2, "--start must be a time as HH:MM, but it is '7.30'.\n")
+    code, _, err, _ = run(*words, "--start", "07:30", "--robot", "vda5050")
+    assert code == 2
+    assert "--start goes with a simulated robot" in err
 
 
 @pytest.fixture
@@ -167,7 +186,9 @@ def test_a_day_on_a_plot_that_is_stopped_writes_what_was_driven(run, tmp_path, m
     assert len([*read_bag(tmp_path / "day.mcap", ("/finds",))]) == 3
 
 
-@pytest.mark.parametrize("words", [["--hours", "0.1"], ["--sampler", "naive"], ["--scout"]])
+@pytest.mark.parametrize(
+    "words", [["--hours", "0.1"], ["--start", "07:30"], ["--sampler", "naive"], ["--scout"]]
+)
 def test_what_a_season_keeps_is_refused_and_nothing_is_driven(run, season, words):
     kept = season.read_bytes()
     code, _, err, made = run("drive", season, "--made-up", *words)

@@ -16,6 +16,8 @@ export const PITCH = 55;
 const ALONE = [255, 210, 0], LOST = [140, 140, 140], NOSE = [20, 24, 28], NOSE_ON_DARK = [255, 255, 255];
 // nearer than so many metres a pixel plants are columns, the nearest of them, within so many metres
 const NEAR = 0.11, MOST = 1500, FEW = 400, REACH_M = 60, SLOW_MS = 60;
+// seen from above a plant has the legend's colour: its share of deck.gl's usual lights is then 1
+const BUSH = { ambient: 0.858, diffuse: 0.25, specularColor: [0, 0, 0] };
 // the robot is never smaller on the screen; it is followed from so near
 const LEAST_PX = 30, FOLLOW_ZOOM = 20.5, TURN_MS = 900;
 
@@ -90,9 +92,11 @@ export class Drive {
     this.asked = address;
     const again = async () => {
       if (this.asked !== address) return;
-      let got = { link: "away" };
+      // who missed an answer asks for everything
+      let got = { number: null, values: { link: "away" } };
+      const since = Number.isInteger(this.data.number) ? `?since=${this.data.number}` : "";
       try {
-        got = await (await fetch(address, { cache: "no-store" })).json();
+        got = await (await fetch(address + since, { cache: "no-store" })).json();
       } catch { /* asked again */ }
       if (this.asked !== address) return;
       this.take(got);
@@ -101,10 +105,15 @@ export class Drive {
     if (address) again();
   }
 
-  // Take in more of a day; who looks at its end goes on looking at it.
+  // Take in what is new of a day; who looks at its end goes on looking at it.
   take(got) {
-    const atEnd = !this.timer && this.second >= this.data.end;
-    this.data = { ...this.data, ...got };
+    const atEnd = !this.timer && this.second >= this.data.end, { lists = {}, values = {} } = got;
+    this.data = withNews(this.data, got);
+    // nothing of the map says how long ago a robot was heard
+    if (![...Object.keys(lists), ...Object.keys(values)].some((path) => !path.endsWith(".lag"))) {
+      this.tell();
+      return;
+    }
     this.slider.max = this.data.end;
     if (atEnd) {
       this.second = this.data.end;
@@ -281,8 +290,9 @@ export class Drive {
   // ordered, and the finds up to now.
   parts() {
     const { stops, robots } = this.data, done = until(stops, this.second);
-    if (this.made?.of !== this.data) {
-      this.made = { of: this.data, pieces: robots.flatMap(piecesOf), ordered: robots.flatMap(orderedOf), finds: [] };
+    const of = robots.flatMap((one) => [one.at, one.unseen, one.way, one.released]), made = this.made?.of;
+    if (made?.length !== of.length || made.some((one, k) => one !== of[k])) {
+      this.made = { of, pieces: robots.flatMap(piecesOf), ordered: robots.flatMap(orderedOf), finds: [] };
     }
     if (this.made.done !== done) {
       const finds = stops.slice(0, done).filter((one) => one[2]).map((one) => one[1]);
@@ -334,7 +344,7 @@ export class Drive {
         getFillColor: { value: colours, size: 4, normalized: true }, getElevation: { value: heights, size: 1 } } };
     }
     return new ColumnLayer({ id: "columns", data: this.near3d, radius, diskResolution: 6, extruded: true,
-      material: { ambient: 0.55, diffuse: 0.6 } });
+      material: BUSH });
   }
 
   // Return a robot's layers: boxes that are made once, and put where it stands. One of several has its own
@@ -360,6 +370,21 @@ export class Drive {
     this.ask(null);
     document.removeEventListener("keydown", this.typed);
   }
+}
+
+// Return a day with what is new of it (see `state/news_since.py`): each thing by its path, of a list what
+// comes after so many of its entries, which are as they were. What is `whole` names every robot that is there.
+export function withNews(data, { number, whole, lists = {}, values = {} }) {
+  const now = { ...data, number, robots: whole ? [] : data.robots.map((one) => ({ ...one, heard: { ...one.heard } })) };
+  const put = (path, value) => {
+    const names = path.split("."), last = names.pop();
+    let at = now;
+    for (const name of names) at = at[name] ??= {};
+    at[last] = value(at[last]);
+  };
+  for (const [path, value] of Object.entries(values)) put(path, () => value);
+  for (const [path, [same, more]] of Object.entries(lists)) put(path, (before = []) => [...before.slice(0, same), ...more]);
+  return now;
 }
 
 // Return how many entries of a list that begin with their seconds are at or before a second.

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { Drive, nearest, orderedOf, piecesOf, poseAt, standingOf, turned, until } from "../src/drive.js";
+import { Drive, nearest, orderedOf, piecesOf, poseAt, standingOf, turned, until, withNews } from "../src/drive.js";
 
 const ROBOT = {
   name: "", at: [0, 10, 40, 50], lon: [35, 35.001, 35.001, 35.001], lat: [30, 30, 30, 30.001], heading: [90, 90, 350, 10],
@@ -93,7 +93,7 @@ test("who follows the robot stays near it in a window of another size, who let g
   const port = (width, zoom) => ({ width, height: 400, longitude: 35, latitude: 30, zoom, pitch: 0, bearing: 0 });
   assert.equal(drive.view(port(400, 16), [200, 100]).zoom, 20.5);
   assert.equal(drive.view(port(400, 19), [200, 100]).zoom, 19, "from then on as near as somebody wants");
-  Object.assign(drive, { changed() {}, tell() {}, slider: {} }).take({ end: 51 });
+  Object.assign(drive, { changed() {}, tell() {}, slider: {} }).take({ values: { end: 51 } });
   assert.equal(drive.view(port(400, 18), [200, 100]).zoom, 18, "though more of a live day comes every second");
   assert.equal(drive.isStale(port(300, 19)), true);
   drive.view(port(300, 19), [150, 100]);
@@ -123,12 +123,18 @@ test("where pictures take long there are fewer of them", () => {
 
 test("more of a day that is driven now is taken in, and who looked at its end still does", () => {
   const told = [], drive = Object.assign(driving(50), { slider: {}, changed: () => told.push(drive.second), tell() {} });
-  const robots = [{ ...ROBOT, at: [0, 60], lon: [35, 35], lat: [30, 30], heading: [0, 90] }];
-  drive.take({ robots, stops: [[40, 2, true, 0], [50, 0, false, 0], [60, 1, true, 0]], end: 60 });
+  const first = drive.data, poses = { at: [0, 60], lon: [35, 35], lat: [30, 30], heading: [0, 90] };
+  const lists = Object.fromEntries(Object.entries(poses).map(([name, all]) => [`robots.0.${name}`, [0, all]]));
+  drive.take({ number: 7, lists: { ...lists, stops: [1, [[50, 0, false, 0], [60, 1, true, 0]]] }, values: { end: 60 } });
+  assert.deepEqual(drive.data.stops, [[40, 2, true, 0], [50, 0, false, 0], [60, 1, true, 0]]);
+  assert.deepEqual([drive.data.robots[0].at, drive.data.number, first.stops.length], [[0, 60], 7, 2]);
   assert.deepEqual([drive.second, drive.slider.max, told], [60, 60, [60]]);
   drive.second = 20; // somebody looks back
-  drive.take({ end: 70 });
+  drive.take({ values: { end: 70 } });
   assert.equal(drive.second, 20);
+  // how long ago it was heard is no reason to draw
+  drive.take({ number: 9, values: { "robots.0.heard.lag": 1.5 } });
+  assert.deepEqual([told.length, drive.data.number, drive.data.robots[0].heard.lag], [2, 9, 1.5]);
   assert.deepEqual([...drive.of([PLANTS])[0].ranks], [1, 1, 1]);
 });
 
@@ -141,11 +147,16 @@ test("a day that is driven now is asked for until another one is shown", async (
   drive.ask(null, true);
   await new Promise((done) => setTimeout(done));
   assert.deepEqual(asked, [{ from: "/one" }]);
+  drive.data = { ...DAY, number: 12 };
+  drive.ask("/one", true);
+  await new Promise((done) => setTimeout(done));
+  drive.ask(null, true);
+  assert.deepEqual(asked.pop(), { from: "/one?since=12" });
   globalThis.fetch = async () => { throw new Error("gone"); };
   drive.ask("/two", true);
   await new Promise((done) => setTimeout(done));
   drive.ask(null, true);
-  assert.deepEqual(asked.at(-1), { link: "away" });
+  assert.deepEqual(asked.at(-1), { number: null, values: { link: "away" } }, "the next time it asks for everything");
 });
 
 test("from picture to picture layers keep their data, or the whole way would be made anew each time", () => {
@@ -165,4 +176,15 @@ test("from picture to picture layers keep their data, or the whole way would be 
 test("the robot's boxes are turned clockwise from north and grow", () => {
   const [a, b, , , c, d] = turned(90, 2); // what lies ahead comes to lie in the east
   assert.deepEqual([c, d, a, b].map((one) => Math.round(one)), [2, 0, 0, -2]);
+});
+
+test("what is new of a day is put where it belongs, of another robot too, and nothing else is made anew", () => {
+  const before = { link: "live", stops: [], robots: [{ name: "a", at: [0, 1], unseen: [], heard: { standing: "live", lag: 0 } }] };
+  const now = withNews(before, { number: 3, lists: { "robots.0.at": [1, [2, 3]], "robots.1.at": [0, [5]] },
+    values: { link: "unheard", "robots.0.heard.standing": "lost", "robots.1.name": "b" } });
+  assert.deepEqual(now.robots.map((one) => one.at), [[0, 2, 3], [5]]);
+  assert.deepEqual([now.link, now.robots[0].heard, now.robots[1].name], ["unheard", { standing: "lost", lag: 0 }, "b"]);
+  assert.equal(now.stops, before.stops);
+  assert.deepEqual(withNews(now, { whole: true, lists: { "robots.0.at": [0, [7]] } }).robots, [{ at: [7] }], "another is gone");
+  assert.deepEqual([before.robots.length, before.robots[0].at, before.robots[0].heard.standing], [1, [0, 1], "live"]);
 });

@@ -69,8 +69,9 @@ def _data_sets(found: tuple[Member, ...]) -> tuple[Member, ...]:
     if not usable:
         raise FileProblem(
             worded(
-                "{name} is a raster, which holds no plots or records. Choose "
-                "it as a backdrop or covariate instead.",
+                "{name} is a raster, which holds no areas, lines, points or table. Give a file "
+                "that does, as .gpkg, .shp.zip, .kml or .geojson; or choose it as a backdrop or "
+                "covariate.",
                 name=found[0].name,
             )
         )

@@ -10,6 +10,7 @@ import numpy as np
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import (
+    Imported,
     ImportMessage,
     Remedy,
     Severity,
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 
     from fieldmon.compute.wording import Worded
     from fieldmon.infestation.inspections import Inspections
-    from fieldmon.io.import_report import Imported
     from fieldmon.io.parse.dates import DatedColumn
     from fieldmon.io.readers.inspection_options import InspectionOptions
 
@@ -99,7 +99,11 @@ def come(
         latest=read.value.date[ahead].max(),
         today=today,
     )
-    return read.having(read.value.take(~ahead), (dropped(said, None, TAKE),))
+    # of the same days it is not said besides that they lie in the future
+    ahead_too = _lies_ahead(0, None).words
+    told = [one for one in read.messages if getattr(one.sentence, "words", "") != ahead_too]
+    kept = read.value.take(~ahead)
+    return Imported(kept, (*told, dropped(said, None, TAKE)))
 
 
 def in_future(day: NDArray[np.datetime64], where: str | None = None) -> list[ImportMessage]:
@@ -107,12 +111,13 @@ def in_future(day: NDArray[np.datetime64], where: str | None = None) -> list[Imp
     n_future = int(to_come(day).sum())
     if not n_future:
         return []
-    said = worded(
-        "{n} {n:record lies|records lie} in the future, the last on {latest}.",
-        n=n_future,
-        latest=np.nanmax(day),
+    return [doubtful(_lies_ahead(n_future, np.nanmax(day)), where)]
+
+
+def _lies_ahead(n: int, latest: object) -> Worded:
+    return worded(
+        "{n} {n:record lies|records lie} in the future, the last on {latest}.", n=n, latest=latest
     )
-    return [doubtful(said, where)]
 
 
 def midnights_left_out(n: int, where: str | None = None) -> list[ImportMessage]:

@@ -13,6 +13,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.import_report import Imported, seen
 from fieldmon.io.parse.columns import plain
 from fieldmon.io.parse.values import numbers
+from fieldmon.io.readers.plot_areas import shapes_of
 from fieldmon.io.readers.plots import plots_of
 
 if TYPE_CHECKING:
@@ -29,6 +30,15 @@ def treated_of(layer: Layer, options: PlotOptions) -> Imported[MultiPolygon]:
             worded(
                 "{file} is task data for a terminal: it names the plot, and not what was treated. "
                 "Give the zones as .gpkg, .shp.zip or .kml.",
+                file=layer.name,
+            )
+        )
+    kinds = shapely.get_dimensions(shapes_of(layer)) if len(layer) else np.empty(0)
+    if len(kinds) and not (kinds == 2).any():
+        raise FileProblem(
+            worded(
+                "{file} must hold the areas that were treated, but it holds only points or lines. "
+                "Give areas as .gpkg, .shp.zip, .kml or .geojson, as fieldmon decide writes them.",
                 file=layer.name,
             )
         )

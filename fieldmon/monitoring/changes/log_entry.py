@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from fieldmon.compute.wording import chance_figure, counted, estimate, filled
+from fieldmon.compute.wording import chance_figure, counted, estimate, filled, worded
 
 #: what batches are numbered now, by their numbers of before; None: nobody knows
 Numbers = dict[int, int | None]
@@ -36,6 +37,8 @@ class LogEntry:
     theirs
         Of a merge, the entries of the other copy that were not known here, as they stand there:
         numbers of entries and of batches are the copy's.
+    of_copy
+        Whether it is such an entry of the other copy.
     """
 
     number: int
@@ -46,6 +49,7 @@ class LogEntry:
     digest: str
     numbers: Numbers = field(default_factory=dict)
     theirs: tuple[LogEntry, ...] = ()
+    of_copy: bool = field(default=False, compare=False)
 
     def sentence(self, most: int | None = None) -> str:
         """Return what happened, in words; of corrections so many at `most`, None: each."""
@@ -77,12 +81,19 @@ class LogEntry:
             said += f"; {added}"
         if detects := what.get("detects"):
             said += f"; told to find {', '.join(map(_percent, detects))} of what is there"
+        if self.of_copy and self.batch is not None:  # here that number is another batch's
+            whose = worded("The number of the batch is the copy's.")
+            said = f"{said.removesuffix('.')}. {whose}"
         return said
 
-    def names(self, batch: int) -> bool:
-        """Return whether its sentence tells of a batch by that number."""
-        undone = self.kind == "undone" and f"Batch {batch} was " in self.what.get("said", "")
-        return undone or self.what.get("batch") == batch
+    @property
+    def batch(self) -> int | None:
+        """The batch of which its sentence tells, by the number that it had; None: of none."""
+        told = self.what.get("said", "") if self.kind == "undone" else ""
+        if (said := re.match(r"Batch (\d+) was ", told)) is not None:
+            return int(said[1])
+        number: int | None = self.what.get("batch")
+        return number
 
     def __str__(self) -> str:
         """Return which entry it is, for a sentence about it."""

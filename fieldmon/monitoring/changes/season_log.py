@@ -19,6 +19,7 @@ from fieldmon.compute.wording import worded, written
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspection_columns import BESIDE, InspectionColumn
 from fieldmon.monitoring.changes.log_entry import LogEntry, Numbers
+from fieldmon.monitoring.changes.log_visits import LogVisit, by_visit
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.file.geopackage import touch
 from fieldmon.monitoring.settings import settings_log
@@ -227,14 +228,15 @@ def _entry(content: str, mark: str, *, is_ours: bool = True) -> LogEntry:
     what = said["what"]
     inner = what.get("theirs", ()) if is_ours else ()
     theirs = tuple(_entry(one["entry"], one["digest"], is_ours=False) for one in inner)
-    return LogEntry(said["entry"], said["at"], said["kind"], said["who"], what, mark, theirs=theirs)
+    of = said["entry"], said["at"], said["kind"], said["who"], what, mark
+    return LogEntry(*of, theirs=theirs, of_copy=not is_ours)
 
 
 def _numbered_now(log: list[LogEntry]) -> tuple[LogEntry, ...]:
     """Return entries with what the batches that they tell of are numbered now."""
     merges, now, said = _merges(log), Numbers(), []
     for entry in reversed(log):
-        numbers = {n: number for n, number in now.items() if entry.names(n)}
+        numbers = {n: number for n, number in now.items() if entry.batch == n}
         said.append(replace(entry, numbers=numbers) if numbers else entry)
         if (anew := merges.get(entry.number)) is not None:
             through = {n: anew.get(n, n) for n in {**anew, **now}}
@@ -416,19 +418,26 @@ def with_those_taken_in(db: sqlite3.Connection) -> Iterator[tuple[str, str]]:
         yield mark, content
 
 
-def lines(of: Sequence[LogEntry], clock: LocalClock) -> Iterator[str]:
+def lines(of: Sequence[LogEntry], clock: LocalClock, *, whole: bool = False) -> Iterator[str]:
     """Yield entries as lines for people, with the times that a clock shows.
 
-    Those of a copy that was taken in stand indented below that entry, without a number.
+    A visit that was told plant by plant is one line, unless the `whole` log is wanted. Entries of
+    a copy that was taken in stand indented below that entry, without a number.
     """
 
-    def line(entry: LogEntry, number: str) -> str:
-        at, who = clock.at(datetime.fromisoformat(entry.at)), entry.who or "-"
-        return f"{number}  {at:%Y-%m-%dT%H:%M}  {entry.kind:9}  {who:12}  {entry.sentence()}"
+    def told(entries: Sequence[LogEntry]) -> list[LogVisit]:
+        return [LogVisit(one, one) for one in entries] if whole else by_visit(entries)
 
-    for entry in of:
-        yield line(entry, f"{entry.number:5d}")
-        for inner in entry.theirs:
+    def line(visit: LogVisit, number: str) -> str:
+        one = visit.entry
+        at, until = (f"{clock.at(datetime.fromisoformat(each.at)):%Y-%m-%dT%H:%M}"
+                     for each in (one, visit.last))  # fmt: skip
+        who = one.who or "-"
+        return f"{number}  {at}  {one.kind:9}  {who:12}  {visit.sentence(until)}"
+
+    for visit in told(of):
+        yield line(visit, f"{visit.entry.number:5d}")
+        for inner in told(visit.entry.theirs):
             yield line(inner, f"{'':7}in the copy:")
     if of:
         n = len(of)

@@ -131,7 +131,7 @@ class MonitoringSettings:
                 )
             )
         if self.team:
-            must_differ(self.team)
+            must_differ([one.name for one in self.team])
         if self.pest is not None and not self.belief.traces:
             raise SettingError(
                 worded(

@@ -45,6 +45,29 @@ def test_a_team_is_told_row_by_row_and_who_is_taken_out_stays_in_the_records(sea
     assert season().settings == told
 
 
+def place_of(block, label):
+    """Return where on the page a box of this label stands, block by block; None: not in this."""
+    for k, child in getattr(block, "children", {}).items():
+        if getattr(child, "label", "") == label and child.type == "expander":
+            return (k,)
+        if (below := place_of(child, label)) is not None:
+            return (k, *below)
+    return None
+
+
+def test_how_they_work_together_stays_open_below_whatever_is_said_of_the_rows(season_app):
+    boxed(season_app.segmented_control, "who").set_value("Team").run()
+    before = place_of(season_app.main, texts.TEAM_MORE)
+    assert before is not None
+    # the browser knows a box by its place: another one there would be closed
+    tap(season_app, "team_add_scout")
+    assert place_of(season_app.main, texts.TEAM_MORE) == before
+    first, second, _ = (one for one in season_app.text_input if one.key.startswith("team_name "))
+    second.set_value(first.value).run()
+    assert "different names" in season_app.error[0].value
+    assert place_of(season_app.main, texts.TEAM_MORE) == before
+
+
 def test_another_window_s_team_is_not_written_over_unseen(season_app, season):
     settings = season().settings
     boxed(season_app.segmented_control, "who").set_value("Team").run()

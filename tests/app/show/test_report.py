@@ -3,12 +3,16 @@
 from datetime import timedelta
 
 import numpy as np
+import pytest
 
 from app.show import report
-from app.state import chosen_day
+from app.state import chosen_day, widget_memory
+from app.state.choices import WHOSE_DAY
 from fieldmon.compute.units import Units
+from fieldmon.planning.members import TeamMember
+from fieldmon.plot.robot import Robot
 from fieldmon.reports.content import KeyFigures
-from fieldmon.reports.day import DayFacts, day_report
+from fieldmon.reports.day import DayFacts, day_of_each, day_report
 from fieldmon.reports.html import html_text
 from fieldmon.reports.season import season_report
 from tests.app.chosen import a_plot, chosen, in_season, records_at
@@ -56,3 +60,18 @@ def test_what_is_recorded_is_in_the_next_report(tmp_path):
     season.record(some_results(season, 6, found=[2]))
     after = report.of_season(in_season(season, BEGINS))
     assert np.array(table(after, "What was recorded").rows).shape == (2, 5)
+
+
+@pytest.mark.usefixtures("session")
+def test_a_team_s_day_has_a_page_of_each_or_that_of_the_one_who_is_chosen(tmp_path):
+    team = tuple(TeamMember(name, Robot(hours=0.5)) for name in ("Ann", "Ben"))
+    season = a_season(tmp_path / "s.gpkg", team=team)
+    choices = in_season(season, BEGINS)
+    each = day_of_each(DayFacts.each_of_season(season, BEGINS), Units())
+    assert len(each.sheets) == 2
+    for made in (report.of_day(choices), report.to_come(choices)()):
+        assert html_text(made) == html_text(each)
+    widget_memory.put(report.EACH, new=False)
+    widget_memory.put(WHOSE_DAY, "Ben")
+    for made in (report.of_day(choices), report.to_come(choices)()):
+        assert [sheet.heading for sheet in made.sheets] == ["The day's work: \u2068Ben\u2069"]

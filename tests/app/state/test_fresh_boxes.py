@@ -54,9 +54,9 @@ def test_what_stays_in_a_box_is_of_its_day_and_nothing_that_waits_to_be_kept(cho
     assert (shown(boxes, "row"), shown(boxes, "who", stays=True)) == ([None], ["Dan"])
     assert shown(later, "who", stays=True) == [None]
     assert not boxes.hold_anything()
-    assert not fresh_boxes.unfinished(), "whoever opens the address elsewhere did not say so"
+    assert not fresh_boxes.said(), "whoever opens the address elsewhere did not say so"
     boxes.put("row", 4)
-    kept = [value for _, value in fresh_boxes.unfinished()["boxes"].values()]
+    kept = [value for _, value in fresh_boxes.said()["boxes"].values()]
     assert sorted(kept, key=str) == [4, "Dan"]
     boxes.empty()
     shown(boxes, "row")
@@ -116,12 +116,12 @@ def test_what_is_not_kept_yet_is_taken_by_another_session_and_nothing_once_it_is
 ):
     boxes = FreshBoxes("one", choices)
     boxes.empty()
-    assert fresh_boxes.unfinished() == {}
+    assert fresh_boxes.said() == {}
     boxes.put("row", 3)
     boxes.put("tapped", (3, 4))
-    written = json.loads(json.dumps(fresh_boxes.unfinished()))
+    written = json.loads(json.dumps(fresh_boxes.said()))
     monkeypatch.setattr(st, "session_state", {})
     fresh_boxes.take(written)
     assert (boxes.said("row"), boxes.said("tapped")) == (3, [3, 4])
     boxes.empty()
-    assert fresh_boxes.unfinished() == {}
+    assert fresh_boxes.said() == {}

@@ -149,7 +149,7 @@ def test_each_of_a_team_finds_as_it_does_and_what_comes_late_counts(scene):
 
 def test_what_changes_is_made_whenever_it_is_asked_for():
     count = iter(range(9))
-    address = STORE.attach("a day", lambda: b"%d" % next(count))
-    assert [STORE.changing(address)() for _ in range(2)] == [b"0", b"1"]
-    assert STORE.attach("a day", lambda: b"") == address
+    address = STORE.attach("a day", lambda _: b"%d" % next(count))
+    assert [STORE.changing(address)(None) for _ in range(2)] == [b"0", b"1"]
+    assert STORE.attach("a day", lambda _: b"") == address
     assert STORE.changing("/map_data/else") is None

@@ -1,5 +1,6 @@
 """A team as it is told in boxes: what they make of settings, and what becomes of it meanwhile."""
 
+import json
 from dataclasses import replace
 from datetime import time
 
@@ -117,6 +118,24 @@ def test_what_another_window_changed_is_shown_unless_something_was_told_here():
 @pytest.mark.usefixtures("session")
 def test_the_team_of_a_table_is_told_and_not_in_use():
     draft()
-    told_team.take("here", (TeamMember("Mia"),), time(7))
+    told_team.bring("here", (TeamMember("Mia"),), time(7))
     assert draft().told() == TeamChoice((TeamMember("Mia"),), time(7))
     assert (draft().seen, draft().is_told()) == (NOW, True)
+
+
+def test_what_is_told_and_not_used_outlives_a_reload_to_the_last_bit(session):
+    draft()
+    assert told_team.said() == {}, "nobody told anything"
+    ann, rob = draft().rows
+    say(ann, name="Mia", start=time(5, 45))
+    say(rob, who=told_team.SCOUT)
+    told_team.add("here", told_team.ROBOT)
+    widget_memory.put(draft().key("contact"), 7.0)
+    told, rows = draft().told(), [row.number for row in draft().rows]
+    written = json.dumps(told_team.said())
+    session.clear()
+    told_team.take(json.loads(written))
+    assert draft().told() == told
+    assert (draft().seen, [row.number for row in draft().rows]) == (NOW, rows)
+    told_team.add("here", told_team.SCOUT)
+    assert draft().rows[-1].number not in rows, "a new row has boxes of its own"

@@ -91,6 +91,8 @@ def test_how_well_treating_works_is_as_learnt_until_somebody_says(
     assert not app.exception
     assert learnt not in texts_of(app)
     assert "As you said: treating cleans 70 %" in texts_of(app)
+    box.set_value(1.0).run()
+    assert "1 was given, which is hardly any. Give 100 for 100 %" in texts_of(app)
 
 
 def test_what_a_label_says_of_what_is_to_be_sprayed_is_told_before_it_is(

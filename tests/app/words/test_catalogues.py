@@ -39,7 +39,7 @@ def test_every_share_of_a_language_has_its_sign_in_one_way(code):
 
 
 #: a text of the app, told by its place, and a sentence of the library, told by its words
-OWN, OF_LIBRARY = "Take back: {what}", "turning radius"
+OWN, OF_LIBRARY = "Take back: {answer}", "turning radius"
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_a_text_whose_english_changed_keeps_its_translation_until_somebody_looke
     he, small, monkeypatch
 ):
     _, known = small
-    news = {OWN: "Take it back: {what}", OF_LIBRARY: "turning radius of it"}
+    news = {OWN: "Take it back: {answer}", OF_LIBRARY: "turning radius of it"}
     before = catalogues.read("he")
     own = {old: next(entry for entry in known if entry.words == old) for old in news}
     kept = {old: before.get(old, entry.context).string for old, entry in own.items()}

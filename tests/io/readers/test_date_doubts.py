@@ -9,7 +9,7 @@ from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import Severity
 from fieldmon.io.options import RecordOptions, Upload
 from fieldmon.io.parse.dates import dates
-from fieldmon.io.readers.date_doubts import in_future, refuse_mixed
+from fieldmon.io.readers.date_doubts import come, in_future, refuse_mixed
 from fieldmon.io.readers.inspection_options import InspectionOptions
 from fieldmon.io.readers.inspections import read_inspections
 from fieldmon.io.readers.records import records_of
@@ -71,5 +71,17 @@ def test_a_day_to_come_amid_days_that_have_come_is_left_out_unless_it_is_taken()
         f"It is doubtful: its day, {days[1]}, has not come, but others of the file have."
     )
     assert said.remedy.setting == "take_doubtful=yes"
+    assert not any("in the future" in one.sentence for one in read.messages), "it is said once"
     taken = read_inspections(file, rectangle(2, 5), InspectionOptions(take_doubtful=True))
     assert taken.value.date.tolist() == [day.item() for day in days]
+    assert any("in the future" in one.sentence for one in taken.messages)
+
+
+def test_a_file_of_days_to_come_alone_is_left_out_of_a_season_in_one_sentence():
+    file = Upload("found.csv", f"plant,found,date\n1,yes,{days_from_now(40)}\n".encode())
+    read = read_inspections(file, rectangle(2, 5), None)
+    left = come(read, InspectionOptions(), days_from_now(0).item())
+    assert len(left.value) == 0
+    (said,) = (one.sentence for one in left.messages if "have not come" in one.sentence)
+    assert said.startswith("1 result of days that have not come")
+    assert not any("in the future" in one.sentence for one in left.messages)

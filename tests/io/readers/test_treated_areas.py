@@ -2,11 +2,12 @@
 
 import geopandas as gpd
 import pytest
-from shapely import MultiPolygon, box
+from shapely import MultiPolygon, Point, box
 
 from fieldmon.errors import FileProblem
 from fieldmon.io.read import read_treated
 from fieldmon.io.writers.treatment_map import TreatmentMap, write_treatment_map
+from tests.paths import ROOT
 
 PLOT = MultiPolygon([box(35.15, 30.36, 35.152, 30.362)])
 ZONES = [
@@ -40,3 +41,12 @@ def test_where_every_rate_is_0_nothing_was_treated(tmp_path):
     gpd.GeoDataFrame({"RATE": [0.0, 0.0]}, geometry=ZONES, crs=4326).to_file(path)
     with pytest.raises(FileProblem, match="every RATE is 0"):
         read_treated(path)
+
+
+def test_points_and_rasters_are_refused_with_what_can_be_read(tmp_path):
+    path = tmp_path / "points.gpkg"
+    gpd.GeoDataFrame(geometry=[Point(35.1501, 30.3601)], crs=4326).to_file(path)
+    with pytest.raises(FileProblem, match="points must hold the areas that were treated"):
+        read_treated(path)
+    with pytest.raises(FileProblem, match=r"is a raster, .* Give a file that does, as .gpkg"):
+        read_treated(ROOT / "sample_data" / "backdrop.tif")

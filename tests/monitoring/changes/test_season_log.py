@@ -263,6 +263,11 @@ def test_two_copies_keep_both_logs_when_they_become_one(path, tmp_path):
     *_, undone, _ = season_log.lines(here.log(), CLOCK)
     assert undone.startswith("       in the copy:  ")
     assert "undone     Ben           Batch 2 was undone: 3 inspections from before." in undone
+    # of the copy's numbers another batch may be meant here
+    theirs_said = [one.sentence() for one in last.theirs]
+    assert all(one.endswith(". The number of the batch is the copy's.") for one in theirs_said)
+    assert not any("copy's" in one.sentence() for one in here.log()[:-1])
+    assert log_table(here)["said"][-1] == theirs_said[-1]
     table = log_table(here)
     assert (table["who"][-1], table["what"][-1], table["copy_entry"][-1]) == (
         "Ben", "undone", theirs[-1].number,

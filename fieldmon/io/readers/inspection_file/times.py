@@ -23,6 +23,7 @@ from fieldmon.io.parse.columns import find, is_of_work, is_of_writing, plain
 from fieldmon.io.parse.dates import dates, is_written_as_day
 from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.io.readers.date_doubts import (
+    amid_past,
     broken_times,
     in_future,
     midnights_left_out,
@@ -106,7 +107,9 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     about += _about_times(broken, read.is_ambiguous, n_utc)
     idle = _of_told_day(options.day, day, needed=unsaid & np.isnat(planned))
     idle += _of_writing(date, options)
-    return NotedTimes(when, day, [*in_future(day), *idle, *of_days, *about])
+    # where others have come each that has not is left out, and said, unless they are taken
+    ahead = in_future(day) if options.take_doubtful or not amid_past(day) else []
+    return NotedTimes(when, day, [*ahead, *idle, *of_days, *about])
 
 
 def _of_told_day(

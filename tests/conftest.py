@@ -1,6 +1,7 @@
 """Settings for all tests."""
 
 import gc
+import logging
 import os
 import shutil
 import tempfile
@@ -94,7 +95,13 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_collection_finish():
-    """Look for garbage among what tests make, not among the tests themselves: a tenth of all."""
+    """Look for garbage among what tests make, not among the tests themselves: a tenth of all.
+
+    Let logs pass on what they are told: pytest goes to each that does not, six times a test, and
+    Streamlit has a hundred.
+    """
+    for name in logging.root.manager.loggerDict:
+        logging.getLogger(name).propagate = True
     gc.freeze()
     gc.set_threshold(60_000, 10, 50)
     gc.enable()

@@ -91,6 +91,7 @@ def test_one_takes_files_from_the_front_and_the_others_from_the_back(two):
     assert [TESTS[first.tests[0]], TESTS[other.tests[0]]] == ["drawn.py::0", "long.py::0"]
     assert sorted(work(shares, [first, other])) == sorted(TESTS)
     assert shares.tests_finished
+    assert shares.assigned_work == {first: {}, other: {}}, "what is done is not counted again"
 
 
 @pytest.mark.parametrize("crashes_at", TESTS)

@@ -38,6 +38,18 @@ def _from_back(nodeid):
     return 2 if nodeid.startswith(PLAIN) else 0
 
 
+class Numbered(list):
+    """Tests as a worker collected them, of which each knows its number."""
+
+    def __init__(self, tests):
+        super().__init__(tests)
+        self.number = {one: k for k, one in enumerate(tests)}
+
+    def index(self, one):
+        """Return a test's number, without a look at those before it."""
+        return self.number[one]
+
+
 class BothEnds(LoadFileScheduling):
     """One worker takes files from the front of the queue, all others from its back.
 
@@ -63,6 +75,19 @@ class BothEnds(LoadFileScheduling):
         super()._reschedule(node)
         while not node.shutting_down and self._pending_of(self.assigned_work[node]) < 2:
             super()._reschedule(node)
+
+    def add_node_collection(self, node, collection):
+        """Keep what a worker collected; none if others collected otherwise."""
+        super().add_node_collection(node, collection)
+        if node in self.registered_collections:
+            self.registered_collections[node] = Numbered(collection)
+
+    def mark_test_complete(self, node, item_index, duration=0):
+        """Forget a file that is done: what is left is counted twice after each test."""
+        super().mark_test_complete(node, item_index, duration)
+        file = self._split_scope(self.registered_collections[node][item_index])
+        if all(self.assigned_work[node][file].values()):
+            del self.assigned_work[node][file]
 
     def remove_node(self, node):
         """Give what a worker left to others, without the test at which it crashed: return that."""

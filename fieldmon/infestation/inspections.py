@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.compute.arguments import must_be_known, shown
 from fieldmon.compute.array_arguments import entries_of, must_share_index, texts_of
-from fieldmon.compute.arrays import as_kept
+from fieldmon.compute.arrays import as_kept, read_only
 from fieldmon.compute.day_arguments import days_of, seconds_of
 from fieldmon.compute.kinds import checked
 from fieldmon.compute.wording import counted
@@ -232,7 +232,7 @@ class Inspections:
         Raise `SettingError` if `which` is none of them.
         """
         picked = entries_of("Inspections", which, len(self))
-        return Inspections(**{name: getattr(self, name)[picked] for name in _TYPES})
+        return _held({name: getattr(self, name)[picked] for name in _TYPES})
 
     @checked
     def and_those(self, others: Inspections) -> Inspections:
@@ -240,7 +240,7 @@ class Inspections:
         both = {
             name: np.concatenate([getattr(self, name), getattr(others, name)]) for name in _TYPES
         }
-        return Inspections(**both)
+        return _held(both)
 
     def on(self, date: Day) -> Inspections:
         """Return those of one date; raise `ObservationError` if it is none."""
@@ -253,6 +253,14 @@ class Inspections:
     def inspected(self) -> Inspections:
         """Return those at which the plant was really inspected."""
         return self.take(self.result != SKIPPED)
+
+
+def _held(columns: dict[str, NDArray[Any]]) -> Inspections:
+    """Return inspections of columns that nobody else has, of some that were held to their kind."""
+    made = object.__new__(Inspections)
+    for name, column in columns.items():
+        object.__setattr__(made, name, read_only(column))
+    return made
 
 
 def after_their_find(

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.errors import ObservationError, SettingError
+from fieldmon.infestation.inspection_columns import COLUMNS
 from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED, Inspections
 from fieldmon.infestation.records import Records
 
@@ -233,3 +234,10 @@ def test_what_is_no_plant_or_day_at_all_is_refused_in_a_sentence():
         with pytest.raises(ObservationError, match=says):
             Inspections.of(plant, [FOUND], on)
     assert len(Inspections.of(7, FOUND, MONDAY)) == 1
+
+
+@pytest.mark.parametrize("which", [[True, False, True], [2, 0], slice(1, None)])
+def test_what_is_picked_or_put_together_cannot_be_changed_either(which):
+    seen = Inspections.of([3, 4, 5], [0, 1, 2], "2026-11-18", who=["Ann", "", "Bo"])
+    for made in (seen.take(which), seen.and_those(seen)):
+        assert not any(getattr(made, column.name).flags.writeable for column in COLUMNS)

@@ -32,6 +32,9 @@ TO_ADJACENT = 0.5
 BEYOND = np.array([0.25, 0.05, 0.05, 0.05, 0.05, 0.05])
 #: the same of a pest whose kernel was published, its own kernel first, see :func:`pest_kernels`
 OF_PEST = np.array([0.6, 0.1, 0.1, 0.05, 0.05, 0.1])
+# kernels go together on small plots, for which calls cost most, so many numbers at once; on large
+# ones they would not fit near the processor
+_AT_ONCE = 10_000
 # a pest's kernel is followed so many of its scales, and so many plants at most
 _SCALES, _WIDEST = 3.0, 30
 
@@ -148,7 +151,8 @@ class KernelsOnCells:
         return sent
 
     def _landed(self, spectrum: Spectrum) -> Floats:
-        landed: Floats = fft.irfft2(spectrum, self.padded).ravel()[self._place]
+        on_cells = fft.irfft2(spectrum, self.padded)
+        landed: Floats = on_cells.reshape(*spectrum.shape[:-2], -1).take(self._place, axis=-1)
         return np.maximum(landed, 0.0, out=landed)
 
     @property
@@ -204,7 +208,12 @@ class Reach(KernelsOnCells):
     def brought_by_each(self, values: Floats) -> Floats:
         """Return the same for each kernel by itself, ``(6, n)``."""
         sent = self._sent(values)
-        return np.array([self._landed(sent * spectrum) for spectrum in self.spectra])
+        at_once = max(_AT_ONCE // sent.size, 1)
+        parts = [
+            self._landed(sent * self.spectra[k : k + at_once])
+            for k in range(0, len(self.spectra), at_once)
+        ]
+        return np.concatenate(parts)
 
 
 @lru_cache(maxsize=2)

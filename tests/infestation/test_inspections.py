@@ -233,3 +233,10 @@ def test_what_is_no_plant_or_day_at_all_is_refused_in_a_sentence():
         with pytest.raises(ObservationError, match=says):
             Inspections.of(plant, [FOUND], on)
     assert len(Inspections.of(7, FOUND, MONDAY)) == 1
+
+
+@pytest.mark.parametrize("detects", [0.0, -0.1, 84.0])
+def test_a_chance_to_see_what_is_there_is_above_0_and_1_at_most(detects):
+    day = np.datetime64("2026-11-18")
+    with pytest.raises(ObservationError, match="must be above 0, and 1 at most"):
+        Inspections.of(np.array([3, 4]), np.array([0, 0]), day, detects=[0.3, detects])

@@ -37,7 +37,7 @@ _WORDS = {
 _MINUS = frozenset("-\u2212")
 
 
-class CalledPlants(NamedTuple):
+class LabelledPlants(NamedTuple):
     """What cells say, by their index: numbers, or row, number in it and face (0: not said).
 
     `either` are those that may be a number with thousands or row and plant, as they are written.
@@ -48,7 +48,7 @@ class CalledPlants(NamedTuple):
     either: dict[int, str]
 
 
-def plants_called(column: NDArray[np.object_], *, alone: bool = False) -> CalledPlants:
+def plants_called(column: NDArray[np.object_], *, alone: bool = False) -> LabelledPlants:
     """Return which plants the cells ``(n,)`` of a column name; `alone`: by numbers, as was told."""
     cells = {i: text(value) for i, value in enumerate(column)}
     typed = {i for i, value in enumerate(column) if not isinstance(value, str)}
@@ -66,7 +66,7 @@ def plants_called(column: NDArray[np.object_], *, alone: bool = False) -> Called
         labels |= {i: said for i, cell in dotted.items() if (said := _label(cell))}
         either, noughts = {}, {}
     numbers |= noughts
-    return CalledPlants({i: n for i, n in numbers.items() if abs(n) < _MOST}, labels, either)
+    return LabelledPlants({i: n for i, n in numbers.items() if abs(n) < _MOST}, labels, either)
 
 
 def _whole(cell: str) -> int:

@@ -336,9 +336,10 @@ def _tell(rows: dict[str, Row], folder: Path) -> None:
     for line in _refusals([row for row in rows.values() if row["state"] == "refused"]):
         typer.echo(line, err=True)
     stops = sum(int(row["stops"]) for row in planned)
+    hours = sum(float(row["hours"]) for row in planned)
     typer.echo(
         f"{len(planned)} of {counted(len(rows), 'plot')} planned, {counted(stops, 'plant')} in "
-        f"{sum(float(row['hours']) for row in planned):.0f} h. Routes and {SUMMARY} in {folder}"
+        f"{round(hours, 1):g} h. Routes and {SUMMARY} in {folder}"
     )
 
 

@@ -32,7 +32,8 @@ def of_leaves(threshold: Threshold, leaves: int, counted: float, *, presence: bo
     Raises
     ------
     SettingError
-        If more leaves are infested than were looked at, or presence says nothing of a mean.
+        If more leaves are infested than were looked at, or a part of one is, or presence says
+        nothing of a mean.
 
     Examples
     --------
@@ -49,6 +50,10 @@ def of_leaves(threshold: Threshold, leaves: int, counted: float, *, presence: bo
     if (threshold.is_share or presence) and counted > leaves:
         raise SettingError(
             f"No more leaves can be infested than were looked at, but {counted:g} of {leaves} are."
+        )
+    if (threshold.is_share or presence) and counted % 1:
+        raise SettingError(
+            f"Infested leaves must be a whole number, but {counted:g} of {leaves} are given."
         )
     if presence and not threshold.is_share:
         return _by_presence(threshold, leaves, int(counted))

@@ -149,7 +149,7 @@ class Inspections:
                 f"A result must be 0 (clean), 1 (found) or 2 (skipped), but that of inspection "
                 f"{unknown[0] + 1} of {k} is {self.result[unknown[0]]}."
             )
-        beyond = np.flatnonzero((self.detects < 0.0) | (self.detects > 1.0))
+        beyond = np.flatnonzero((self.detects <= 0.0) | (self.detects > 1.0))
         if beyond.size:
             raise ObservationError(
                 "The chance to see an infested plant (detects) must be above 0, and 1 at most, but "

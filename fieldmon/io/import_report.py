@@ -147,6 +147,11 @@ class UnreadDates(ImportMessage):
     """A doubt that inspections say as their date what is none."""
 
 
+@dataclass(frozen=True)
+class UnsureCells(ImportMessage):
+    """A guess of what cells say that could say something else: no correction is taken on it."""
+
+
 def gathered(messages: Iterable[ImportMessage]) -> tuple[ImportMessage, ...]:
     """Return messages with those of one kind, about many features, as one with their number."""
     kinds: dict[object, list[ImportMessage]] = {}

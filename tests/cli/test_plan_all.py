@@ -14,6 +14,7 @@ import shapely
 from shapely import MultiPolygon
 
 from fieldmon.cli import plan_all
+from fieldmon.cli.plan_all import _tell
 from fieldmon.plot.field import Field
 from fieldmon.plot.projection import Frame
 from tests.parcels import many, write_geojson
@@ -236,3 +237,12 @@ def test_what_is_of_one_plot_only_is_refused(run, parcels, words):
     code, _, err, made = run("plan", parcels, "--all", *words)
     assert (code, made) == (2, set())
     assert "--all plans every plot" in err
+
+
+def test_hours_of_all_plots_are_told_to_the_tenth(capsys, tmp_path):
+    rows = {
+        name: {"plot": name, "state": "planned", "stops": 250, "hours": hours}
+        for name, hours in (("one", 2.7), ("two", 2.7))
+    }
+    _tell(rows, tmp_path)
+    assert "500 plants in 5.4 h." in capsys.readouterr().out

@@ -38,3 +38,9 @@ def test_more_infested_leaves_than_leaves_are_refused():
         of_leaves(ALMOND, 4, 5)
     with pytest.raises(SettingError, match="some must be infested and some clean"):
         of_leaves(MINT, 4, 4, presence=True)
+
+
+@pytest.mark.parametrize(("asked", "presence"), [(ALMOND, False), (MINT, True)])
+def test_a_part_of_a_leaf_is_no_infested_leaf(asked, presence):
+    with pytest.raises(SettingError, match=r"must be a whole number, but 4\.5 of 25"):
+        of_leaves(asked, 25, 4.5, presence=presence)

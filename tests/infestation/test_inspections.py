@@ -241,3 +241,10 @@ def test_what_is_picked_or_put_together_cannot_be_changed_either(which):
     seen = Inspections.of([3, 4, 5], [0, 1, 2], "2026-11-18", who=["Ann", "", "Bo"])
     for made in (seen.take(which), seen.and_those(seen)):
         assert not any(getattr(made, column.name).flags.writeable for column in COLUMNS)
+
+
+@pytest.mark.parametrize("detects", [0.0, -0.1, 84.0])
+def test_a_chance_to_see_what_is_there_is_above_0_and_1_at_most(detects):
+    day = np.datetime64("2026-11-18")
+    with pytest.raises(ObservationError, match="must be above 0, and 1 at most"):
+        Inspections.of(np.array([3, 4]), np.array([0, 0]), day, detects=[0.3, detects])

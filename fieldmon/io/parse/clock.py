@@ -43,6 +43,10 @@ def zone_of(name: str) -> tzinfo:
     )
 
 
+#: 24:00, in seconds since midnight
+DAY_END_S = 86_400
+
+
 class ClockTime(NamedTuple):
     """A time of day: seconds since midnight, and how far ahead of UTC its zone is if it says.
 
@@ -128,6 +132,13 @@ def local_time(day: np.datetime64, clock: ClockTime, zone: tzinfo | None) -> np.
         return np.datetime64(here, "s")
     stated = here.astype(datetime).replace(tzinfo=timezone(clock.offset))
     return np.datetime64(stated.astimezone(zone).replace(tzinfo=None), "s")
+
+
+def is_skipped(when: np.datetime64, zone: tzinfo) -> bool:
+    """Return whether no clock of a zone ever shows a local time: clocks are put forward then."""
+    here = when.astype("datetime64[s]").astype(datetime)
+    there = here.replace(tzinfo=zone).astimezone(UTC).astimezone(zone)
+    return bool(there.replace(tzinfo=None) != here)
 
 
 def is_clock_alone(cell: str) -> bool:

@@ -424,6 +424,17 @@ def km_outside(crs: pyproj.CRS, lon: float, lat: float) -> float:
     return km_between((lon, lat), (nearest, min(max(lat, area.south), area.north)))
 
 
+def southern_zone(crs: pyproj.CRS, lon: float, lat: float) -> str:
+    """Return what a northern UTM zone is called south of the equator, where a place lies there.
+
+    Its northings are negative there, and the place is the same. Empty: it lies elsewhere.
+    """
+    area = crs.area_of_use
+    if area is None or not -80 <= lat < 0 or not re.search(r"UTM zone \d+N$", crs.name):
+        return ""
+    return f"{crs.name[:-1]}S" if km_outside(crs, lon, -lat) == 0 else ""
+
+
 def utm_zone(crs: pyproj.CRS) -> int | None:
     """Return the number of the UTM zone of a system, or None."""
     zone = re.match(r"\d+", crs.utm_zone or "")

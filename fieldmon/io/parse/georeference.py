@@ -23,6 +23,7 @@ from fieldmon.io.parse.crs import (
     km_between,
     km_outside,
     middle_of,
+    southern_zone,
     system,
     transformation_from,
     utm_zone,
@@ -293,6 +294,14 @@ def _outside(
             there_lat=there_lat,
         )
         return [doubtful(said, None, _exchange(crs, options))]
+    if southern := southern_zone(crs, lon, lat):
+        said = worded(
+            "It lies at {lon:.4f}, {lat:.4f}, south of the equator: northings in {name} are "
+            "negative there. It was read so; {southern} is the usual system, with northings "
+            "10 000 000 m greater. Check that it lies there.",
+            lon=lon, lat=lat, name=crs.name, southern=southern,
+        )  # fmt: skip
+        return [doubtful(said)]
     said = worded(
         "It lies at {lon:.4f}, {lat:.4f}, which is {away:.0f} km outside "
         "of where {name} is used, so the accuracy that PROJ states does "

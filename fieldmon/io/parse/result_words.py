@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import first_few, worded
 from fieldmon.infestation.records import ABSENT, PRESENT
-from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed, seen
+from fieldmon.io.import_report import (
+    ImportMessage,
+    Remedy,
+    Severity,
+    UnsureCells,
+    doubtful,
+    seen,
+)
 from fieldmon.io.parse.columns import is_average, is_confidence, is_score
 
 if TYPE_CHECKING:
@@ -282,7 +289,8 @@ def about_mark(unsure: str | None, column: str, mark: str) -> list[ImportMessage
     else:
         said = worded("Counts such as {unsure} were read as thousands.", unsure=unsure)
         label = worded("Read them as decimals")
-    return [guessed(said, column, Remedy("decimal", "," if mark == "." else ".", label))]
+    remedy = Remedy("decimal", "," if mark == "." else ".", label)
+    return [UnsureCells(Severity.GUESSED, said, column, remedy)]
 
 
 def are_fractions(read: Iterable[float]) -> bool:

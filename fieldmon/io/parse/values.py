@@ -148,6 +148,18 @@ def numbers(column: NDArray[np.object_], decimal: str | None = None) -> Float:
     return np.array([np.nan if c.casefold() in MISSING else number(c, mark) for c in cells])
 
 
+# what programs write where a number is asked for and nothing was counted
+_CODES = frozenset({999.0, 9999.0, 99999.0, 999999.0})
+_FAR_BELOW = 10  # times lower are counts beside which nobody counts so many
+
+
+def codes_among(counts: Iterable[float]) -> frozenset[float]:
+    """Return which of some counts may stand for no value: 9999 where all others are far lower."""
+    known = {count for count in counts if np.isfinite(count)}
+    most = max(known - _CODES, default=np.inf)
+    return frozenset(code for code in known & _CODES if _FAR_BELOW * most < code)
+
+
 class CellCount(NamedTuple):
     """What a cell for a count says: how many, and whether there is anything."""
 
@@ -191,8 +203,12 @@ def _roughly(word: str, decimal: str) -> CellCount:
     between = _RANGE.match(word)
     if between:
         low, high = (number(part, decimal) for part in between.groups())
-        present = PRESENT if high > 0 else ABSENT
-        return _countable(high, CellCount((low + high) / 2, present, is_rough=True))
+        if not low <= high:
+            return CellCount(np.nan, UNKNOWN, is_rough=True)
+        # of 0 to 5 there may be none
+        present = PRESENT if low > 0 else UNKNOWN if high > 0 else ABSENT
+        middle = np.nan if present == UNKNOWN else (low + high) / 2
+        return _countable(high, CellCount(middle, present, is_rough=True))
     bound = _BOUND.match(word)
     if not bound:
         return CellCount(np.nan, UNKNOWN, is_rough=True)

@@ -95,7 +95,7 @@ def placed_on_plot(
     problems |= _unknown_faces(rows, grid, plant)
     below = below_first(rows, grid)
     for i in np.flatnonzero(plant < 0).tolist():
-        problems.setdefault(i, _nowhere(str(rows.unread[i]), below_one=bool(below[i])))
+        problems.setdefault(i, _nowhere(rows, i, below_one=bool(below[i])))
     said = (*said_of_names, *labelled.said)
     return PlacedRecords(rows, plant, named.plant, open_yet, problems, doubts, said)
 
@@ -111,6 +111,7 @@ def about_places(
         *_listed(rows, doubts, doubtful, None if options.take_doubtful else TAKE),
         *_about_order(rows, grid),
         *_about_numbers(rows, grid, placed.numbered, taken),
+        *_about_labels(rows, taken),
         *placed.said,
         *_about_faces(rows, grid, placed.plant, taken),
         *_about_accuracy(rows, options, by_position & taken),
@@ -135,13 +136,26 @@ def _unknown_faces(
     }
 
 
-def _nowhere(unread: str, *, below_one: bool) -> str:
+def _nowhere(rows: InspectionRows, record: int, *, below_one: bool) -> str:
     """Return why a record has no plant."""
     if below_one:
         return worded("rows and plants are counted from 1, but it says 0 or less")
-    if unread:
+    if unread := str(rows.unread[record]):
         return worded("it names no plant, and {at} is no position", at=unread)
+    if called := _named_alone(rows, record):
+        return worded(
+            "{called!r} does not name a plant for certain. Write its number on the whole plot, or "
+            "its row and its number in it, as 3/12 or R3/12",
+            called=called,
+        )
     return worded("it names no plant and has no position")
+
+
+def _named_alone(rows: InspectionRows, record: int) -> str:
+    """Return what a record names as its plant where no other column names a row; else nothing."""
+    if rows.plant_called is None or (rows.row_called is not None and rows.row_called[record]):
+        return ""
+    return str(rows.plant_called[record])
 
 
 def own_doubts(rows: InspectionRows) -> dict[int, str]:
@@ -201,6 +215,21 @@ def _about_numbers(
         "{last} on the whole plot.",
         n=int(alone.sum()),
         last=len(grid) - 1,
+    )
+    return [guessed(said)]
+
+
+def _about_labels(rows: InspectionRows, taken: NDArray[np.bool_]) -> list[ImportMessage]:
+    """Return what to say of plants whose row and number in it stand in one cell."""
+    one = np.flatnonzero(taken & (rows.plant < 0) & (rows.line != UNSAID)).tolist()
+    cells = [cell for i in one if (cell := _named_alone(rows, i))]
+    if not cells:
+        return []
+    said = worded(
+        "{n} {n:record names|records name} a row and a plant in one cell ({cell!r}): the first "
+        "number was taken for the row, the second for the plant in it.",
+        n=len(cells),
+        cell=cells[0],
     )
     return [guessed(said)]
 

@@ -19,7 +19,7 @@ from fieldmon.io.parse.result_words import (
     are_fractions,
     remedy_of_words,
 )
-from fieldmon.io.parse.values import counted, is_missing, presence
+from fieldmon.io.parse.values import codes_among, counted, is_missing, presence
 from fieldmon.io.readers.inspection_file.columns import names_in
 from fieldmon.io.readers.inspection_file.results import decimal_mark_in, results_in_names
 from fieldmon.io.readers.other_counts import about_other_counts
@@ -132,6 +132,10 @@ def _numbers_of(table: RecordColumns, name: str) -> RecordCounts:
     present = np.array([known[cell].present for cell in cells], dtype=np.int8)
     messages.append(seen(worded("Counts are in column {name!r}.", name=name)))
     messages += about_fractions(name, count.tolist(), is_usual=bool(recognised([name])))
+    if codes := codes_among(count.tolist()):
+        of_codes = np.isin(count, [*codes])
+        count[of_codes], present[of_codes] = np.nan, UNKNOWN
+        messages.append(_about_codes(name, sorted(codes), int(of_codes.sum())))
     odd = [cell for cell in cells if known[cell].is_rough]
     rough = [cell for cell in odd if known[cell].present != UNKNOWN]
     none = [cell for cell in odd if known[cell].present == UNKNOWN]
@@ -158,7 +162,8 @@ def _numbers_of(table: RecordColumns, name: str) -> RecordCounts:
                 name,
             )
         )
-    n_missing = int(np.count_nonzero(present == UNKNOWN)) - len(none)
+    missing = [cell for cell in cells if known[cell].present == UNKNOWN]
+    n_missing = len(missing) - len(none)
     if n_missing:
         messages.append(
             seen(
@@ -169,6 +174,18 @@ def _numbers_of(table: RecordColumns, name: str) -> RecordCounts:
             )
         )
     return RecordCounts(count, present, messages)
+
+
+def _about_codes(name: str, codes: list[float], n: int) -> ImportMessage:
+    """Return a doubt about counts that may stand for no value."""
+    said = worded(
+        "{n} {n:count is|counts are} {codes}, which often stands for no value, and all others are "
+        "far lower: left open. Empty such cells; where so many were counted, write found in a "
+        "column of results.",
+        n=n,
+        codes=", ".join(f"{code:.0f}" for code in codes),
+    )
+    return doubtful(said, name)
 
 
 def _with_presence(table: RecordColumns, name: str, counts: RecordCounts) -> RecordCounts:

@@ -325,11 +325,12 @@ def keep_before(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) 
 
 def in_words(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> str:
     """Return what a correction made of a row, for the log and for people."""
-    names = f"{INSPECTED}, line, number, {', '.join(SEEN)}"
+    names = f"{INSPECTED}, line, number, digest, {', '.join(SEEN)}"
     row = db.execute(f"SELECT {names} FROM inspections AS old WHERE fid = ?", (change.row,))  # noqa: S608 - ours
-    says, line, number, *values = row.fetchone() or ("", 0, 0, *(None for _ in SEEN))
+    says, line, number, mark, *values = row.fetchone() or ("", 0, 0, "", *(None for _ in SEEN))
     now: dict[str, Any] = dict(zip(SEEN, values, strict=True))
     before = rows_that_count.as_it_was(change.before) if change.before else {}
+    now = _with_others(db, now, before, mark)
     was = _with_face(change.was, grid, before.get("plant", now["plant"]))
     if change.what == "delete":
         return worded("{was} was deleted", was=was)
@@ -348,6 +349,21 @@ def in_words(db: sqlite3.Connection, change: OutsideChange, grid: PlantGrid) -> 
         and not (is_gone and name in {"result", "count", "notes"})
     ]  # fmt: skip
     return worded("{was} is now {now}", was=was, now=joined(", ", parts) if parts else says)
+
+
+def _with_others(
+    db: sqlite3.Connection, now: dict[str, Any], before: dict[str, Any], mark: str
+) -> dict[str, Any]:
+    """Return what a row says now; what was emptied in it, as others said it of the same."""
+    emptied = [
+        one.kept
+        for one in BESIDE
+        if one.role != "noted" and before.get(one.kept) and now[one.kept] in {None, ""}
+    ]
+    if not emptied:
+        return now
+    said = repeated_recordings.of(db, mark, repeated_recordings.of_others(db)) or now
+    return now | {name: said[name] for name in emptied}
 
 
 def _told(value: object) -> str:

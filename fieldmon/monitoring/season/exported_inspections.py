@@ -20,6 +20,7 @@ from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import FileProblem, ObservationError
 from fieldmon.infestation.inspection_columns import BESIDE, COLUMNS, COUNT, IDENTIFYING
 from fieldmon.infestation.records import PRESENT
+from fieldmon.io.import_report import UnsureCells
 from fieldmon.io.options import source_name
 from fieldmon.io.readers.inspection_file.inspection_rows import is_mark
 from fieldmon.monitoring.changes.transactions import copy_season
@@ -385,7 +386,8 @@ def _exported_rows(season: Season, source: Source, options: InspectionOptions) -
             )
         )
     _refuse_wrong_digests(rows, name)
-    doubts = [one.sentence for one in read.messages if one.severity.is_loss]
+    unsure = (one for one in read.messages if one.severity.is_loss or isinstance(one, UnsureCells))
+    doubts = [one.sentence for one in unsure]
     if doubts and (is_exported or not len(rows)):
         raise ObservationError(
             worded(

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fieldmon.errors import SettingError
-from fieldmon.io.parse.clock import clock_time, is_clock_alone, local_time, zone_of
+from fieldmon.io.parse.clock import clock_time, is_clock_alone, is_skipped, local_time, zone_of
 
 DAY = np.datetime64("2026-11-18")
 
@@ -97,3 +97,9 @@ def test_a_zone_is_named_by_its_place():
 def test_what_is_no_zone_is_a_sentence(name):
     with pytest.raises(SettingError, match="Asia/Jerusalem"):
         zone_of(name)
+
+
+def test_a_zone_skips_an_hour_where_its_clocks_are_put_forward():
+    here, night = zone_of("Asia/Jerusalem"), np.datetime64("2025-03-28T00:00:00")
+    skipped = [is_skipped(night + np.timedelta64(30 * k, "m"), here) for k in range(12)]
+    assert np.flatnonzero(skipped).tolist() == [4, 5]

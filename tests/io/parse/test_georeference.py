@@ -186,3 +186,15 @@ def test_which_coordinate_is_the_easting_is_said_where_either_may_be():
     ):
         placed = place(projected(crs, np.array([lonlat])), crs, near_or_not)
         assert "northings first" not in " ".join(m.sentence for m in placed.messages)
+
+
+def test_negative_northings_of_a_northern_zone_are_said_with_the_southern_zone():
+    south = np.array([[18.9, -33.9], [18.901, -33.901]])
+    placed = place(projected("EPSG:32634", south), "EPSG:32634", NOTHING)
+    np.testing.assert_allclose(placed.lonlat, south, atol=1e-7)
+    (said,) = (one for one in placed.messages if "south of the equator" in one.sentence)
+    assert "WGS 84 / UTM zone 34S is the usual system" in said.sentence
+    assert said.remedy is None
+    away = np.array([[28.9, -33.9], [28.901, -33.901]])
+    told = place(projected("EPSG:32634", away), "EPSG:32634", NOTHING).messages
+    assert not any("south of the equator" in one.sentence for one in told)

@@ -9,6 +9,7 @@ from fieldmon.errors import SettingError
 from fieldmon.infestation.records import ABSENT, PRESENT, UNKNOWN
 from fieldmon.io.parse.values import (
     MISSING,
+    codes_among,
     could_be_thousands,
     counted,
     decimal_mark,
@@ -114,6 +115,10 @@ def test_words_for_nothing_known_are_missing_in_any_case(word):
         ("ca. 12", 12.0, PRESENT),
         ("<5", np.nan, PRESENT),
         ("<1", np.nan, UNKNOWN),
+        ("0-5", np.nan, UNKNOWN),
+        ("0 to 1", np.nan, UNKNOWN),
+        ("1-0", np.nan, UNKNOWN),
+        ("5-2", np.nan, UNKNOWN),
         ("≤1", np.nan, PRESENT),
         ("-3", np.nan, UNKNOWN),
         ("1e308", np.nan, UNKNOWN),
@@ -137,3 +142,18 @@ def test_zero_is_absence_and_any_other_count_presence(count):
 @pytest.mark.parametrize("cell", ["5-.", "1 to ,", "5-3e12", "<3e12", "3000000000+", "2e9"])
 def test_a_count_whose_end_is_no_number_or_beyond_counting_is_unknown_and_never_clean(cell):
     assert counted(cell).present == UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("counts", "codes"),
+    [
+        ([12, 9999], {9999}),
+        ([0, 3, 999, 999], {999}),
+        ([150, 999], set()),
+        ([9999], set()),
+        ([12, 998], set()),
+        ([np.nan, 5, 999, 99999], {999, 99999}),
+    ],
+)
+def test_a_code_for_no_value_is_one_only_where_all_other_counts_are_far_lower(counts, codes):
+    assert codes_among(map(float, counts)) == codes

@@ -28,3 +28,18 @@ def test_a_number_that_nothing_bears_out_is_said_to_count_from_zero():
     alone = "record names a plant by its number alone: taken as files given out count them, 0 to 59"
     assert any(alone in str(one) for one in read("plant,count\n1,2\n").messages)
     assert not any(alone in str(one) for one in read("plant,row,number,count\n1,1,2,2\n").messages)
+
+
+def test_row_and_plant_in_one_cell_are_said_as_numbers_alone_are():
+    told = [str(one) for one in read("tree,found\n3/2,x\nR1/2,x\n").messages]
+    assert any("2 records name a row and a plant in one cell ('3/2')" in one for one in told)
+    told = [str(one) for one in read("tree,found\n7,x\n").messages]
+    assert not any("in one cell" in one for one in told)
+    told = [str(one) for one in read("row,plant,found\n3,2,x\n").messages]
+    assert not any("in one cell" in one for one in told)
+
+
+def test_what_names_another_thing_is_not_placed_and_said():
+    told = read("tree,found\nBlock 2-5,x\n7,x\n")
+    assert told.value.plant.tolist() == [7]
+    assert any("'Block 2-5' does not name a plant for certain" in str(one) for one in told.messages)

@@ -140,3 +140,12 @@ def test_what_is_no_count_is_not_said_to_be_read_roughly():
     doubts = said(records, Severity.DOUBTFUL)
     assert "2 counts say neither how many nor whether any ('TNTC', '-3'); left open." in doubts
     assert "2 counts are no plain number ('<5', '5+'); read roughly." in doubts
+
+
+def test_a_count_that_often_stands_for_no_value_is_left_open_and_said():
+    records = read(count=[12, 9999, 0, 9999])
+    assert records.value.present.tolist() == [PRESENT, UNKNOWN, ABSENT, UNKNOWN]
+    np.testing.assert_array_equal(records.value.count, [12, np.nan, 0, np.nan])
+    doubt = said(records, Severity.DOUBTFUL)
+    assert "2 counts are 9999, which often stands for no value" in doubt
+    assert read(count=[1500, 9999]).value.present.tolist() == [PRESENT, PRESENT]

@@ -328,3 +328,33 @@ def test_dates_whose_order_nothing_tells_are_refused(path, tmp_path):
     with pytest.raises(ObservationError, match="day or month first"):
         from_spreadsheet(season, lines, tmp_path, day="{m}/{d}/{y}")
     assert from_spreadsheet(season, lines, tmp_path) == (1, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("column", "cell", "said"),
+    [("time", "24:00", "1 time is 24:00"), ("count", "1.234", "Counts such as 1.234 were read")],
+)
+def test_a_cell_that_could_say_something_else_is_no_correction(
+    season, tmp_path, column, cell, said
+):
+    layer = exported(season).astype({column: object})
+    layer.loc[layer["plant"] == 301, column] = cell
+    layer[column] = [one if isinstance(one, str) else "" for one in layer[column]]
+    held = season.history.inspections
+    with pytest.raises(ObservationError, match=f"must be read for certain, but .*{said}"):
+        brought(season, layer, tmp_path, "edited.csv")
+    assert season.history.inspections.date.tolist() == held.date.tolist()
+
+
+def test_a_name_that_was_emptied_is_said_as_the_file_holds_it_then(season, tmp_path):
+    season.record(
+        Inspections.of([301], [1], BEGINS, second=[30_000], count=[2.0], who=["Bob"]), "again"
+    )
+    layer = exported(season)
+    layer = layer[layer["undone"] == 0]
+    layer.loc[layer["plant"] == 301, "who"] = None
+    assert brought(season, layer, tmp_path)[0] == 1
+    sentence = season.log()[-1].sentence()
+    assert "is now who Bob" in sentence
+    seen = season.history.inspections
+    assert seen.who[seen.plant == 301].tolist() == ["Bob"]

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import first_few, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.layer import Layer, text
+from fieldmon.io.import_report import Remedy, doubtful
 from fieldmon.io.parse.columns import find
 from fieldmon.io.parse.lengths import accuracies
 from fieldmon.io.parse.named_positions import could_be_positions
 from fieldmon.io.parse.positions import located
 from fieldmon.io.parse.values import is_missing, numbers
 from fieldmon.io.readers.inspection_file.inspection_rows import UNSAID
+from fieldmon.io.readers.inspection_file.plant_labels import plants_called
 from fieldmon.plot.plant_names import FACES, faces_called
 
 if TYPE_CHECKING:
@@ -26,16 +28,29 @@ if TYPE_CHECKING:
     from fieldmon.io.readers.inspection_file.columns import InspectionColumns
     from fieldmon.io.readers.inspection_options import InspectionOptions
 
-_LABEL = re.compile(r"^[^\d\s]{0,8}\s*(\d{1,6})\s*[/\-.,:;\s]\s*[^\d\s]{0,8}\s*(\d{1,6})([abAB]?)$")
 #: a plant in the name of a waypoint of ours, with what stands before and behind it: ``R3/17``, or
 #: with the row's name, ``R101·5A/17``
 PLANT_IN_NAME = re.compile(r"(?:^|\s)(?:\d+\s+)?R(\d{1,7})(?:·[^\s/]*)?/(\d{1,6})([ab]?)(?=\s|$)")
 _ROW = "\0row"
+_NAMED = 5  # cells that a sentence shows
+
+
+class NamedPlants(NamedTuple):
+    """The number in the grid, or row, number in it and face, by which a file names each ``(n,)``.
+
+    And what to say of names that could be either.
+    """
+
+    plant: NDArray[np.int64]
+    line: NDArray[np.int64]
+    number: NDArray[np.int64]
+    face: NDArray[np.int8]
+    messages: tuple[ImportMessage, ...] = ()
 
 
 def named_plants(
-    layer: Layer, columns: InspectionColumns
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int8]]:
+    layer: Layer, columns: InspectionColumns, options: InspectionOptions
+) -> NamedPlants:
     """Return the plant's number in the grid, or row, number and face, by which a file names it."""
     n = len(layer)
     plant = np.full(n, -1, np.int64)
@@ -47,17 +62,42 @@ def named_plants(
         line[unsaid] = number[unsaid] = UNSAID
     if columns.face is not None:
         face[:] = faces_called(map(text, layer.column(columns.face)))
+    messages: tuple[ImportMessage, ...] = ()
     if columns.plant is not None:
-        plant = _whole(layer, columns.plant, -1)
-    labels = columns.plant if columns.marks is None else columns.marks
-    if labels is not None:
-        pattern = _LABEL if columns.marks is None else PLANT_IN_NAME
-        for i, value in enumerate(layer.column(labels)):
-            found = pattern.search(text(value))
+        alone = options.column("row") == ""  # numbered through the whole plot, as was told
+        called = plants_called(layer.column(columns.plant), alone=alone)
+        plant[list(called.numbers)] = list(called.numbers.values())
+        for i, label in called.labels.items():
+            if line[i] == UNSAID:
+                line[i], number[i], face[i] = label
+        messages = _about_either(columns.plant, [s for i, s in called.either.items()
+                                                 if line[i] == UNSAID])  # fmt: skip
+    if columns.marks is not None:
+        for i, value in enumerate(layer.column(columns.marks)):
+            found = PLANT_IN_NAME.search(text(value))
             if found and plant[i] < 0:
                 line[i], number[i] = int(found.group(1)), int(found.group(2))
                 face[i] = FACES.get(found.group(3).casefold(), 0)
-    return plant, line, number, face
+    return NamedPlants(plant, line, number, face, messages)
+
+
+def _about_either(column: str, cells: list[str]) -> tuple[ImportMessage, ...]:
+    """Return a doubt about cells that may be a number with thousands, or row and plant."""
+    if not cells:
+        return ()
+    row, plant = (int(part) for part in re.split(r"\D", cells[0]))
+    said = worded(
+        "{n} {n:cell|cells} of column {column!r} may be {n:the number of a plant|numbers of "
+        "plants} with thousands, or a row and a plant in it ({cells}), and {n:was|were} read as "
+        "neither. Write {whole} for the first, {label} for the second.",
+        n=len(cells),
+        column=column,
+        cells=first_few([repr(cell) for cell in dict.fromkeys(cells)], _NAMED),
+        whole=re.sub(r"\D", "", cells[0]),
+        label=f"{row}/{plant}",
+    )
+    label = worded("Take them as numbers on the whole plot")
+    return (doubtful(said, None, Remedy("columns", "row=", label)),)
 
 
 def unknown_faces(layer: Layer, columns: InspectionColumns) -> NDArray[np.str_]:

@@ -26,7 +26,14 @@ from fieldmon.io.parse.result_words import (
     plain_word,
     remedy_of_words,
 )
-from fieldmon.io.parse.values import counted, is_missing, mark_of_counts, number, presence
+from fieldmon.io.parse.values import (
+    codes_among,
+    counted,
+    is_missing,
+    mark_of_counts,
+    number,
+    presence,
+)
 from fieldmon.io.readers.inspection_file.plants import PLANT_IN_NAME
 from fieldmon.io.readers.other_counts import about_other_counts
 
@@ -85,12 +92,31 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
     seen_so = _put_together(by_result, by_count, messages)
     others = about_other_counts(layer, options, columns.number_found, columns, seen_so.result)
     doubt = np.where(seen_so.doubt == "", others.doubt, seen_so.doubt)
+    doubt = np.where(doubt == "", _doubt_of_codes(seen_so.how_many), doubt)
     seen_so = seen_so._replace(doubt=doubt, messages=[*seen_so.messages, *others.messages])
     if columns.result is None:
         return seen_so
     column = layer.column(columns.result)
     gone = np.array([is_gone(text(v), options.gone) for v in column], np.bool_)
     return seen_so._replace(gone=gone & (seen_so.result == UNKNOWN))
+
+
+def _doubt_of_codes(counts: NDArray[np.float64]) -> NDArray[np.str_]:
+    """Return why counts ``(n,)`` are doubted that may stand for no value; empty: they are not."""
+    codes = codes_among(counts.tolist())
+    return np.array(
+        [
+            worded(
+                "its count is {count:.0f}, which often stands for no value, and all others are far "
+                "lower",
+                count=count,
+            )
+            if count in codes
+            else ""
+            for count in counts.tolist()
+        ],
+        np.str_,
+    )
 
 
 def _by_result(
@@ -154,6 +180,8 @@ def decimal_mark_in(
     """
     if options.decimal is not None:
         return options.decimal, []
+    if not any(isinstance(value, str) for value in layer.column(name)):
+        return ".", []  # typed as numbers: these have no thousands marks
     others = (values for column, values in layer.columns.items() if column != name)
     looked_at = (text(v) for values in others for v in values[:_LOOKED_AT])
     mark, unsure = mark_of_counts(cells, looked_at, averages=is_average(name))

@@ -98,13 +98,13 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
     messages += _about_erased(erased)
     messages += _about_silence(results, notes, erased, in_names=columns.marks is not None)
     lonlat, accuracy_m, unread, more = positions_in(layer, columns, options)
-    plant, line, number, face = named_plants(layer, columns)
+    named = named_plants(layer, columns, options)
     times = times_in(layer, columns, options)
     whole = InspectionRows(
-        plant=plant,
-        line=line,
-        number=number,
-        face=face,
+        plant=named.plant,
+        line=named.line,
+        number=named.number,
+        face=named.face,
         lonlat=lonlat,
         accuracy_m=accuracy_m,
         unread=unread,
@@ -132,7 +132,8 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
     kept = whole.take(_in_order(layer, times.when, times.day, said))
     pests = texts_in(layer, columns.species)[said].tolist()
     spelt = one_pest(columns.species, pests)[1] if columns.species else []
-    every = (*layer.messages, *messages, *results.messages, *more, *times.messages, *spelt)
+    every = (*layer.messages, *messages, *results.messages, *named.messages, *more)
+    every = (*every, *times.messages, *spelt)
     return Imported(kept, every)
 
 

@@ -8,12 +8,21 @@ import numpy as np
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.io.import_report import ImportMessage, Remedy, doubtful, guessed
+from fieldmon.io.import_report import (
+    ImportMessage,
+    Remedy,
+    Severity,
+    UnsureCells,
+    doubtful,
+    guessed,
+)
 from fieldmon.io.parse.clock import (
+    DAY_END_S,
     are_days,
     as_clocks,
     clock_time,
     is_clock_alone,
+    is_skipped,
     local_time,
     n_midnights_left_out,
     without_midnights,
@@ -83,7 +92,8 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     day = np.where(unsaid, otherwise, read.day).astype("datetime64[D]")
     when = np.full(len(layer), "NaT", dtype="datetime64[s]")
     zone = None if options.zone is None else zone_of(options.zone)
-    n_utc, broken, zoned = 0, [], np.zeros(len(layer), bool)
+    n_utc, broken, skipped = 0, [], []
+    zoned, ends = np.zeros((2, len(layer)), bool)
     undated = {}
     for i, cell in enumerate(at):
         clock = read_clocks[cell]
@@ -94,9 +104,12 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
         elif clock is not None and not np.isnat(day[i]):
             when[i] = local_time(day[i], clock, zone)
             n_utc += clock.offset is not None and zone is None
-            zoned[i] = clock.offset is not None
+            zoned[i], ends[i] = clock.offset is not None, clock.seconds == DAY_END_S
+            if zone is not None and not zoned[i] and is_skipped(when[i], zone):
+                skipped.append(str(when[i]))
     day = np.where(np.isnat(when), day, when.astype("datetime64[D]")).astype("datetime64[D]")
-    midnights, n_times = when == day, int((~np.isnat(when)).sum())  # of here, written in UTC
+    midnights = (when == day) & ~ends  # of here, written in UTC
+    n_times = int((~np.isnat(when)).sum())
     if midnights.sum() < n_times:
         midnights &= zoned
         n_days += n_here if are_days(n_here := int(midnights.sum()), n_times) else 0
@@ -105,6 +118,7 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     of_days = midnights_left_out(n_days)
     about = unread_days(undated)
     about += _about_times(broken, read.is_ambiguous, n_utc)
+    about += [*_about_ends(int(ends.sum())), *_about_skipped(skipped)]
     idle = _of_told_day(options.day, day, needed=unsaid & np.isnat(planned))
     idle += _of_writing(date, options)
     # where others have come each that has not is left out, and said, unless they are taken
@@ -158,6 +172,31 @@ def _about_times(
         )
         messages.append(guessed(said, None, remedy))
     return messages
+
+
+def _about_ends(n: int) -> list[ImportMessage]:
+    """Return what was guessed of times written as 24:00."""
+    if not n:
+        return []
+    said = worded(
+        "{n} {n:time is|times are} 24:00, taken as 00:00 of the next day. Write 23:59 for the day "
+        "that ends.",
+        n=n,
+    )
+    return [UnsureCells(Severity.GUESSED, said)]
+
+
+def _about_skipped(times: list[str]) -> list[ImportMessage]:
+    """Return a doubt about local times that no clock shows."""
+    if not times:
+        return []
+    said = worded(
+        "{n} {n:time is|times are} in an hour that clocks skip at the plot ({time}), and "
+        "{n:was|were} taken as written. Look whether {n:it is|they are} of another zone, or wrong.",
+        n=len(times),
+        time=times[0],
+    )
+    return [doubtful(said)]
 
 
 def _object(cells: list[str]) -> NDArray[np.object_]:

@@ -15,7 +15,8 @@ NOTHING = InspectionOptions()
 
 def named(**columns):
     layer = table(**columns)
-    return [each.tolist() for each in named_plants(layer, columns_of(layer, NOTHING))]
+    found = named_plants(layer, columns_of(layer, NOTHING), NOTHING)
+    return [each.tolist() for each in found[:4]]
 
 
 def positions(layer, options=NOTHING):
@@ -88,3 +89,19 @@ def test_a_file_that_says_neither_is_a_question():
     with pytest.raises(ChoiceNeeded, match="which plants") as asked:
         positions(table(found=["yes"], colour=["red"]))
     assert asked.value.choices == ("plant=colour", "plot=colour")
+
+
+def test_a_thousand_that_may_be_row_and_plant_is_said_with_both_ways_to_write_it():
+    layer = table(plant=["988", "1.001"], found=["x", "x"])
+    found = named_plants(layer, columns_of(layer, NOTHING), NOTHING)
+    (said,) = found.messages
+    assert "('1.001')" in said.sentence
+    assert "Write 1001 for the first, 1/1 for the second" in said.sentence
+    told = NOTHING.choose(said.remedy.option, said.remedy.value)
+    found = named_plants(layer, columns_of(layer, told), told)
+    assert (found.plant.tolist(), found.messages) == ([988, 1001], ())
+
+
+def test_row_and_number_of_their_own_columns_stand_before_a_label():
+    _, line, number, _ = named(row=[12], number=[40], plant=["1.5"], found=["x"])
+    assert (line, number) == ([12], [40])

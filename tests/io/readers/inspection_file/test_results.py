@@ -202,3 +202,16 @@ def test_a_count_that_could_be_thousands_is_told_by_its_table_or_said_to_be_gues
         options = InspectionOptions().choose(guess.remedy.option, guess.remedy.value)
         other = read(options, plant=[7, 8], **{column: cells}, **more)
         assert other.how_many[0] == {1.25: 1250.0, 1250.0: 1.25}[first]
+
+
+def test_a_count_that_often_stands_for_no_value_is_doubted_and_others_are_not():
+    seen = read(plant=[1, 2, 3], count=["12", "9999", "0"])
+    assert "its count is 9999, which often stands for no value" in seen.doubt[1]
+    assert seen.doubt.tolist()[::2] == ["", ""]
+    assert set(read(plant=[1, 2], count=["2000", "9999"]).doubt.tolist()) == {""}
+
+
+def test_numbers_that_are_typed_as_such_have_no_thousands_marks():
+    seen = read(plant=[1, 2], count=[1.25, 2.333])
+    assert seen.how_many.tolist() == [1.25, 2.333]
+    assert not any("thousands" in one.sentence for one in seen.messages)

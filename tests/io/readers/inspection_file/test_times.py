@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fieldmon.errors import ChoiceNeeded
-from fieldmon.io.import_report import Severity, UnreadDates
+from fieldmon.io.import_report import Severity, UnreadDates, UnsureCells
 from fieldmon.io.readers.inspection_file.columns import columns_of
 from fieldmon.io.readers.inspection_file.times import times_in
 from fieldmon.io.readers.inspection_options import InspectionOptions
@@ -211,3 +211,25 @@ def test_two_columns_that_say_different_days_are_a_question():
     months_first = InspectionOptions(date_order="mdy")
     same = read(months_first, date=["04/03/2026"], sampling_date=["2026-04-03"])
     assert str(same.day[0]) == "2026-04-03"
+
+
+def test_24_00_is_the_next_days_midnight_with_its_time_and_said():
+    for times in (["24:00"], ["24:00", "08:30"]):
+        noted = read(date=["2026-11-18"] * len(times), time=times)
+        assert noted.when[0] == np.datetime64("2026-11-19T00:00:00")
+        assert noted.day[0] == np.datetime64("2026-11-19")
+        (said,) = (one for one in noted.messages if isinstance(one, UnsureCells))
+        assert "1 time is 24:00, taken as 00:00 of the next day" in said.sentence
+
+
+def test_a_time_in_the_hour_that_clocks_skip_is_doubted():
+    here = InspectionOptions(zone="Asia/Jerusalem")
+    noted = read(here, time=["2025-03-28T02:30:00", "2025-03-28T03:30:00"])
+    assert noted.when[0] == np.datetime64("2025-03-28T02:30:00")
+    (said,) = (one for one in noted.messages if "clocks skip" in one.sentence)
+    assert said.severity is Severity.DOUBTFUL
+    assert said.sentence.startswith("1 time is in an hour that clocks skip at the plot (2025-03-28")
+    for zone, time in (("Asia/Jerusalem", "2025-10-26T01:30:00"), ("+02:00", "2025-03-28T02:30:00"),
+                       ("Asia/Jerusalem", "2025-03-28T02:30:00+02:00")):  # fmt: skip
+        quiet = read(InspectionOptions(zone=zone), time=[time])
+        assert not any("clocks skip" in one.sentence for one in quiet.messages)

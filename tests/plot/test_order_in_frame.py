@@ -75,7 +75,7 @@ def test_each_face_gets_its_own_line_and_one_line_is_of_both_faces():
 
 def test_a_frame_of_other_plants_is_refused():
     plot = Plot.from_geopandas(points(order=np.arange(24))[["geometry"]])
-    with pytest.raises(PlotError, match="1 of 24 have none within 0.5 m: plant 1 of row 1 is"):
+    with pytest.raises(PlotError, match=r"1 of 24 have none within 0\.5 m: plant 1 of row 1 is"):
         plot.order_in(points(order=np.arange(1, 24)))
     with pytest.raises(PlotError, match="must be points, but it holds none"):
         plot.order_in(geopandas.GeoSeries([points().union_all().convex_hull], crs=4326))

@@ -248,12 +248,7 @@ def _is_filled_in(file: Path) -> bool:
         rows = csv.DictReader(text.splitlines(), delimiter=mark)
         return any((row.get("found") or "").strip() or (row.get("count") or "") for row in rows)
     if ending in {".geojson", ".json"}:
-        try:
-            stops = json.loads(file.read_bytes())["features"]
-            told = [stop["properties"].get(name) for stop in stops for name in ("found", "count")]
-        except (ValueError, LookupError, TypeError, AttributeError):
-            return False
-        return any(one is not None and one != "" for one in told)
+        return _is_geojson_filled_in(file)
     if ending in _READ_WHOLE:
         return _holds_results(file)
     if ending != ".gpkg":
@@ -264,6 +259,15 @@ def _is_filled_in(file: Path) -> bool:
             return db.execute(wanted).fetchone() is not None
     except sqlite3.Error:
         return False
+
+
+def _is_geojson_filled_in(file: Path) -> bool:
+    try:
+        stops = json.loads(file.read_bytes())["features"]
+        told = [stop["properties"].get(name) for stop in stops for name in ("found", "count")]
+    except (ValueError, LookupError, TypeError, AttributeError):
+        return False
+    return any(one is not None and one != "" for one in told)
 
 
 def _holds_results(file: Path) -> bool:

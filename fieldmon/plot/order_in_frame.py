@@ -76,11 +76,12 @@ def said_of_order(grid: PlantGrid, lonlat: NDArray[np.float64], what: str = "gdf
     if not len(turned):
         return []
     plant = int(np.flatnonzero(line != np.arange(len(line)))[0])
-    return [
+    said = (
         f"Plants were numbered along rows, not as they were given: plant {plant} was number "
         f"{line[plant]} of the points, both from 0. A column of theirs goes to other plants as it "
         f'is: bring it over with gdf["risk"].to_numpy()[plot.order_in({what})].'
-    ]
+    )
+    return [said]
 
 
 def _called(grid: PlantGrid, plant: int) -> str:

@@ -208,7 +208,7 @@ def test_who_stops_another_day_reads_which_routes_are_of_the_day_before(
     run, parcels, summary, monkeypatch
 ):
     words = ["plan", parcels, "--all", "-o", "routes", "--hours", 1, "--no-bound", "--date"]
-    assert run(*words, "2026-11-02")[0] == 0
+    assert run(*words, "2026-11-02")[0] == 1  # two are refused
     before = {name: row["file"] for name, row in summary().items()}
     work, left = plan_all._work, iter([True] * 2)
 

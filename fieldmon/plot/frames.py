@@ -163,7 +163,7 @@ class PointsOfFrame(NamedTuple):
 
     def __repr__(self) -> str:
         """Say how many."""
-        return f"<PointsOfFrame: {counted(len(self.line), 'point')}>"
+        return f"<PointsOfFrame: {len(self.line):,} points>"
 
     @classmethod
     def of(cls, frame: GeoDataFrame | GeoSeries) -> PointsOfFrame:

@@ -309,13 +309,13 @@ class Plot:
         Parameters
         ----------
         frame
-            One polygon, points, or both, in any coordinate system; rows are found from the
-            points, or laid in the polygon. Plants are numbered along rows, whatever the order of
-            the points: `order_in` brings other columns over. Columns ``row``, ``number`` (or
-            ``plant``) and ``block`` say what points are called; they are recognised as those of a file of plants
-            are (``Row``, ``Reihe``), and other names than these are said. A column ``face`` of 1
-            and 2, as `to_geopandas` has it, or a and b, says whether both faces are inspected: of
-            all plants, or of all but those that look at no other row.
+            One polygon, points, or both, in any coordinate system; rows are found from the points,
+            or laid in the polygon. Plants are numbered along rows, whatever the order of the
+            points: `order_in` brings other columns over. Columns ``row``, ``number`` (or ``plant``)
+            and ``block`` say what points are called; they are recognised as those of a file of
+            plants are (``Row``, ``Reihe``), and other names than these are said. A column ``face``
+            of 1 and 2, as `to_geopandas` has it, or a and b, says whether both faces are inspected:
+            of all plants, or of all but those that look at no other row.
         planting
             Bearing, spacings and headland; None: the defaults (rows 4 m and plants 3 m apart, along
             the longest side). Points keep their own spacings, and their bearing unless it is said.

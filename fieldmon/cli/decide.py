@@ -12,7 +12,7 @@ from fieldmon.cli.messages import tell_found_again
 from fieldmon.cli.option_groups import with_options
 from fieldmon.cli.option_ranges import within
 from fieldmon.cli.options import LastDate, SeasonFile
-from fieldmon.cli.season_files import default_date, season_of
+from fieldmon.cli.season_files import default_date, refuse_unrecorded, season_of
 from fieldmon.cli.times import day
 from fieldmon.compute.ranges import MOST_COUNTED, SURE, USUAL_SURE
 from fieldmon.decisions.sprayer import COSTS, SWITCHED, Sprayer, TreatmentCosts
@@ -248,6 +248,7 @@ def decide(
         *sprayer.idle(),
     )
     kept = season_of(asked.season)
+    refuse_unrecorded(kept, files.output or [])
     when = default_date(kept, day(asked.on))
     learnt = learnt_efficacy(kept.effects(when), files.product) if costs.works is None else None
     settings = AdviceSettings(

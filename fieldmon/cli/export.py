@@ -50,13 +50,14 @@ def export(
 
     Example: fieldmon export season.gpkg --of inspections -o inspections.csv
     """
-    from fieldmon.cli.season_files import opened
+    from fieldmon.cli.season_files import opened, refuse_unrecorded_in_any
     from fieldmon.io.atomic_write import write_whole
 
     ending = output.suffix.lower()
     if ending not in {".csv", ".json"}:
         raise SettingError(f"A table's file must end in .csv or .json, but it is {output.name!r}.")
     kept = opened(seasons)
+    refuse_unrecorded_in_any(kept, [output])
     data = _observations(kept, pest, crop) if ending == ".json" else _table(kept, of.value)
     write_whole(output, data)
     typer.echo(f"Written to {output}")

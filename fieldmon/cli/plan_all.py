@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from fieldmon.planning.many_plots import Orders, Task
 
 SUMMARY = "summary.csv"
+#: the exit code where plots were refused; what was planned is written
+SOME_REFUSED = 1
 _COLUMNS = (
     *("plot", "state", "file", "plants", "rows", "stops", "hours", "drive_km"),
     *("infested_expected", "sentence", "digest", "assumed"),
@@ -90,7 +92,8 @@ _BEGUN_WITH: list[EstateDay] = []
 def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None = None) -> None:
     """Plan every plot; write a route file each, and `SUMMARY` in the same folder.
 
-    A plot that cannot be planned is refused with its sentence, and the others go on. What an
+    A plot that cannot be planned is refused with its sentence, and the others go on; the exit code
+    is `SOME_REFUSED` then. What an
     earlier run finished with the same plot, records and orders is not planned again.
     """
     tasks = _tasks(plots, orders)
@@ -114,6 +117,8 @@ def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None 
     finally:
         write()
     _tell(rows, day.folder)
+    if any(row["state"] == "refused" for row in rows.values()):
+        raise typer.Exit(SOME_REFUSED)
 
 
 def _tasks(plots: Estate, orders: Orders) -> dict[str, Task]:

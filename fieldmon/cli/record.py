@@ -17,12 +17,15 @@ from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.season_files import season_of
 from fieldmon.cli.status import lines
 from fieldmon.cli.times import day
+from fieldmon.compute.wording import first_few
 from fieldmon.compute.working_folder import working_folder
 from fieldmon.errors import ChoiceNeeded, ContradictionError, ObservationError, SettingError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from datetime import date
+
+    import numpy as np
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.io.readers.inspection_options import InspectionOptions
@@ -108,7 +111,9 @@ def record(season: SeasonFile, files: FindingFiles, flags: RecordFlags) -> None:
     tell_drafts(kept.drafts)
     with working_folder() as folder:
         read = _read(kept, files, options, Path(folder), confirmed=flags.contradicting)
-        last = _record(kept, [one for one in read if one.saved is None], flags)
+        if work_day is not None:
+            _tell_other_days(read, work_day)
+        last = _record(kept, [one for one in read if one.saved is None], flags, len(read))
     saved = [(one.name, one.saved) for one in read if one.saved is not None]
     for name, one in saved:
         _take_saved(kept, name, one, flags.who)
@@ -147,6 +152,31 @@ def _read(
     return read
 
 
+def _tell_other_days(read: list[BroughtFile], told: np.datetime64) -> None:
+    """Say of which files the day of --date is not, as they name their own.
+
+    Raise `SettingError` where it is of no result: whoever gave it takes them for that day's.
+    """
+    others = [one for one in read if len(one.findings) and not (one.findings.date == told).any()]
+    dated = [one for one in read if len(one.findings)]
+    named = [
+        f"{one.name} names the days of its results: "
+        f"{first_few(sorted({str(day) for day in one.findings.date}))}"
+        for one in others
+    ]
+    if dated and len(others) == len(dated):
+        raise SettingError(
+            f"--date must be the day of results whose file names none, but {'; '.join(named)}, and "
+            f"none is of {told}. Nothing was recorded. Leave --date away if that is right. If they "
+            f"are of {told}, and these days are those of the plan, write {told} into a column date."
+        )
+    for said in named:
+        typer.echo(f"seen: {said}; --date {told} is not of them.", err=True)
+    for one in read:
+        if one.saved is not None:
+            typer.echo(f"seen: {one.name} names its days; --date {told} is not of them.", err=True)
+
+
 def _refuse_changed(season: Season, files: list[Path], read: list[BroughtFile]) -> None:
     """Refuse inspections of the season itself that were changed: no file says what is meant."""
     for file, one in zip(files, read, strict=True):
@@ -161,8 +191,13 @@ def _refuse_changed(season: Season, files: list[Path], read: list[BroughtFile]) 
             )
 
 
-def _record(season: Season, read: list[BroughtFile], flags: RecordFlags) -> date | None:
-    """Record what files say, all of it or nothing; return the last day of it."""
+def _record(
+    season: Season, read: list[BroughtFile], flags: RecordFlags, n_files: int
+) -> date | None:
+    """Record what files say, all of it or nothing; return the last day of it.
+
+    Raise `SettingError` where none of `n_files` gave anything: others are what phones saved.
+    """
     if not read:
         return None
     # in a copy of this season, who is named corrected
@@ -182,6 +217,12 @@ def _record(season: Season, read: list[BroughtFile], flags: RecordFlags) -> date
         batch = "" if done.batch is None else f" (batch {done.batch})"
         more = f", {done.more}" if done.more else ""
         typer.echo(f"{one.name}: {done.new} new, {done.known} known already{more}{batch}")
+    if len(read) == n_files and not any(one.new + one.known + one.corrected for one in every):
+        names = " or ".join(one.name for one in read)
+        raise SettingError(
+            f"At least one result must be taken, but there is none in {names}: see above. Nothing "
+            "was recorded. Fill in what was found, or mend what was left out."
+        )
     days = [inspections.date.max().item() for inspections in found if len(inspections)]
     return max(days, default=None)
 

@@ -16,10 +16,10 @@ import typer
 from fieldmon.cli.messages import tell_not_come
 from fieldmon.cli.times import day_on
 from fieldmon.compute.wording import first_few
-from fieldmon.errors import FieldmonError, FileProblem, SettingError
+from fieldmon.errors import ChoiceNeeded, FieldmonError, FileProblem, SettingError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator, Sequence
     from datetime import date
     from pathlib import Path
 
@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 
 # what the command that runs holds until it ends; None: none runs
 _HELD: ContextVar[ExitStack | None] = ContextVar("held", default=None)
+# formats of routes that are read whole to see whether results are in them
+_READ_WHOLE = frozenset({".gpx", ".kml", ".zip"})
+# questions about words in a result column: somebody wrote them
+_OF_RESULTS = frozenset({"found", "clean", "gone"})
 # inspections of a day that has not come, of which the numbers are shown
 _NUMBERS_SHOWN = 5
 
@@ -185,7 +189,8 @@ def refuse_what_was_chosen(context: typer.Context, takes: Collection[str]) -> No
 def refuse_unrecorded(season: Season | None, files: Iterable[Path]) -> None:
     """Raise `SettingError` where a file to be written over was filled in and never recorded.
 
-    Without a season nothing is recorded.
+    Every command asks this of files that it writes, if `fieldmon record` reads such. Without a
+    season nothing is recorded.
     """
     from fieldmon.monitoring.inspecting.known_inspections import count_never_recorded
 
@@ -214,13 +219,29 @@ def refuse_unrecorded(season: Season | None, files: Iterable[Path]) -> None:
                 f"{file} would be written over, but it was filled in for another plot. {left_out} "
                 "Choose another name, or move it away."
             )
+        if not len(said):
+            raise SettingError(
+                f"{file} would be written over, but it was filled in, though no result could be "
+                "read in it. Look at what is written there, and record it; or choose another "
+                "name, or move it away."
+            )
+
+
+def refuse_unrecorded_in_any(seasons: Sequence[Season], files: Collection[Path]) -> None:
+    """Do `refuse_unrecorded` where a table is of several seasons: one may hold all of a file."""
+    for file in files:
+        refused = []
+        for season in seasons:
+            try:
+                refuse_unrecorded(season, [file])
+            except SettingError as error:
+                refused.append(error)
+        if len(refused) == len(seasons) > 0:
+            raise refused[0]
 
 
 def _is_filled_in(file: Path) -> bool:
-    """Return whether a table, GeoJSON or GeoPackage given out may hold results.
-
-    Files of other formats come back under other names.
-    """
+    """Return whether a file given out may hold results, in any format that is recorded."""
     ending = file.suffix.lower()
     if ending == ".csv":
         text = file.read_text(encoding="utf-8-sig", errors="replace")
@@ -228,12 +249,9 @@ def _is_filled_in(file: Path) -> bool:
         rows = csv.DictReader(text.splitlines(), delimiter=mark)
         return any((row.get("found") or "").strip() or (row.get("count") or "") for row in rows)
     if ending in {".geojson", ".json"}:
-        try:
-            stops = json.loads(file.read_bytes())["features"]
-            told = [stop["properties"].get(name) for stop in stops for name in ("found", "count")]
-        except (ValueError, LookupError, TypeError, AttributeError):
-            return False
-        return any(one is not None and one != "" for one in told)
+        return _is_geojson_filled_in(file)
+    if ending in _READ_WHOLE:
+        return _holds_results(file)
     if ending != ".gpkg":
         return False
     wanted = "SELECT 1 FROM stops WHERE found IS NOT NULL OR count IS NOT NULL"
@@ -241,6 +259,28 @@ def _is_filled_in(file: Path) -> bool:
         with closing(sqlite3.connect(file)) as db:
             return db.execute(wanted).fetchone() is not None
     except sqlite3.Error:
+        return False
+
+
+def _is_geojson_filled_in(file: Path) -> bool:
+    try:
+        stops = json.loads(file.read_bytes())["features"]
+        told = [stop["properties"].get(name) for stop in stops for name in ("found", "count")]
+    except (ValueError, LookupError, TypeError, AttributeError):
+        return False
+    return any(one is not None and one != "" for one in told)
+
+
+def _holds_results(file: Path) -> bool:
+    """Return whether a file holds results as it is recorded, or asks what its words mean."""
+    from fieldmon.io.read import read_inspection_rows
+    from fieldmon.io.readers.inspection_options import InspectionOptions
+
+    try:
+        return len(read_inspection_rows(file, InspectionOptions()).value.result) > 0
+    except ChoiceNeeded as asked:
+        return asked.option in _OF_RESULTS
+    except FieldmonError:  # no file of results
         return False
 
 

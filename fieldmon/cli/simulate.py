@@ -25,6 +25,7 @@ from fieldmon.cli.options import (
 )
 from fieldmon.cli.pest_options import PestOptions, prior_of
 from fieldmon.cli.sampler_names import OWN, known_or_own
+from fieldmon.cli.season_files import refuse_unrecorded
 from fieldmon.cli.times import day, day_on
 from fieldmon.cli.worker_options import WorkerOptions
 from fieldmon.compute.ranges import CHANCE, SEED, SHARE
@@ -128,6 +129,8 @@ def simulate(options: SimulateOptions) -> None:
     from fieldmon.compute.random_streams import RandomStreams
     from fieldmon.simulation.start import season_start
 
+    if options.output is not None:
+        refuse_unrecorded(None, [options.output])
     names = options.sampler or COMPARED
     refuse_idle_every(names, options.every)
     robot, told = options.pest_options.seen(options.worker.robot()), day(options.on)

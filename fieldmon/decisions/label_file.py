@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from math import ceil
 from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
@@ -171,6 +172,15 @@ def _number(said: Mapping[str, str], role: str) -> float | None:
 
 def _whole(said: Mapping[str, str], role: str) -> int | None:
     value = _number(said, role)
+    if value is not None and value != int(value) and role == "waiting_days":
+        raise SettingError(
+            worded(
+                "waiting_days must be a whole number, but it is {value:g}. Harvest waits for whole "
+                "days: round it up, {up}.",
+                value=value,
+                up=ceil(value),
+            )
+        )
     if value is not None and value != int(value):
         raise SettingError(
             worded("{role} must be a whole number, but it is {value:g}.", role=role, value=value)

@@ -45,7 +45,7 @@ from fieldmon.io.unused_row_settings import unused_of
 from fieldmon.plot.assumed import Assumed
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plants_outside import distance_m
-from fieldmon.plot.plot import Plot, planting_of, plot_around, plot_of
+from fieldmon.plot.plot import Plot, planting_of, plot_among, plot_around, plot_of
 from fieldmon.plot.row_report import told_by_hand
 
 if TYPE_CHECKING:
@@ -263,7 +263,7 @@ def lay_around(
     planting = Planting(**choices.given())  # type: ignore[arg-type]
     name = "plants" if sources.plants is None else Path(source_name(sources.plants)).stem
     if not choices.in_rows:
-        return Laid(Plot.among(name, measured.lonlat.copy(), sources.gate))
+        return Laid(plot_among(name, measured.lonlat.copy(), sources.gate))
     plants = measured.lonlat.copy()
     plot = plot_around(name, plants, planting, sources.gate, measured.names)
     given = choices.given()

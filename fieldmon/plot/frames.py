@@ -154,6 +154,35 @@ def faces_in(
     return frame[kept], planting or Planting(faces=2, outer_faces=outer), of_frame
 
 
+class PointsOfFrame(NamedTuple):
+    """The points of a frame ``(m,)``: where each is, its line of the frame, and its face or 0."""
+
+    lonlat: NDArray[np.float64]
+    line: NDArray[np.int64]
+    face: NDArray[np.integer]
+
+    def __repr__(self) -> str:
+        """Say how many."""
+        return f"<PointsOfFrame: {len(self.line):,} points>"
+
+    @classmethod
+    def of(cls, frame: GeoDataFrame | GeoSeries) -> PointsOfFrame:
+        """Take a frame's points; raise `PlotError` if it holds none."""
+        _must_say_where(frame)
+        kinds = frame.geometry.geom_type.isin(["Point", "MultiPoint"]).to_numpy()
+        there = np.flatnonzero(_placed(frame.geometry.to_numpy()) & kinds)
+        if not len(there):
+            raise PlotError("The plants of a GeoDataFrame must be points, but it holds none.")
+        places = frame.geometry.iloc[there].to_crs(_DEGREES).to_numpy()
+        lonlat, which = shapely.get_coordinates(places, return_index=True)
+        line = there[which]
+        held = [name for name in getattr(frame, "columns", ()) if isinstance(name, str)]
+        column = next((name for name in held if plain(name) == "face"), None)
+        if column is None:
+            return cls(lonlat, line, np.zeros(len(line), np.int8))
+        return cls(lonlat, line, faces_called(map(_written, frame[column].iloc[line].tolist())))
+
+
 def boundary_and_plants(
     frame: GeoDataFrame,
 ) -> tuple[MultiPolygon | None, NDArray[np.float64], PlantNames, list[str]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from math import isclose
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
 import shapely
 from shapely import MultiPolygon
 
@@ -21,6 +22,7 @@ from fieldmon.plot.line_layout import lay_along
 from fieldmon.plot.measured_rows import said_rows
 from fieldmon.plot.missing_plants import without
 from fieldmon.plot.names_on_ground import doubts_of_order, said_of_strays
+from fieldmon.plot.order_in_frame import must_be_lines, nearest_lines, said_of_order
 from fieldmon.plot.outline_bearing import doubt_of_bearing
 from fieldmon.plot.plant_names import PlantNames, doubts_of_numbers, numbered
 from fieldmon.plot.planting import Planting
@@ -37,7 +39,6 @@ from fieldmon.plot.way_joining import CutOffError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    import numpy as np
     from geopandas import GeoDataFrame, GeoSeries
     from numpy.typing import NDArray
     from shapely import MultiLineString
@@ -167,7 +168,8 @@ class Plot:
         Warns
         -----
         ImportDoubt
-            Where rows are laid along the longest side of a ragged outline, and may run otherwise.
+            Where rows are laid along the longest side of a ragged outline, and may run otherwise;
+            where measured plants are numbered in another order than the field has them.
 
         Raises
         ------
@@ -175,7 +177,10 @@ class Plot:
             If there is no room for a plant, or no way to a row.
         """
         _warn_of(_doubts_of_bearing(field, planting))
-        return plot_of(field, planting)
+        plot = plot_of(field, planting)
+        if field.plants is not None:
+            _warn_of(said_of_order(plot.grid, field.plants, "field.plants"))
+        return plot
 
     @classmethod
     def around(
@@ -193,7 +198,8 @@ class Plot:
         name
             What to call it.
         plants
-            ``(n, 2)`` degrees, longitude first.
+            ``(n, 2)`` degrees, longitude first, in any order: the plot numbers them along its
+            rows, and `order_in` says which of them each plant is.
         planting
             Bearing and headland; None: found from the plants, as their spacings always are.
         gate
@@ -204,7 +210,7 @@ class Plot:
         Warns
         -----
         ImportDoubt
-            For each of `doubts`.
+            For each of `doubts`, and where plants are numbered in another order than given.
 
         Raises
         ------
@@ -212,7 +218,7 @@ class Plot:
             If two plants are in one place, or no rows can be found.
         """
         plot = plot_around(name, plants, planting, gate, names)
-        _warn_of(plot.doubts)
+        _warn_of((*plot.doubts, *said_of_order(plot.grid, lonlat_of("Plants", plants), "plants")))
         return plot
 
     @classmethod
@@ -238,14 +244,13 @@ class Plot:
     ) -> Plot:
         """Return the plot called `name` of measured plants in no rows, whose boundary nobody drew.
 
-        `plants` are ``(n, 2)`` degrees, `gate` is ``(lon, lat)``. Raise `PlotError` where two
-        plants are in one place.
+        `plants` are ``(n, 2)`` degrees, in any order: `order_in` says which of them each plant of
+        the plot is, and `ImportDoubt` warns where they are numbered otherwise. `gate` is ``(lon,
+        lat)``. Raise `PlotError` where two plants are in one place.
         """
-        plants = lonlat_of("Plants", plants)
-        check_apart(plants)
-        grid = trees_grid(plants)
-        boundary = _outline(grid)
-        return cls._with(Field(name, boundary, gate=gate, plants=plants, in_rows=False), grid)
+        plot = plot_among(name, plants, gate)
+        _warn_of(said_of_order(plot.grid, lonlat_of("Plants", plants), "plants"))
+        return plot
 
     @classmethod
     def along(
@@ -304,12 +309,13 @@ class Plot:
         Parameters
         ----------
         frame
-            One polygon, points, or both, in any coordinate system; rows are found from the
-            points, or laid in the polygon. Columns ``row``, ``number`` (or ``plant``) and
-            ``block`` say what points are called; they are recognised as those of a file of plants
-            are (``Row``, ``Reihe``), and other names than these are said. A column ``face`` of 1
-            and 2, as `to_geopandas` has it, or a and b, says whether both faces are inspected: of
-            all plants, or of all but those that look at no other row.
+            One polygon, points, or both, in any coordinate system; rows are found from the points,
+            or laid in the polygon. Plants are numbered along rows, whatever the order of the
+            points: `order_in` brings other columns over. Columns ``row``, ``number`` (or ``plant``)
+            and ``block`` say what points are called; they are recognised as those of a file of
+            plants are (``Row``, ``Reihe``), and other names than these are said. A column ``face``
+            of 1 and 2, as `to_geopandas` has it, or a and b, says whether both faces are inspected:
+            of all plants, or of all but those that look at no other row.
         planting
             Bearing, spacings and headland; None: the defaults (rows 4 m and plants 3 m apart, along
             the longest side). Points keep their own spacings, and their bearing unless it is said.
@@ -325,7 +331,8 @@ class Plot:
         -----
         ImportDoubt
             Of lines without a place, of points that are left out, of columns that were taken for
-            names, of rows along a ragged outline, and for each of `doubts`.
+            names, of rows along a ragged outline, of plants that are numbered in another order than
+            the points, and for each of `doubts`.
 
         Raises
         ------
@@ -367,6 +374,8 @@ class Plot:
             plot = plot_of(field, planting)
         if faces is not None:
             said += faces.doubts(plot.grid)
+        if len(plants):
+            said += said_of_order(plot.grid, plants)
         _warn_of(one for one in (*said, *plot.doubts) if one)
         return plot
 
@@ -385,6 +394,43 @@ class Plot:
         from fieldmon.plot.frames import plant_frame  # noqa: PLC0415 - loads GeoPandas
 
         return plant_frame(self.grid, boundary=self.field.boundary)
+
+    def order_in(self, given: GeoDataFrame | GeoSeries | NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return which line of a frame each plant is ``(n,)``, from 0, by where they stand.
+
+        A column of the frame is brought over with it, also to a plot that was read, or is that of
+        a season. Both faces of a plant are one line, unless the frame has a column ``face``.
+
+        Parameters
+        ----------
+        given
+            Points in any coordinate system, or ``(m, 2)`` degrees, longitude first.
+
+        Raises
+        ------
+        PlotError
+            If a plant has no line within 0.5 m, or none of its own.
+
+        Examples
+        --------
+        >>> import numpy as np, fieldmon as fm
+        >>> plot = fm.read_plot("sample_data/paran_estate.zip", feature="Gate")
+        >>> frame = plot.to_geopandas()[::-1].reset_index(drop=True)
+        >>> frame["risk"] = np.where(frame["row"] == 45, 0.3, 0.01)
+        >>> risk = frame["risk"].to_numpy()[plot.order_in(frame)]
+        >>> np.unique(plot.to_geopandas()["row"][risk > 0.1]).tolist()
+        [45]
+        """
+        from fieldmon.plot.frames import PointsOfFrame  # noqa: PLC0415 - loads GeoPandas
+
+        if hasattr(given, "geometry"):
+            points = PointsOfFrame.of(given)
+        else:
+            lonlat = lonlat_of("Plants", given)
+            points = PointsOfFrame(lonlat, np.arange(len(lonlat)), np.zeros(len(lonlat), np.int8))
+        which, away_m = nearest_lines(self.grid, points.lonlat, points.face)
+        must_be_lines(self.grid, points.line[which], away_m)
+        return points.line[which]
 
     @property
     def n_plants(self) -> int:
@@ -473,6 +519,17 @@ def plot_around(
     boundary = _outline(grid)
     field = names.on(Field(name, boundary, gate=gate, plants=plants))
     return Plot._measured(field, grid, rows, planting)  # noqa: SLF001 - its own module
+
+
+def plot_among(
+    name: str, plants: NDArray[np.float64], gate: tuple[float, float] | None = None
+) -> Plot:
+    """Return `Plot.among` these plants, without a warning: imports say their doubts themselves."""
+    plants = lonlat_of("Plants", plants)
+    check_apart(plants)
+    grid = trees_grid(plants)
+    field = Field(name, _outline(grid), gate=gate, plants=plants, in_rows=False)
+    return Plot._with(field, grid)  # noqa: SLF001 - its own module
 
 
 def _warn_of(doubts: Iterable[str]) -> None:

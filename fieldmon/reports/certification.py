@@ -22,7 +22,7 @@ from fieldmon.errors import FieldmonError, SettingError
 from fieldmon.infestation.inspections import FOUND
 from fieldmon.monitoring.estimates.last_days import default_date
 from fieldmon.monitoring.estimates.verifying import check_against_log
-from fieldmon.monitoring.inspecting.known_inspections import corrected_by
+from fieldmon.monitoring.inspecting.known_inspections import corrected_by, seen_by_others
 from fieldmon.monitoring.merging.other_seasons import by_plot, called_apart, of_one_plot
 from fieldmon.monitoring.treating.cautions import groups, label_of, waits
 from fieldmon.plot.local_clock import local_clock
@@ -73,6 +73,7 @@ class _PlotRecord:
     wrong: str
     done: Inspections
     corrected: dict[str, set[str]]
+    also: dict[str, Counter[str]]
 
     @classmethod
     def of(cls, season: Season, called: str, until: date | None, units: Units) -> _PlotRecord:
@@ -93,7 +94,8 @@ class _PlotRecord:
         for (_, day, *_), who in corrected_by(season).items():
             corrected.setdefault(str(day), set()).add(who)
         when = on, units
-        return cls(season, called, *when, done, unsaid, beware, told, log, wrong, seen, corrected)
+        of_plants = seen, corrected, seen_by_others(season)
+        return cls(season, called, *when, done, unsaid, beware, told, log, wrong, *of_plants)
 
     @property
     def name(self) -> str:
@@ -445,7 +447,7 @@ def _inspections(one: _PlotRecord) -> Iterator[Table]:
     for day, (a, b) in zip(days.tolist(), pairwise([*first.tolist(), len(done)]), strict=True):
         of = done.take(slice(a, b))
         found = int(np.count_nonzero(of.result == FOUND))
-        by = _by(of)
+        by = _by(of, one.also.get(str(day), Counter()))
         if authors := ", ".join(sorted(one.corrected.get(str(day), set()) - {""})):
             by.append(worded(words.CERT_CORRECTED, who=authors))
         rows.append((one.units.day(day), figure(len(of)), figure(found), joined(", ", by)))
@@ -459,9 +461,12 @@ def _inspections(one: _PlotRecord) -> Iterator[Table]:
     yield from _parts(table, _DAYS_A_PAGE)
 
 
-def _by(done: Inspections) -> list[str]:
-    """Return who inspected, each with how many where there are several; nobody named comes last."""
-    who = Counter(map(str, done.who.tolist()))
+def _by(done: Inspections, also: Counter[str]) -> list[str]:
+    """Return who inspected, each with how many where there are several; nobody named comes last.
+
+    `also` are those who recorded the same as somebody.
+    """
+    who = Counter(map(str, done.who.tolist())) + also
     names = [*sorted({*who} - {""}), *[""] * ("" in who)]
     said = {name: words.isolated(name) if name else words.CERT_NOT_SAID for name in names}
     if len(names) == 1:

@@ -204,3 +204,31 @@ def test_what_a_phone_saved_is_of_whom_the_option_names_and_others_are_counted(
     assert code == 0, err
     assert "By the file Ann made 2 records; taken as those of Zed, as --who says." in err
     assert Season(season).history.inspections.who.tolist() == ["Zed"] * 3
+
+
+def test_a_day_that_no_file_takes_is_refused_and_one_that_some_take_is_said(run, season, tmp_path):
+    assert run("plan", season, "--date", BEGINS, "--no-bound", "-o", "day.csv")[0] == 0
+    filled_in(tmp_path / "day.csv", {0}, 2)
+    (tmp_path / "own.csv").write_text("row,plant,found\n1,9,no\n")
+    later = "2026-11-03"
+    code, _, err, _ = run("record", season, "day.csv", "--date", later)
+    assert code == 2
+    told = " ".join(err.split())
+    assert f"day.csv names the days of its results: {BEGINS}, and none is of {later}" in told
+    assert len(Season(season).inspections) == 0
+    code, _, err, _ = run("record", season, "day.csv", "own.csv", "--date", later)
+    assert code == 0, err
+    assert f"{BEGINS}; --date {later} is not of them" in " ".join(err.split())
+    days = Season(season).inspections.date.astype(str).tolist()
+    assert days == [BEGINS, BEGINS, later]
+    code, _, err, _ = run("record", season, "day.csv", "--date", BEGINS)
+    assert (code, "--date" in err) == (0, False)
+
+
+def test_where_no_result_could_be_taken_the_exit_code_says_so(run, season, tmp_path):
+    assert run("plan", season, "--date", BEGINS, "--no-bound", "-o", "day.csv")[0] == 0
+    code, _, err, _ = run("record", season, "day.csv")
+    assert (code, "At least one result must be taken" in " ".join(err.split())) == (2, True)
+    filled_in(tmp_path / "day.csv", {0}, 2)
+    for _ in range(2):  # known already is no problem
+        assert run("record", season, "day.csv")[0] == 0

@@ -1,6 +1,7 @@
 """Several seasons into one: each counts once."""
 
 import json
+import re
 import shlex
 import shutil
 
@@ -200,3 +201,84 @@ def test_merged_with_a_copy_that_names_no_pest_it_is_said_whose_finds_all_are(
         files[other] = shutil.copy(season, tmp_path / f"{other}.gpkg")
         worked(run, files[other], f"{other}.csv", {1}, "Ann")
         assert said in run("merge", files["a"], files["b"])[1]
+
+
+def fill_in(file, stop, word):
+    """Fill in one stop of a GPX, a KML or a shapefile, as a handheld or QGIS does."""
+    if file.name.endswith(".shp.zip"):
+        stops = pyogrio.read_dataframe(file, layer="stops")
+        stops.loc[stop, "found"] = word
+        folder = file.with_name("shape")
+        folder.mkdir(exist_ok=True)
+        pyogrio.write_dataframe(stops, folder / "stops.shp")
+        shutil.make_archive(str(file.with_suffix("")), "zip", folder)
+        return
+    text = file.read_text(encoding="utf-8")
+    if file.suffix == ".gpx":
+        named = re.findall(r"<name>(\d+ R\d+/\d+)</name>", text)[stop]
+        text = text.replace(f"<name>{named}</name>", f"<name>{named} {word}</name>")
+    else:
+        before, *stops = text.split('<Data name="found"><value />')
+        stops[stop] = f"\n{stops[stop]}"
+        text = '<Data name="found"><value />'.join([before, *stops])
+        text = text.replace("<value />\n", f"<value>{word}</value>")
+    file.write_text(text, encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("name", "word"), [("day.gpx", "+3"), ("day.kml", "yes"), ("day.shp.zip", "yes")]
+)
+def test_routes_filled_in_on_a_handheld_or_in_qgis_are_kept_until_they_are_recorded(
+    run, season, tmp_path, name, word
+):
+    words = ("plan", season, "--date", BEGINS, "--no-bound", "-o", name)
+    for _ in range(2):  # not filled in, it may be
+        code, _, err, _ = run(*words)
+        assert code == 0, err
+    fill_in(tmp_path / name, 1, word)
+    held = (tmp_path / name).read_bytes()
+    code, _, err, _ = run(*words)
+    assert (code, "holds 1 result that nobody recorded" in " ".join(err.split())) == (2, True)
+    code, _, err, _ = run("plan", ZIP, "--feature", "Nursery", *words[2:])
+    assert (code, "only a season records results" in " ".join(err.split())) == (2, True)
+    assert (tmp_path / name).read_bytes() == held
+    code, _, err, _ = run("record", season, name, "--date", BEGINS)
+    assert code == 0, err
+    code, _, err, _ = run(*words)
+    assert code == 0, err
+    assert (tmp_path / name).read_bytes() != held
+
+
+def test_words_that_nobody_reads_were_filled_in_too(run, season, tmp_path):
+    words = ("plan", season, "--date", BEGINS, "--no-bound", "-o", "day.csv")
+    assert run(*words)[0] == 0
+    filled_in(tmp_path / "day.csv", {0}, 1)
+    text = (tmp_path / "day.csv").read_text("utf-8-sig").replace("yes", "blau")
+    (tmp_path / "day.csv").write_text(text)
+    code, _, err, _ = run(*words)
+    assert (code, "no result could be read in it" in " ".join(err.split())) == (2, True)
+    assert "blau" in (tmp_path / "day.csv").read_text()
+
+
+def test_no_table_is_written_over_a_sheet_that_nobody_recorded(run, season, tmp_path):
+    code, _, err, _ = run("plan", season, "--date", BEGINS, "--no-bound", "-o", "day.csv")
+    assert code == 0, err
+    filled_in(tmp_path / "day.csv", {0}, 2)
+    held = (tmp_path / "day.csv").read_bytes()
+    export = ("export", season, "--of", "log", "-o", "day.csv")
+    simulate = ("simulate", ZIP, "--feature", "Nursery", "--days", 1, "-o", "day.csv")
+    for words in (export, simulate):
+        code, _, err, _ = run(*words)
+        assert (code, "day.csv would be written over" in " ".join(err.split())) == (2, True)
+        assert (tmp_path / "day.csv").read_bytes() == held
+    assert run("record", season, "day.csv")[0] == 0
+    for words in (export, ("export", season, "--of", "inspections", "-o", "day.csv")) * 2:
+        code, _, err, _ = run(*words)
+        assert code == 0, err
+
+
+def test_zones_are_not_written_over_a_route_that_nobody_recorded(run, season, tmp_path):
+    assert run("plan", season, "--date", BEGINS, "--no-bound", "-o", "day.geojson")[0] == 0
+    find_in(tmp_path / "day.geojson", 2)
+    code, _, err, _ = run("decide", season, "--threshold", "5%", "-o", "day.geojson")
+    assert (code, "day.geojson would be written over" in " ".join(err.split())) == (2, True)

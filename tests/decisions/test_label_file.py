@@ -56,7 +56,11 @@ def test_only_the_product_is_needed_and_what_says_nothing_is_told(tmp_path):
         (f"{NAMES}\nA,,,2,,,,,,\n", "line 2: the dose is 2, but of which unit is not said"),
         (f"{NAMES}\nA,,,2,buckets,,,,,\n", "line 2: The unit of a dose must be"),
         (f"{NAMES}\nA,,,,,-1,,,,\n", "line 2: A waiting period must be 0 to"),
-        (f"{NAMES}\nA,,,,,2.5,,,,\n", "line 2: waiting_days must be a whole number"),
+        (
+            f"{NAMES}\nA,,,,,2.5,,,,\n",
+            "line 2: waiting_days must be a whole number, but it is 2.5. Harvest .*up, 3",
+        ),
+        (f"{NAMES}\nA,,,,,,,,1.5,\n", "line 2: max_uses must be a whole number, but it is 1.5"),
         (f"{NAMES}\nA,,,,,,,sulphur,,\n", "line 2: A mode-of-action group must be one of IRAC"),
         (f"{NAMES}\nA,,,,,,,,0,\n", "line 2: A label allows one use or more"),
         (f"{NAMES}\nA,,,,,3,,,,\na ,,,,,7,,,,\n", "two lines are about a, and differ in .*Which"),

@@ -73,7 +73,7 @@ def test_what_is_doubtful_about_measured_plants_is_warned_of():
     assert tuple(str(one.message) for one in said) == plot.doubts
     assert {one.filename for one in said} == {__file__}
     with pytest.warns(ImportDoubt, match="No rows were found"):
-        Plot.around("three", np.array([[1.0, 41.0], [2.0, 41.0], [1.0001, 41.0]]))
+        Plot.around("three", np.array([[1.0, 41.0], [1.0001, 41.0], [2.0, 41.0]]))
 
 
 def test_rows_along_a_ragged_outline_are_doubted_as_those_of_a_file_unless_they_are_said():

@@ -259,6 +259,17 @@ def test_who_inspected_is_said_with_how_many_and_so_is_that_nobody_was_named(tmp
     }
 
 
+def test_all_who_recorded_the_same_plants_of_a_day_are_named(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    for who, n in (("Ann", 4), ("Ben", 3), ("ann ", 4), ("", 2), ("Ben", 2)):
+        seen = Inspections.of(
+            np.arange(n), np.full(n, CLEAN), np.datetime64(BEGINS), who=np.full(n, who, object)
+        )
+        season.record(seen, "phone")
+    report = certification_report([season], Units(), BEGINS + timedelta(3))
+    assert [(row[1], row[3]) for row in days_of(report)] == [("4", "Ann 4, Ben 3")]
+
+
 def test_who_corrected_is_said_beside_a_name_that_is_no_english(tmp_path):
     season = a_season(tmp_path / "season.gpkg")
     season.record(some_results(season, n=3), "monday.csv", "Ben")

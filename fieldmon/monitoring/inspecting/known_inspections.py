@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fieldmon.monitoring.inspecting import batches, inspection_table
+from fieldmon.infestation.inspections import SKIPPED
+from fieldmon.monitoring.inspecting import (
+    batches,
+    inspection_lots,
+    inspection_table,
+    repeated_recordings,
+)
 from fieldmon.monitoring.inspecting.contradictions import known_before
 from fieldmon.pests.weather import DAY_S
+from fieldmon.planning.members import person_key
 
 if TYPE_CHECKING:
     from fieldmon.infestation.inspections import Inspections
@@ -50,3 +58,24 @@ def corrected_by(season: OpenSeason) -> dict[tuple[object, ...], str]:
     """Return who corrected inspections that count, by plant, day (ISO), result and count."""
     with season.store.reading() as db:
         return batches.corrected_by(db)
+
+
+def seen_by_others(season: OpenSeason) -> dict[str, Counter[str]]:
+    """Return by whom else plants were inspected that somebody's inspection counts for.
+
+    By day (ISO), with how many. Nobody is counted twice of one inspection.
+    """
+    with season.store.one_moment():
+        done = season.inspections
+        with season.store.reading() as db:
+            marks, others = inspection_lots.digests(db), repeated_recordings.of_others(db)
+    if not others:
+        return {}
+    found: dict[str, Counter[str]] = {}
+    told = zip(marks, done.who.tolist(), done.result.tolist(), done.date.tolist(), strict=True)
+    for mark, who, result, day in told:
+        if mark in others and result != SKIPPED:
+            also = {person_key(name): name for one in others[mark] if (name := one["who"])}
+            also.pop(person_key(who), None)
+            found.setdefault(str(day), Counter()).update(also.values())
+    return found

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from fieldmon.monitoring.treating.waiting_periods import WaitingPeriod
 
 _Wait = TypeVar("_Wait", int, float)
+# day, begin and end; where no end was said, the batch
+_Spraying = tuple[int, "time | None", "time | None", "int | None"]
 _Said = tuple["KeptTreatment", "ProductLabel | None"]
 #: uses of one mode-of-action group after another that breed resistance
 MOST_IN_A_ROW = 2
@@ -336,7 +338,10 @@ def _shorter_than_the_label(
 
 
 def _groups_in_a_row(said: Sequence[_Said], units: Units) -> Iterator[Caution]:
-    """Yield uses of one mode-of-action group after another on the same plants."""
+    """Yield uses of one mode-of-action group after another on the same plants.
+
+    A day is one use of each of its groups: its insects are those of one generation.
+    """
     row: dict[str, NDArray[np.int64]] = {}
     of = {one.batch: groups(one, label) for one, label in said}
     for _, same_day in groupby((one for one, _ in said if of[one.batch]), lambda one: one.on):
@@ -363,15 +368,16 @@ def _groups_in_a_row(said: Sequence[_Said], units: Units) -> Iterator[Caution]:
 def _uses(said: Sequence[_Said], units: Units) -> Iterator[Caution]:
     """Yield uses of a product beyond what its label allows in a season, on the same plants."""
     uses: dict[str, NDArray[np.int64]] = {}
-    last: dict[str, NDArray[np.int64]] = {}
+    sprayings: dict[tuple[str, _Spraying], NDArray[np.bool_]] = {}
     for one, label in said:
         if label is None:
             continue
         name, plants = plain_name(label.product), one.place.plants
         count = uses.setdefault(name, np.zeros(len(plants), np.int64))
-        day = last.setdefault(name, np.full(len(plants), -1))
-        count += plants & (day != one.day)  # two zones of one day are one use
-        day[plants] = one.day
+        spraying = name, _spraying(one)
+        before = sprayings.get(spraying, np.zeros(len(plants), np.bool_))
+        count += plants & ~before
+        sprayings[spraying] = before | plants
         if (most := label.max_uses) is None:
             continue
         for use, n in _beyond(count[plants], most):
@@ -380,6 +386,17 @@ def _uses(said: Sequence[_Said], units: Units) -> Iterator[Caution]:
                 n=use, plants=counted(n, "plant"), most=figure(most), **_named(one, units),
             )  # fmt: skip
             yield Caution("uses", sentence, one.batch)
+
+
+def _spraying(one: KeptTreatment) -> _Spraying:
+    """Return what is alike in the records of one spraying: its day, and from when to when it was.
+
+    A plant in two such records, of two zones or of two copies, was treated once. Where nobody said
+    when it ended, each record is a spraying: it is its batch.
+    """
+    said = one.application
+    unsaid = None if said.ended is not None else one.batch
+    return one.day, said.began, said.ended, unsaid
 
 
 def _beyond(uses: NDArray[np.int64], most: int) -> list[tuple[int, int]]:

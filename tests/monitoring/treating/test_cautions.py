@@ -140,7 +140,8 @@ def test_what_ends_after_midnight_is_of_the_day_on_which_it_began():
     night = replace(night, ended=end_of(CLOCK, BEGINS + timedelta(1), time(2)))
     in_order = sorted([night, early, late], key=lambda one: one.ended)
     assert in_order[1] is night
-    assert kinds(in_order, [LABEL]) == []
+    # two days of its group, and three uses
+    assert kinds(in_order, [LABEL]) == [("uses", 9)]
 
 
 def test_a_mixture_of_a_tank_is_one_use_of_each_of_its_groups():
@@ -180,6 +181,28 @@ def test_more_uses_than_the_label_allows_are_warned_of_where_they_overlap():
         "Use 3 in this season on 4 plants: Acarol on 2026-04-11. Its label allows 2."
         in one.sentence
     )
+
+
+@pytest.mark.parametrize(
+    ("ends", "zones", "warned"),
+    [
+        ([time(9), time(11), time(13)], [ALL, ALL, ALL], ["Use 3 in", "Use 2 in"]),
+        ([None, None], [ALL, EAST], ["Use 2 in this season on 12 plants"]),
+        ([time(9), time(9)], [ALL, EAST], []),
+        ([time(9), time(11)], [EAST, ~EAST], []),
+    ],
+    ids=["three times", "nobody said when", "one spraying", "two zones"],
+)
+def test_a_plant_treated_again_on_a_day_is_another_use(ends, zones, warned):
+    once = replace(LABEL, max_uses=1)
+    done = [
+        replace(treated(0, zone, ended=end), batch=k)
+        for k, (end, zone) in enumerate(zip(ends, zones, strict=True))
+    ]
+    said = [one.sentence for one in found(done, [once]) if one.kind == "uses"]
+    assert len(said) == len(warned)
+    assert all(one.startswith(use) for one, use in zip(said, warned, strict=True))
+    assert all(one.endswith("Its label allows 1.") for one in said)
 
 
 def test_uses_of_a_product_are_counted_however_the_lines_of_its_label_write_it():
@@ -297,13 +320,14 @@ def test_rows_of_uses_are_those_that_each_plant_alone_had(seed):
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_uses_of_a_season_are_the_days_on_which_each_plant_had_the_product(seed):
+def test_uses_of_a_season_are_the_times_at_which_each_plant_had_the_product(seed):
     rng = np.random.default_rng(seed)
     names = ["Acarol", "ACAROL", "soap"]
     done = [
-        treated(int(day), rng.random(20) < 0.5, product=names[rng.integers(0, 3)])
+        treated(int(day), rng.random(20) < 0.5, product=names[rng.integers(0, 3)],
+                ended=time(int(rng.integers(9, 11))))
         for day in sorted(rng.integers(0, 8, 9))
-    ]
+    ]  # fmt: skip
     done = [replace(one, batch=k) for k, one in enumerate(done)]
     label = ProductLabel("acarol", max_uses=2)
     wanted = []
@@ -311,7 +335,10 @@ def test_uses_of_a_season_are_the_days_on_which_each_plant_had_the_product(seed)
         if one.application.product == "soap":
             continue
         same = [t for t in done[: at + 1] if t.application.product != "soap"]
-        uses = np.array([len({t.day for t in same if t.place.plants[p]}) for p in range(20)])
+        uses = np.array([
+            len({(t.day, t.application.ended) for t in same if t.place.plants[p]})
+            for p in range(20)
+        ])  # fmt: skip
         uses = uses * one.place.plants
         for n in np.unique(uses[uses > 2]):
             plants = counted(int(np.count_nonzero(uses == n)), "plant")

@@ -116,8 +116,7 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     if are_days(int(midnights.sum()), n_times):
         when[midnights] = "NaT"
     of_days = midnights_left_out(n_days)
-    about = unread_days(undated)
-    about += _about_times(broken, read.is_ambiguous, n_utc)
+    about = unread_days(undated) + _about_times(broken, read.is_ambiguous, n_utc)
     about += [*_about_ends(int(ends.sum())), *_about_skipped(skipped)]
     idle = _of_told_day(options.day, day, needed=unsaid & np.isnat(planned))
     idle += _of_writing(date, options)

@@ -19,7 +19,7 @@ function placeOf(plot, plant) {
 const whoSays = (some) => some.map((one) => say("who_says", { who: one.who, result: resultOf(one) })).join(", ");
 // so many plants that contradict are named; in the app all are
 const MOST_NAMED = 3;
-const LEFT_OUT = { skipped: "left_out_skipped", flagged: "left_out_flagged" };
+const LEFT_OUT = { skipped: "left_out_skipped", flagged: "left_out_flagged", unwanted: "left_out_unwanted" };
 
 function h(name, values = {}, ...inner) {
   const made = document.createElement(name);

@@ -74,6 +74,28 @@ test("after a find nobody is led to a neighbour that is gone", async () => {
   assert.deepEqual(await left([1]), all.filter((one) => one !== 1));
 });
 
+test("after a find nobody is led out of the rows of their own, nor to what is not wanted today", async () => {
+  const left = async (more) => {
+    const { field } = await aField(new ASeason(aDay([5, 7], more)));
+    await field.tell("found");
+    return field.ahead;
+  };
+  const all = await left();
+  assert.deepEqual([0, 6, 10].map((one) => all.includes(one)), [true, true, true]);
+  assert.deepEqual((await left({ rows: [2, 3] })).filter((one) => one < 5), [], "row 1 is another's");
+  assert.ok((await left({ rows: [2, 3] })).includes(10));
+  assert.ok(!(await left({ unwanted: [[0, 4]] })).includes(0));
+});
+
+test("what the office leaves out while one is out is left out of the way, and it is said how many these are", async () => {
+  const { season, field } = await aField(new ASeason(aDay([0, 1, 2, 10, 11], { rows: [1, 1] })));
+  season.day = { ...season.day, unwanted: [[1, 2], [10, 12]] };
+  await field.refresh();
+  assert.deepEqual(field.ahead, [0]);
+  assert.deepEqual(field.leftOut(), [{ why: "unwanted", own: 2 }]);
+  assert.equal(field.plant, 0);
+});
+
 test("what was taken back here is shown no more, though what the season said last still says it", async () => {
   const { season, field, sync } = await aField();
   await field.tell("found");

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from datetime import date
 
+    from fieldmon.monitoring import PlannedAndDone
     from fieldmon.planning.plan import DayPlan
 
     from ..state.choices import Choices
@@ -94,8 +95,12 @@ def _planned(choices: Choices, plan: DayPlan) -> str:
         return texts.STEP_OTHER.format(plan=rest or texts.STEP_NO_STOPS, kept=said)
     if kept is None:
         return rest and texts.STEP_REST.format(plan=rest)
+    return _left_of(kept, len(plan.route), said)
+
+
+def _left_of(kept: PlannedAndDone, now: int, said: str) -> str:
+    """Return what is left of the plan kept of a day, and `now` on the route as that was planned."""
     # those who are out have routes of their own: the one that stands above is nobody's
-    now = len(plan.route)
     if kept.people > 1 or not now or now == kept.left:
         return texts.STEP_KEPT.format(plan=said, left=kept.left)
     return texts.STEP_KEPT_ANEW.format(plan=said, done=kept.done, left=kept.left, now=now)

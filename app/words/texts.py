@@ -1501,7 +1501,12 @@ ASK_PHOTO_NOTE = (
     "is asked for until a photo of the plant has come."
 )
 ASKED_PHOTO, ASK_NO_MORE = "Row {row}, plant {plant}. {note}", "No more"
-SAID_OTHERWISE = "Said otherwise of the same plant on this day. Look again, and undo what is wrong:"
+SAID_OTHERWISE = (
+    "Said otherwise of the same plant on this day. Look again, then say on *Record* which holds:"
+)
+FOUND_HOLDS, CLEAN_HOLDS = "Found holds", "Clean holds"
+SETTLE_PLACE = "Row {row}, plant {plant}"
+SETTLED = Plural("{place}: {n} result taken back.", "{place}: {n} results taken back.")
 
 # -- other devices: who may open the app, and how a phone comes to trust it
 LAN_PAGE = {

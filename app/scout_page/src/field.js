@@ -299,10 +299,10 @@ export class Field {
     return some.filter((one) => one.plant === plant && !(isBack && one.who.toLowerCase() === name));
   }
 
-  /** Plants that are said to be both clean and found today, as far as this phone did not take it back since: `{plant, said}` each. */
+  /** Plants of one's own rows, or that one told of, that are said to be both clean and found today, as far as this phone did not take it back since: `{plant, said}` each. */
   contradictions() {
     const all = this.day?.contradicting ?? [], plants = [...new Set(all.map((one) => one.plant))];
-    const told = plants.map((plant) => ({ plant, said: this.#stand(all, plant) }));
+    const told = plants.filter((plant) => this.isOwn(plant) || this.own.has(plant)).map((plant) => ({ plant, said: this.#stand(all, plant) }));
     return told.filter(({ said }) => new Set(said.map((one) => one.result)).size > 1);
   }
 

@@ -245,8 +245,8 @@ export class Page {
   #contradictions() {
     const { field } = this, { plot } = field, all = field.contradictions();
     const line = ({ plant, said }) => say("contradiction", { what: `${placeOf(plot, plant)}: ${whoSays(said)}` });
-    const lines = all.slice(0, MOST_NAMED).map((one) => h("p", { class: "bad contradiction", "data-plant": one.plant }, line(one)));
-    return all.length > MOST_NAMED ? [...lines, h("p", { class: "bad" }, say("and_more", { n: all.length - MOST_NAMED }))] : lines;
+    const lines = all.slice(0, MOST_NAMED).map((one) => h("p", { class: "bad small contradiction", "data-plant": one.plant }, line(one)));
+    return all.length > MOST_NAMED ? [...lines, h("p", { class: "bad small" }, say("and_more", { n: all.length - MOST_NAMED }))] : lines;
   }
 
   /** The same of days before, once: the phone has these records no more. */

@@ -96,7 +96,8 @@ def test_what_is_used_with_the_plan_holds_for_scouts_and_other_browsers(tmp_path
     assert not wishes_kept(season, BEGINS), "until the plan is used nobody else has it"
     handing_out.give_out(choices)
     assert wishes_kept(season, BEGINS) == out
-    led = planned_again(season, BEGINS, WorkPart((1, 9), "Cat")).plant
+    rows = (2, int(season.plant_numbers.line.max()))
+    led = planned_again(season, BEGINS, WorkPart(rows, "Cat")).plant
     assert len(led)
     assert not {*led.tolist()} & {*out.unwanted}
     session.clear()  # another browser

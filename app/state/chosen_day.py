@@ -269,7 +269,7 @@ class Inspected(NamedTuple):
 
 
 def inspected_by_shown(choices: Choices) -> Inspected:
-    """Return what whoever of a team is shown inspected on the day; where one works, what all did."""
+    """Return what was inspected on the day by whoever of a team is shown, else by all."""
     told = choices.open_season.history.inspections.on(choices.on).inspected
     own = made_by(told, choices.whose_day)
     return Inspected(len(np.unique(own.plant)), len(np.unique(own.plant[own.result == FOUND])))

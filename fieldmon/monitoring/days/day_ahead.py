@@ -118,7 +118,7 @@ class DayAhead:
             last = kept_routes.kept_last(now.db, settings.day(on))
             plants = {who: kept_routes.plants(now.db, kept) for who, kept in last.items()}
             people, asked = scouts_in(now.db), photos_asked_in(now.db)
-            wished = kept_wishes.kept_in(now.db, on)
+            wished = kept_wishes.kept_in(now.db, on, len(season.plant_numbers.line))
         return cls(season.plant_numbers, settings, people, last, plants, asked, wished)
 
     def kept(self, who: str = "") -> Plants:

@@ -27,18 +27,21 @@ class KeptWishes(NamedTuple):
 NO_WISHES = KeptWishes()
 
 
-def kept_in(db: sqlite3.Connection, on: date) -> KeptWishes:
-    """Return what is kept as wanted of a day; raise `FileProblem` where the file is wrong of it."""
+def kept_in(db: sqlite3.Connection, on: date, n: int) -> KeptWishes:
+    """Return what is kept as wanted of a day, of `n` plants.
+
+    Raise `FileProblem` where the file says what cannot be.
+    """
     said = get_meta(db, _key(on))
     if said is None:
         return NO_WISHES
     try:
         wanted, unwanted, since = json.loads(said)
-        return KeptWishes(Wishes(_plants(wanted), _plants(unwanted)), int(since))
+        return KeptWishes(Wishes(_plants(wanted, n), _plants(unwanted, n)), int(since))
     except (ValueError, TypeError, OverflowError, RecursionError):
         raise FileProblem(
             worded(
-                "What is wanted of {day} must be two lists of plants and a number, but the season "
+                "What is wanted of {day} must be two lists of plants of this plot and a number, but the season "
                 "says: {said}. Another program changed it: take an earlier copy of the file.",
                 day=on, said=said[:80],
             )
@@ -61,7 +64,7 @@ def wishes_kept(season: Season, on: date) -> Wishes:
     Wishes(wanted=(), unwanted=(7,))
     """
     with season.store.reading() as db:
-        return kept_in(db, on).wishes
+        return kept_in(db, on, len(season.plant_numbers.line)).wishes
 
 
 def keep_wishes(season: Season, on: date, wishes: Wishes) -> None:
@@ -78,7 +81,7 @@ def _key(on: date) -> str:
     return f"wishes {on}"
 
 
-def _plants(said: object) -> tuple[int, ...]:
-    if not isinstance(said, list) or any(type(one) is not int for one in said):
+def _plants(said: object, n: int) -> tuple[int, ...]:
+    if not isinstance(said, list) or any(type(k) is not int or not 0 <= k < n for k in said):
         raise TypeError
     return tuple(said)

@@ -131,7 +131,7 @@ class SeasonPlans(SeasonDays):
         """Return what is wanted of a day besides; None: nothing."""
         if wishes is None:
             with self.store.reading() as db:
-                wishes = kept_wishes.kept_in(db, on).wishes
+                wishes = kept_wishes.kept_in(db, on, len(self.plant_numbers.line)).wishes
         return wishes or None
 
     def _crew_days(

@@ -93,9 +93,12 @@ def test_a_day_shared_with_other_plots_leaves_it_out_too(season):
     assert (scene.last_inspected[list(out)] == scene.day).all()
 
 
-@pytest.mark.parametrize("said", ["[[1],[2]", "[[1],[2]]", '[[1],["2"],0]', "[1,[2],0]", "7"])
+@pytest.mark.parametrize(
+    "said",
+    ["[[1],[2]", "[[1],[2]]", '[[1],["2"],0]', "[1,[2],0]", "[[],[-1],0]", "[[],[99999],0]", "7"],
+)
 def test_a_file_that_says_something_else_is_refused_in_a_sentence(season, said):
     with season.store.writing() as db:
         set_meta(db, f"wishes {BEGINS}", said)
-    with pytest.raises(FileProblem, match="two lists of plants and a number"):
+    with pytest.raises(FileProblem, match="two lists of plants of this plot"):
         season.plan(BEGINS)

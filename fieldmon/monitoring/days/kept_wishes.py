@@ -41,8 +41,9 @@ def kept_in(db: sqlite3.Connection, on: date, n: int) -> KeptWishes:
     except (ValueError, TypeError, OverflowError, RecursionError):
         raise FileProblem(
             worded(
-                "What is wanted of {day} must be two lists of plants of this plot and a number, but the season "
-                "says: {said}. Another program changed it: take an earlier copy of the file.",
+                "What is wanted of {day} must be two lists of plants of this plot and a number, "
+                "but the season says: {said}. Another program changed it: take an earlier copy of "
+                "the file.",
                 day=on, said=said[:80],
             )
         ) from None  # fmt: skip

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import sqlite3
     from datetime import date
 
-    from fieldmon.monitoring.season.season_file import Season
+    from fieldmon.monitoring.season.open_season import OpenSeason
 
 
 class KeptWishes(NamedTuple):
@@ -49,7 +49,7 @@ def kept_in(db: sqlite3.Connection, on: date, n: int) -> KeptWishes:
         ) from None  # fmt: skip
 
 
-def wishes_kept(season: Season, on: date) -> Wishes:
+def wishes_kept(season: OpenSeason, on: date) -> Wishes:
     """Return what is kept as wanted of a day besides.
 
     Examples
@@ -68,7 +68,7 @@ def wishes_kept(season: Season, on: date) -> Wishes:
         return kept_in(db, on, len(season.plant_numbers.line)).wishes
 
 
-def keep_wishes(season: Season, on: date, wishes: Wishes) -> None:
+def keep_wishes(season: OpenSeason, on: date, wishes: Wishes) -> None:
     """Keep what is wanted of a day, instead of what was; plans of the day go by it from now on."""
     if wishes_kept(season, on) == wishes:
         return

@@ -7,15 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
-from fieldmon.monitoring.inspecting.contradictions import contradictions
+from fieldmon.infestation.inspections import CLEAN, FOUND
+from fieldmon.monitoring.inspecting.contradictions import contradicting, contradictions
 from fieldmon.monitoring.inspecting.known_inspections import count_new
-from fieldmon.monitoring.season import season_inspections
+from fieldmon.monitoring.season import season_inspections, undoing
+from fieldmon.plot.grid import plant_numbers
 
 from ..show import recorded_batches
 from ..state import notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..words import texts
-from ..words.language import in_words
+from ..words.language import in_words, plant_in_words
 from .recording_results import listed, recorded, said_of, warn_of_lost
 
 if TYPE_CHECKING:
@@ -69,6 +71,32 @@ def _ask_anew(choices: Choices, waiting: Unconfirmed) -> None:
         st.button(texts.RECORD_THESE.format(n=n), key="record_these", on_click=_record_these,
                   args=(choices,))  # fmt: skip
         st.button(texts.RECORD_NONE, key="record_none", on_click=_drop, args=(choices,))
+
+
+def settle(choices: Choices) -> None:
+    """Offer of each plant that is clean and found as recorded of the day to say which holds."""
+    held = contradicting(choices.open_season.inspections.on(choices.on))
+    for plant in np.unique(held.plant)[:_MOST].tolist():
+        place = _place(choices, plant)
+        with st.container(horizontal=True, vertical_alignment="center", key=f"settle_{plant}"):
+            st.markdown(place, width="stretch")
+            for result, label in ((FOUND, texts.FOUND_HOLDS), (CLEAN, texts.CLEAN_HOLDS)):
+                st.button(label, key=f"holds {plant} {result}", on_click=_let_hold, help=place,
+                          args=(choices, plant, result))  # fmt: skip
+
+
+def _place(choices: Choices, plant: int) -> str:
+    grid = choices.plot.grid
+    numbered = plant_numbers(grid, np.array([plant]))
+    said = plant_in_words(grid, plant, int(numbered.number[0]))
+    return texts.SETTLE_PLACE.format(row=grid.line_signs[int(numbered.line[0])], plant=said)
+
+
+@notices.reporting
+def _let_hold(choices: Choices, plant: int, result: int) -> str:
+    """Take back what says otherwise of a plant on the day."""
+    n = undoing.let_hold(choices.open_season, plant, choices.on, result)
+    return texts.SETTLED.format(place=_place(choices, plant), n=n)
 
 
 @notices.reporting

@@ -11,7 +11,7 @@ import streamlit as st
 
 from fieldmon.io.writers import FORMATS, HandoffPlan
 from fieldmon.io.writers.day_file import RouteNotes
-from fieldmon.monitoring.days import day_ahead
+from fieldmon.monitoring.days import day_ahead, kept_wishes
 from fieldmon.monitoring.phones import scouts
 
 from ..show import qr_code
@@ -40,9 +40,14 @@ def show(choices: Choices, plan: DayPlan) -> None:
 
 
 def give_out(choices: Choices) -> None:
-    """Keep the day's route with the season as the one given out: stops are counted along it."""
-    anew = wishes.were_told(choices.laid, choices.day)
-    day_ahead.planned(choices.open_season, choices.on, wishes=choices.wishes, keep=True, anew=anew)
+    """Keep the day's route with the season as the one given out: stops are counted along it.
+
+    Kept is also what was picked to be inspected too, or not: whoever is out goes by it.
+    """
+    season, (wished, anew) = choices.open_season, choices.wished
+    kept_wishes.keep_wishes(season, choices.on, choices.besides)
+    wishes.forget(choices.laid, choices.day)
+    day_ahead.planned(season, choices.on, wishes=wished, keep=True, anew=anew)
 
 
 @notices.reporting

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from datetime import date
 
+    from fieldmon.monitoring import PlannedAndDone
     from fieldmon.planning.plan import DayPlan
 
     from ..state.choices import Choices
@@ -94,14 +95,24 @@ def _planned(choices: Choices, plan: DayPlan) -> str:
         return texts.STEP_OTHER.format(plan=rest or texts.STEP_NO_STOPS, kept=said)
     if kept is None:
         return rest and texts.STEP_REST.format(plan=rest)
-    # who is alone has what is left of the day, as it stands above
-    is_alone = kept.people == 1 and len(plan.route)
-    return texts.STEP_KEPT.format(plan=said, left=len(plan.route) if is_alone else kept.left)
+    return _left_of(kept, len(plan.route), said)
+
+
+def _left_of(kept: PlannedAndDone, now: int, said: str) -> str:
+    """Return what is left of the plan kept of a day, and `now` on the route as that was planned."""
+    # those who are out have routes of their own: the one that stands above is nobody's
+    if kept.people > 1 or not now or now == kept.left:
+        return texts.STEP_KEPT.format(plan=said, left=kept.left)
+    return texts.STEP_KEPT_ANEW.format(plan=said, done=kept.done, left=kept.left, now=now)
 
 
 def _today(choices: Choices, _: DayPlan) -> str:
-    now = chosen_day.progress(choices)
-    return _recorded(choices, choices.day, now.found_today, now.inspected_today)
+    now, own = chosen_day.progress(choices), chosen_day.inspected_by_shown(choices)
+    said = _recorded(choices, choices.day, own.found, own.inspected)
+    if own.inspected == now.inspected_today:
+        return said
+    of_all = texts.STEP_FOUND.format(found=now.found_today, inspected=now.inspected_today)
+    return texts.STEP_OF_ALL.format(own=said, all=of_all)
 
 
 def _recorded(choices: Choices, on: str, found: int, inspected: int) -> str:
@@ -155,7 +166,7 @@ def _record_of(on: date) -> None:
 
 
 def _plan(choices: Choices, plan: DayPlan, step: Step) -> None:
-    if len(plan.route):
+    if len(plan.route) or choices.are_wishes_unused:
         acting.at_press(texts.STEP_BUTTONS[PLAN], _use_plan, choices, **_of_plan(choices, step))
 
 

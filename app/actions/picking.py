@@ -41,24 +41,27 @@ def show(choices: Choices, plan: DayPlan) -> None:
             for key, label in (("also", texts.PICKED_ALSO), ("never", texts.PICKED_NEVER)):
                 st.button(label, key=f"picked_{key}", on_click=_wish, args=(choices, key, some))
             st.button(texts.PICKED_NONE, key="picked_none", on_click=take, args=(choices, ()))
-    wanted = wishes.of(choices.laid, choices.day)
-    if not wanted:
+    wanted, is_unused = choices.besides, choices.are_wishes_unused
+    if not wanted and not is_unused:
         return
     said = [
         text.format(plants=texts.PLANTS_COUNTED.format(n=len(of)))
         for text, of in ((texts.WISHED, wanted.wanted), (texts.UNWISHED, wanted.unwanted))
         if of
     ]
+    if is_unused:
+        said.append(texts.WISHES_UNUSED)
     st.caption(" ".join(said))
     unmet = wanted.unmet(plan.route)
     if len(unmet):
         st.warning(texts.WISHES_UNMET.format(plants=texts.PLANTS_COUNTED.format(n=len(unmet))))
-    st.button(texts.WISHES_DROP, key="wishes_drop", icon=":material/undo:", on_click=_drop,
-              args=(choices,))  # fmt: skip
+    if wanted:
+        st.button(texts.WISHES_DROP, key="wishes_drop", icon=":material/undo:", on_click=_drop,
+                  args=(choices,))  # fmt: skip
 
 
 def _wish(choices: Choices, kind: str, plants: tuple[int, ...]) -> None:
-    now = wishes.of(choices.laid, choices.day)
+    now = choices.besides
     new = now.also(plants) if kind == "also" else now.never(plants)
     wishes.want(choices.laid, choices.day, new)
     take(choices, ())

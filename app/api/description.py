@@ -263,6 +263,12 @@ DAY: dict[str, Any] = {
                 },
             },
         },
+        "unwanted": {
+            "type": "array",
+            "description": "Plants that nobody is to inspect on that day, as was said in the app. "
+            "As runs of first and last.",
+            "items": _LIST,
+        },
         "left_out": {
             "type": "array",
             "description": "Plants that plans leave out: nobody could inspect them last time, or "

@@ -147,6 +147,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "photos_asked": [one._asdict() for one in ahead.asked_of(part)],
         "closed": _closed(season, ahead, on, part),
         "left_out": _left_out(season, ahead, (on, part), route),
+        "unwanted": run_ends(np.unique(np.array(ahead.wished.wishes.unwanted, int))).tolist(),
     }
 
 

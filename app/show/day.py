@@ -77,8 +77,8 @@ def headline(choices: Choices, plan: DayPlan) -> str:
     """Return what there is to do on the day, in one sentence."""
     on = choices.units.said_day(choices.day, choices.today)
     if is_over(choices, plan):
-        now = chosen_day.progress(choices)
-        return texts.DAY_DONE.format(found=now.found_today, inspected=now.inspected_today, day=on)
+        own = chosen_day.inspected_by_shown(choices)
+        return texts.DAY_DONE.format(found=own.found, inspected=own.inspected, day=on)
     return in_words(sentences.headline(plan.route, on))
 
 
@@ -147,11 +147,10 @@ def say_of_day(choices: Choices, plan: DayPlan) -> None:
     if choices.season is not None:
         if len(plan.route) and _is_of_nobody(choices):
             st.info(texts.ROUTE_OF_NOBODY)
-        now = chosen_day.progress(choices)
-        if now.inspected_today:
-            done = {"inspected": now.inspected_today, "found": now.found_today}
+        own = chosen_day.inspected_by_shown(choices)
+        if own.inspected or is_over(choices, plan):
             over = is_over(choices, plan)
-            st.info(texts.TODAY_OVER if over else texts.TODAY_DONE.format(**done))
+            st.info(texts.TODAY_OVER if over else texts.TODAY_DONE.format(**own._asdict()))
             return
     if not len(plan.route) and not cautions.are_all_closed(choices, plan):
         known = nothing_left_in_words(plan.scene)

@@ -22,7 +22,7 @@ from fieldmon.infestation.hotspots import HotSpots, NewestRecords, hot_spots
 from fieldmon.infestation.prior.prior import prior_chance
 from fieldmon.infestation.tracing.traced_pairs import TracedPairs
 from fieldmon.monitoring import worked_route
-from fieldmon.monitoring.days import day_ahead, estate_day, kept_routes
+from fieldmon.monitoring.days import day_ahead, estate_day, kept_routes, kept_wishes
 from fieldmon.monitoring.estimates import figures_of_day, treatment_effect
 from fieldmon.monitoring.estimates.plant_states import hot_spots_on
 from fieldmon.planning.plan import DayPlan, PlanSettings, plan_believed
@@ -201,6 +201,12 @@ def kept_route(
     """Return the plants of the route that was given out for a day; empty if none was."""
     day, who = of
     return _season.kept_route(date.fromisoformat(day), who or "")
+
+
+@st.cache_resource(max_entries=_DAYS, show_spinner=False)
+def wishes_kept(key: str, revision: str, day: str, _season: Season) -> Wishes:
+    """Return what is kept as wanted of a season's day besides."""
+    return kept_wishes.wishes_kept(_season, date.fromisoformat(day))
 
 
 @st.cache_resource(max_entries=_DAYS, show_spinner=False)

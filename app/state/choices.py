@@ -145,9 +145,23 @@ class Choices:
         return " ".join([self.place, str(len(grid)), *(f"{one:.5f}" for one in some.flat)])
 
     @property
+    def besides(self) -> Wishes:
+        """Return which plants are picked to be inspected too, or not: here, or kept of the day."""
+        if self.season is None or wishes.were_told(self.laid, self.day):
+            return wishes.of(self.laid, self.day)
+        return cached.wishes_kept(self.key, self.revision, self.day, self.season)
+
+    @property
+    def are_wishes_unused(self) -> bool:
+        """Return whether other plants are picked here than are kept of the season's day."""
+        if self.season is None or not wishes.were_told(self.laid, self.day):
+            return False
+        return self.besides != cached.wishes_kept(self.key, self.revision, self.day, self.season)
+
+    @property
     def wishes(self) -> Wishes:
         """Return what people want of the day besides, the plants to be photographed among it."""
-        picked = wishes.of(self.laid, self.day)
+        picked = self.besides
         if self.season is None or self.is_past:
             return picked
         asked = {one.plant for one in photos_asked.photos_asked(self.season)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import date, datetime, time, timedelta
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -259,6 +259,20 @@ def planned_only(choices: Choices, until: date) -> tuple[date, ...]:
     if choices.today is not None:  # a day that is not over yet will be
         until = min(until, choices.today - timedelta(days=1))
     return cached.planned_only(choices.key, choices.revision, str(until), choices.open_season)
+
+
+class Inspected(NamedTuple):
+    """How many plants were inspected, and found of these."""
+
+    inspected: int
+    found: int
+
+
+def inspected_by_shown(choices: Choices) -> Inspected:
+    """Return what was inspected on the day by whoever of a team is shown, else by all."""
+    told = choices.open_season.history.inspections.on(choices.on).inspected
+    own = made_by(told, choices.whose_day)
+    return Inspected(len(np.unique(own.plant)), len(np.unique(own.plant[own.result == FOUND])))
 
 
 def n_done(choices: Choices) -> int:

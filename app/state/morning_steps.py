@@ -70,7 +70,8 @@ def _in_season(choices: Choices, plan: DayPlan) -> dict[str, bool]:
     done = {}
     if choices.on > choices.open_season.settings.begins:
         done[LOOK_BACK] = left_unsaid(choices) is None
-    done[PLAN] = worked or chosen_day.is_given_out(choices, plan)
+    is_used = worked or chosen_day.is_given_out(choices, plan)
+    done[PLAN] = is_used and not choices.are_wishes_unused
     if not over:
         done[SEND] = worked or did(choices, SEND)
     done |= {RECORD: worked and over, REPORT: did(choices, REPORT)}

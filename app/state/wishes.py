@@ -19,13 +19,18 @@ def of(laid: str, day: str) -> Wishes:
 
 
 def were_told(laid: str, day: str) -> bool:
-    """Return whether anything was wished of a day, though it may be wished no more."""
+    """Return whether anything was wished of a day here, though it may be wished no more."""
     return _key(laid, day) in st.session_state
 
 
 def want(laid: str, day: str, wishes: Wishes) -> None:
     """Want this of a day."""
     st.session_state[_key(laid, day)] = wishes
+
+
+def forget(laid: str, day: str) -> None:
+    """Want of a day here what is kept of it."""
+    st.session_state.pop(_key(laid, day), None)
 
 
 def picked(laid: str) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from ..actions import beginning, bringing_files, picking, recording, undoing
+from ..actions import beginning, bringing_files, contradicting, picking, recording, undoing
 from ..show import day, map_layers, plant_history
 from ..state import wishes
 from ..words import texts
@@ -28,5 +28,6 @@ def show(choices: Choices) -> None:
         beginning.show(choices)
         return
     day.say_otherwise(choices)
+    contradicting.settle(choices)
     recording.show(choices)
     undoing.show_batches(choices)

@@ -466,6 +466,9 @@ WISHES_UNMET = (
     "{plants} of those are not on the route: the hours, or the strategy, do not allow it."
 )
 WISHES_DROP = "As planned before"
+WISHES_UNUSED = (
+    "Nobody else has this yet: *Use this plan* keeps it with the season, and scouts go by it, too."
+)
 
 # -- all plots
 PLOTS_TITLE = Plural("{n} plot", "{n} plots")
@@ -586,6 +589,8 @@ STEP_FOUND = Plural(
     by="inspected",
 )
 STEP_KEPT, STEP_REST = "{plan}; {left:,} left", "{plan} left"
+STEP_KEPT_ANEW = "{plan}: {done:,} done, {left:,} left; the route as of now has {now:,}"
+STEP_OF_ALL = "{own}; all together {all}"
 STEP_OTHER = "{plan}, not given out yet; given out before: {kept}"
 STEP_NO_STOPS = "no stops"
 ROUTE_OF_NOBODY = (
@@ -1404,6 +1409,7 @@ SCOUT_PAGE = {
     "closed_plants": "Plants not on the route before then: {n}.",
     "left_out_skipped": "Left out, as nobody could inspect them last time: {n}.",
     "left_out_flagged": "Left out, as they were found and only flagged: {n}.",
+    "left_out_unwanted": "Left out, as the office said so: {n}.",
     "clean": "Clean", "found": "Found", "skipped": "Could not inspect",
     "gone": "Plant is gone",
     "count": "Pests", "leaves": "Leaves looked at", "stage": "Stage", "fewer": "{what}: one fewer",
@@ -1495,7 +1501,12 @@ ASK_PHOTO_NOTE = (
     "is asked for until a photo of the plant has come."
 )
 ASKED_PHOTO, ASK_NO_MORE = "Row {row}, plant {plant}. {note}", "No more"
-SAID_OTHERWISE = "Said otherwise of the same plant on this day. Look again, and undo what is wrong:"
+SAID_OTHERWISE = (
+    "Said otherwise of the same plant on this day. Look again, then say on *Record* which holds:"
+)
+FOUND_HOLDS, CLEAN_HOLDS = "Found holds", "Clean holds"
+SETTLE_PLACE = "Row {row}, plant {plant}"
+SETTLED = Plural("{place}: {n} result taken back.", "{place}: {n} results taken back.")
 
 # -- other devices: who may open the app, and how a phone comes to trust it
 LAN_PAGE = {

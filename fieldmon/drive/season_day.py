@@ -11,6 +11,7 @@ from fieldmon.drive.day_clock import second_now, time_of
 from fieldmon.errors import SettingError
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring.days.day_ahead import DayAhead, through
+from fieldmon.monitoring.days.kept_wishes import wishes_kept
 from fieldmon.monitoring.estimates.asked_day import AskedDay, PlantToInspect, plant_to_inspect
 from fieldmon.monitoring.file.connections import kept_open
 from fieldmon.monitoring.phones.scouts import codes_on, inside
@@ -18,7 +19,6 @@ from fieldmon.monitoring.season.season_inspections import recorded
 from fieldmon.monitoring.settings.shift_work import Besides
 from fieldmon.pests.weather import DAY_S
 from fieldmon.planning.members import person_key
-from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from fieldmon.monitoring.season.season_file import Season
     from fieldmon.planning.plan import DayPlan
+    from fieldmon.planning.wishes import Wishes
 
 #: a robot that is so much later or earlier than planned is planned for anew
 REPLAN_AFTER_S = 30.0
@@ -47,7 +48,7 @@ class SeasonDay(AskedDay):
     source
         What the batch is called: the robot.
     wishes
-        What people want of the day besides.
+        What people want of the day besides; None: what is kept of it.
     name
         Who inspects, as the record has it; "": nobody is named.
 
@@ -177,10 +178,12 @@ class SeasonDay(AskedDay):
         """Return what people want but for the plants that are left to somebody."""
         if not self.left_out:
             return wishes
+        if wishes is None:
+            wishes = wishes_kept(self._season, self._on)
         theirs = np.any(
             [inside(self._season.plant_numbers, rows) for rows in self.left_out], axis=0
         )
-        return (wishes or Wishes()).never(tuple(np.flatnonzero(theirs).tolist()))
+        return wishes.never(tuple(np.flatnonzero(theirs).tolist()))
 
     def _plan(self, now: time | None = None) -> None:
         with self._entering():

@@ -236,7 +236,8 @@ export class Field {
     this.begun = begun;
     const isNew = this.asked().some((one) => !asked.has(one.id)), { ahead, draft } = this;
     if (isNew) this.ahead = this.#withAsked(ahead);
-    else if (ahead.some((one) => this.done.has(one))) this.ahead = ahead.filter((one) => !this.done.has(one));
+    const isOut = (one) => this.done.has(one) || this.isUnwanted(one);
+    if (this.ahead.some(isOut)) this.ahead = this.ahead.filter((one) => !isOut(one));
     // the plant in large print stays until there is a tap, whoever else was there: a finger may be on its way
     if (this.plant < 0 && this.ahead.length > 0) this.draft = this.#keepDraft();
     // what is as it was may be another in another window by now
@@ -298,10 +299,10 @@ export class Field {
     return some.filter((one) => one.plant === plant && !(isBack && one.who.toLowerCase() === name));
   }
 
-  /** Plants that are said to be both clean and found today, as far as this phone did not take it back since: `{plant, said}` each. */
+  /** Plants of one's own rows, or that one told of, that are said to be both clean and found today, as far as this phone did not take it back since: `{plant, said}` each. */
   contradictions() {
     const all = this.day?.contradicting ?? [], plants = [...new Set(all.map((one) => one.plant))];
-    const told = plants.map((plant) => ({ plant, said: this.#stand(all, plant) }));
+    const told = plants.filter((plant) => this.isOwn(plant) || this.own.has(plant)).map((plant) => ({ plant, said: this.#stand(all, plant) }));
     return told.filter(({ said }) => new Set(said.map((one) => one.result)).size > 1);
   }
 
@@ -461,7 +462,7 @@ export class Field {
     if (result === "found") {
       const done = new Set([...this.done, plant]);
       // a neighbour that nobody may come to yet, that plans leave out or that is gone, is none to go to
-      const out = neighbours(this.plot, plant).filter((one) => this.closedUntil(one) || this.isLeftOut(one) || this.isGone(one));
+      const out = neighbours(this.plot, plant).filter((one) => this.closedUntil(one) || this.isLeftOut(one) || this.isGone(one) || !this.isOwn(one));
       const fit = afterFind(this.plot, this.day, ahead, plant, new Set([...done, ...out]), this.#secondsLeft(begun, [plant]));
       // where the hours run by the clock `inHours` leaves out what does not fit them: another day has its own
       ahead = runs ? [...fit, ...ahead.filter((one) => !fit.includes(one))] : fit;
@@ -593,10 +594,19 @@ export class Field {
   }
 
   /** How many of one's own plants plans leave out, and why. */
-  leftOut() { return (this.day?.left_out ?? []).filter(({ own: n }) => n); }
+  leftOut() {
+    const own = (this.day?.unwanted ?? []).flatMap(([low, high]) => Array.from({ length: high - low + 1 }, (_, k) => low + k)).filter((one) => this.isOwn(one));
+    return [...(this.day?.left_out ?? []), { why: "unwanted", own: own.length }].filter(({ own: n }) => n);
+  }
 
-  /** Whether plans leave a plant out: nobody could inspect it last time, or it was found and only flagged. */
-  isLeftOut(plant) { return (this.day?.left_out ?? []).some(({ plants }) => plants.some((run) => within(plant, run))); }
+  /** Whether plans leave a plant out: nobody could inspect it last time, it was found and only flagged, or it is not wanted today. */
+  isLeftOut(plant) { return this.isUnwanted(plant) || (this.day?.left_out ?? []).some(({ plants }) => plants.some((run) => within(plant, run))); }
+
+  /** Whether a plant is not to be inspected today, as was said in the app; a server of before says none. */
+  isUnwanted(plant) { return (this.day?.unwanted ?? []).some((run) => within(plant, run)); }
+
+  /** Whether a plant is in the rows of whose phone it is; who has none has all. */
+  isOwn(plant) { return !this.day?.rows || within(rowOf(this.plot, plant), this.day.rows); }
 
   /** Whether a plant does not stand there any more, as the season says; a server of before says none. */
   isGone(plant) { return (this.day?.gone ?? []).includes(plant); }

@@ -19,7 +19,7 @@ function placeOf(plot, plant) {
 const whoSays = (some) => some.map((one) => say("who_says", { who: one.who, result: resultOf(one) })).join(", ");
 // so many plants that contradict are named; in the app all are
 const MOST_NAMED = 3;
-const LEFT_OUT = { skipped: "left_out_skipped", flagged: "left_out_flagged" };
+const LEFT_OUT = { skipped: "left_out_skipped", flagged: "left_out_flagged", unwanted: "left_out_unwanted" };
 
 function h(name, values = {}, ...inner) {
   const made = document.createElement(name);
@@ -245,8 +245,8 @@ export class Page {
   #contradictions() {
     const { field } = this, { plot } = field, all = field.contradictions();
     const line = ({ plant, said }) => say("contradiction", { what: `${placeOf(plot, plant)}: ${whoSays(said)}` });
-    const lines = all.slice(0, MOST_NAMED).map((one) => h("p", { class: "bad contradiction", "data-plant": one.plant }, line(one)));
-    return all.length > MOST_NAMED ? [...lines, h("p", { class: "bad" }, say("and_more", { n: all.length - MOST_NAMED }))] : lines;
+    const lines = all.slice(0, MOST_NAMED).map((one) => h("p", { class: "bad small contradiction", "data-plant": one.plant }, line(one)));
+    return all.length > MOST_NAMED ? [...lines, h("p", { class: "bad small" }, say("and_more", { n: all.length - MOST_NAMED }))] : lines;
   }
 
   /** The same of days before, once: the phone has these records no more. */

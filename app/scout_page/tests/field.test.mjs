@@ -74,6 +74,28 @@ test("after a find nobody is led to a neighbour that is gone", async () => {
   assert.deepEqual(await left([1]), all.filter((one) => one !== 1));
 });
 
+test("after a find nobody is led out of the rows of their own, nor to what is not wanted today", async () => {
+  const left = async (more) => {
+    const { field } = await aField(new ASeason(aDay([5, 7], more)));
+    await field.tell("found");
+    return field.ahead;
+  };
+  const all = await left();
+  assert.deepEqual([0, 6, 10].map((one) => all.includes(one)), [true, true, true]);
+  assert.deepEqual((await left({ rows: [2, 3] })).filter((one) => one < 5), [], "row 1 is another's");
+  assert.ok((await left({ rows: [2, 3] })).includes(10));
+  assert.ok(!(await left({ unwanted: [[0, 4]] })).includes(0));
+});
+
+test("what the office leaves out while one is out is left out of the way, and it is said how many these are", async () => {
+  const { season, field } = await aField(new ASeason(aDay([0, 1, 2, 10, 11], { rows: [1, 1] })));
+  season.day = { ...season.day, unwanted: [[1, 2], [10, 12]] };
+  await field.refresh();
+  assert.deepEqual(field.ahead, [0]);
+  assert.deepEqual(field.leftOut(), [{ why: "unwanted", own: 2 }]);
+  assert.equal(field.plant, 0);
+});
+
 test("what was taken back here is shown no more, though what the season said last still says it", async () => {
   const { season, field, sync } = await aField();
   await field.tell("found");
@@ -104,6 +126,16 @@ test("a plant that two say otherwise of is named, until this phone takes its own
   assert.deepEqual(field.contradictions(), [{ plant: 0, said: both }]);
   await field.undo();
   assert.deepEqual(field.contradictions(), []);
+});
+
+test("who has rows of their own is told of plants there and of their own records, not of what others settle", async () => {
+  const both = [0, 12].flatMap((plant) => [{ plant, result: "found", who: "Cem" }, { plant, result: "clean", who: "Ben" }]);
+  const season = new ASeason(aDay([0, 1], { rows: [1, 1], today: both, contradicting: both }));
+  const { field } = await aField(season);
+  assert.deepEqual(field.contradictions().map(({ plant }) => plant), [0]);
+  await field.goTo(12);
+  await field.tell("clean");
+  assert.deepEqual(field.contradictions().map(({ plant }) => plant), [0, 12]);
 });
 
 test("a find changes what the season says, until it said so; what is clean does not", async () => {

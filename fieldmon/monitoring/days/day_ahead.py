@@ -10,7 +10,7 @@ import numpy as np
 
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring.changes import logged_days
-from fieldmon.monitoring.days import kept_routes
+from fieldmon.monitoring.days import kept_routes, kept_wishes
 from fieldmon.monitoring.phones.photos_asked import photos_asked_in
 from fieldmon.monitoring.phones.scouts import inside, scouts_in
 from fieldmon.monitoring.settings.shift_work import BEGINS_OTHERWISE_S, ScoutCrew
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.monitoring.days.kept_routes import KeptRoute
+    from fieldmon.monitoring.days.kept_wishes import KeptWishes
     from fieldmon.monitoring.phones.photos_asked import AskedPhoto
     from fieldmon.monitoring.phones.scouts import Scout
     from fieldmon.monitoring.season.season_file import Season
@@ -97,6 +98,8 @@ class DayAhead:
         The route kept last of each who has one, and its plants ``(k,)``, by `person_key`.
     asked
         The photos that are asked for.
+    wished
+        What is wanted of the day besides.
     """
 
     plant_numbers: PlantNumbers
@@ -105,6 +108,7 @@ class DayAhead:
     last: dict[str, KeptRoute]
     plants: dict[str, Plants]
     asked: tuple[AskedPhoto, ...]
+    wished: KeptWishes = kept_wishes.NO_WISHES
 
     @classmethod
     def of(cls, season: Season, on: date) -> DayAhead:
@@ -114,7 +118,8 @@ class DayAhead:
             last = kept_routes.kept_last(now.db, settings.day(on))
             plants = {who: kept_routes.plants(now.db, kept) for who, kept in last.items()}
             people, asked = scouts_in(now.db), photos_asked_in(now.db)
-        return cls(season.plant_numbers, settings, people, last, plants, asked)
+            wished = kept_wishes.kept_in(now.db, on, len(season.plant_numbers.line))
+        return cls(season.plant_numbers, settings, people, last, plants, asked, wished)
 
     def kept(self, who: str = "") -> Plants:
         """Return the plants of somebody's route; nobody named: of the first of the team."""
@@ -210,6 +215,7 @@ class DayAhead:
         one's where they are on nobody's.
         """
         mine, team = self.own(part), [one.name for one in self.settings.team]
+        mine[list(self.wished.wishes.unwanted)] = False
         names = self.crew(part) if self.member(part) is None else team
         if part.name and len(names) > 1:
             if person_key(part.name) != person_key(names[0]):
@@ -219,10 +225,26 @@ class DayAhead:
                     mine[self.kept(one)] = False
         return tuple(one for one in self.asked if mine[one.plant])
 
-    def wanted(self, part: WorkPart) -> tuple[int, ...]:
-        """Return the plants of a part of which a photo is asked for."""
+    def wishes(self, part: WorkPart) -> Wishes:
+        """Return what is wanted of a part, the plants to be photographed among it."""
+        mine, of_day = self.own(part), self.wished.wishes
+        wanted = {*of_day.wanted, *(one.plant for one in self.asked)} - {*of_day.unwanted}
+        return Wishes(tuple(sorted(k for k in wanted if mine[k])), of_day.unwanted)
+
+    def is_unlike_wishes(self, part: WorkPart, left: Plants, done: Plants) -> bool:
+        """Return whether what is `left` of a part's route is not as it is wished.
+
+        It leads to what is not wanted, or what is wanted came after it and is on nobody's way.
+        """
+        if np.isin(left, self.wished.wishes.unwanted).any():
+            return True
+        kept = self.last.get(person_key(self.kept_as(part)))
+        if self.member(part) is not None or kept is None or kept.number > self.wished.since:
+            return False
         mine = self.own(part)
-        return tuple(sorted({one.plant for one in self.asked if mine[one.plant]}))
+        wanted = [plant for plant in self.wished.wishes.wanted if mine[plant]]
+        ways = [self.route(part), *(self.kept(one) for one in self.others(part)), done]
+        return not np.isin(wanted, np.concatenate(ways)).all()
 
     def _lines(self, rows: tuple[int, int] | None) -> tuple[int, int]:
         return rows or (int(self.plant_numbers.line.min()), int(self.plant_numbers.line.max()))
@@ -252,7 +274,7 @@ def planned(
     """
     ahead = DayAhead.of(season, on)
     if not anew and ahead.is_seasons(part):
-        given = _given_last(season, on, ahead, Wishes() if wishes is None else wishes)
+        given = _given_last(season, on, ahead, ahead.wished.wishes if wishes is None else wishes)
         if given is not None:
             return given
     who = None if ahead.member(part) is None else part.name
@@ -318,7 +340,7 @@ def route_ahead(season: Season, on: date, part: WorkPart = WHOLE) -> Route:
     """
     ahead = DayAhead.of(season, on)
     if ahead.is_seasons(part):
-        return plan_ahead(season, on, part, wishes=Wishes(ahead.wanted(part)), keep=True).route
+        return plan_ahead(season, on, part, wishes=ahead.wishes(part), keep=True).route
     with season.entering_treated():
         scene = season.scene(on, who=ahead.works_as(part))
     to_kept = kept_routes.closed_to_kept(season, on, part.name, ahead.kept_as(part))
@@ -326,7 +348,11 @@ def route_ahead(season: Season, on: date, part: WorkPart = WHOLE) -> Route:
     kept = ahead.route(part)
     kept = kept[scene.are_open(kept)]
     left = kept[ahead.own(part)[kept]]
-    if not len(left) or closed[left].any() or (part.name and ahead.is_others(part, kept)):
+    is_others = bool(part.name) and ahead.is_others(part, kept)
+    done = season.history.on(ahead.settings.day(on)).plant
+    if not len(left) or closed[left].any() or is_others:
+        return planned_again(season, on, part)
+    if ahead.is_unlike_wishes(part, left, done):
         return planned_again(season, on, part)
     hours = work_hours(season, on, part)
     fits = _fitting(scene, left, hours.left_s) if hours.run else through(scene, left)
@@ -347,8 +373,7 @@ def planned_again(
     if part.rows is not None and member is None:
         for one in ahead.settings.team:
             own[ahead.kept(one.name)] = False
-    others = tuple(np.flatnonzero(~own).tolist())
-    wishes = Wishes(ahead.wanted(part), others)
+    wishes = ahead.wishes(part).never(tuple(np.flatnonzero(~own).tolist()))
     if part.name and member is None and not ahead.is_seasons(part):
         crew = ahead.crew(part)
         (me,) = {*crew} - {*ahead.others(part)}

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import counted, worded
+from fieldmon.monitoring.days.kept_wishes import wishes_kept
 from fieldmon.monitoring.treating.closures import closed_plants, open_to_people
 from fieldmon.planning.plan import plan_in
 from fieldmon.planning.shared_day import MOVE_S, PlotNeed, share_day
+from fieldmon.planning.wishes import Wishes
 from fieldmon.plot.local_clock import grid_clock
 
 if TYPE_CHECKING:
@@ -45,7 +47,8 @@ class EstatePlot:
     on
         Its day.
     scene
-        What is believed of it then, before anybody works there; nothing is closed in it.
+        What is believed of it then, before anybody works there; nothing is closed in it. What is
+        not wanted on that day seems inspected.
     decides
         Who decides which plants come next.
     season
@@ -61,7 +64,8 @@ class EstatePlot:
     def of(cls, season: Season, on: date) -> EstatePlot:
         """Return the plot of a season, as its day begins."""
         with season.entering_treated():
-            scene = season.scene(on)
+            unwanted = wishes_kept(season, on).unwanted
+            scene = Wishes(unwanted=unwanted).applied_to(season.scene(on))
         return cls(on, scene, season.settings.decides(), season)
 
     def closed(self, begins: datetime, ends: datetime) -> tuple[Closure, ...]:

@@ -218,6 +218,12 @@ class KeptPlans:
     def __repr__(self) -> str:
         return f"<KeptPlans: {len(self.last)} stops, {self.hours():.1f} h>"
 
+    def share_of(self, counted: NDArray[np.int32], told: NDArray[np.int32]) -> float:
+        """Return which part of the stops some of the last plan are, with all those done before."""
+        done = np.intersect1d(self.of_all, told)
+        every = len(np.union1d(self.last, done))
+        return len(np.union1d(counted, done)) / every if every else 1.0
+
     def hours(self, begun: datetime | None = None) -> float:
         """Return the hours that they take; `begun`: when the work they were made for began."""
         return (self.ends - (self.begins if begun is None else begun)).total_seconds() / 3600

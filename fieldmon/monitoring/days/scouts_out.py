@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     import sqlite3
     from datetime import date
 
+    from numpy.typing import NDArray
+
     from fieldmon.monitoring.season.season_file import Season
 
     #: when it was recorded, the plant, the day, and by whom
@@ -28,6 +30,8 @@ if TYPE_CHECKING:
 
 # the last finding of each, and the last photo; the newest is the last of a person
 _LAST_SENT = "SELECT scout, max(received), sent_phone FROM tellings GROUP BY scout ORDER BY 2"
+# after any time that is written
+_NEVER = "~"
 _LAST_PHOTO = "SELECT scout, max(received) FROM photos GROUP BY scout ORDER BY 2"
 
 
@@ -44,7 +48,8 @@ class ScoutOut:
     fast
         How far the phone's clock was ahead then.
     done, ahead
-        Plants that this person recorded on the day, and those of the route that are left.
+        Plants that this person recorded on the day, and those that are left: of the route, and
+        beside what was found on it.
     plan
         Which plan of the day was given last, see `DayAhead.plan_of`; None: none.
     shares
@@ -110,7 +115,10 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
                 None if code is None else _moment(code.made), _moment(heard),
                 _phone_ahead(*sent[who]) if who in sent else timedelta(),
                 len(np.unique(made_by(done, who).plant)),
-                int((~np.isin(ahead.given(part), done.plant)).sum()),
+                _n_ahead(season, ahead, part, done.plant,
+                         [plant for at, plant, of, by in finds
+                          if at > given.get(ahead.mark(part), _NEVER) and of == day
+                          and person_key(by) == who]),
                 ahead.plan_of(part), () if ahead.member(part) else ahead.others(part),
                 ahead.has_route(part), who in holding,
                 () if code is None else tuple(one.name for one in overlapping(code, *codes)),
@@ -126,6 +134,21 @@ def _finds_since(db: sqlite3.Connection, since: str, day: int) -> list[Find]:
         "ON b.fid = batch WHERE i.undone = 0 AND result = ? AND day <= ? AND at > ?"
     )
     return db.execute(wanted, (RESULT_NAMES[FOUND], day, since)).fetchall()
+
+
+def _n_ahead(
+    season: Season, ahead: DayAhead, part: WorkPart, done: NDArray[np.int32], found: list[int]
+) -> int:
+    """Return how many plants are left of a part's route, with those beside what was `found` since.
+
+    The phone goes to these next, by itself.
+    """
+    start, second = season.plot.grid.adjacent
+    beside = [second[start[plant] : start[plant + 1]] for plant in found]
+    mine = ahead.own(part)
+    mine[list(ahead.wished.wishes.unwanted)] = False
+    near = np.unique(np.concatenate([*beside, np.empty(0, second.dtype)]))
+    return len(np.setdiff1d(np.union1d(ahead.given(part), near[mine[near]]), done))
 
 
 def _n_newer(finds: list[Find], given: str | None, who: str, day: int) -> int:

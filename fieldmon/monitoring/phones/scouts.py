@@ -90,6 +90,14 @@ def let_in(season: OpenSeason, name: str, rows: tuple[int, int] | None = None) -
             )
         )  # fmt: skip
     least, lines = int(season.plant_numbers.line.min()), int(season.plant_numbers.line.max())
+    if rows is not None and least <= rows[1] < rows[0] <= lines:
+        raise SettingError(
+            worded(
+                "The first row of a part must not come after its last one, but it is {low} to "
+                "{high}. Exchange them: {high} to {low}.",
+                low=rows[0], high=rows[1],
+            )
+        )  # fmt: skip
     if rows is not None and not least <= rows[0] <= rows[1] <= lines:
         raise SettingError(
             worded(

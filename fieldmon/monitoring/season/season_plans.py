@@ -14,7 +14,7 @@ from fieldmon.errors import FileProblem
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.changes.file_revision import FileRevision
-from fieldmon.monitoring.days import kept_routes
+from fieldmon.monitoring.days import kept_routes, kept_wishes
 from fieldmon.monitoring.estimates.day_figures import PlannedAndDone
 from fieldmon.monitoring.estimates.mornings import is_behind
 from fieldmon.monitoring.estimates.season_contents import newest_day
@@ -72,7 +72,7 @@ class SeasonPlans(SeasonDays):
         keep
             whether the route is kept in the file: the same one once, an empty one never.
         wishes
-            What people want of the day besides.
+            What people want of the day besides; None: what is kept of it.
         who
             Whose day, of a team; None: the first one's. All are planned, see `plan_each`. Or that
             of the season's robot `Besides` others, who is not where they inspected last.
@@ -81,7 +81,7 @@ class SeasonPlans(SeasonDays):
             contents = self._now()
             settings = self._planned_by(contents, on)
             if isinstance(who, Besides):
-                scene = self._scene(contents, on, now, who)
+                scene, wishes = self._scene(contents, on, now, who), self._wished(on, wishes)
                 alone = (plan_in(scene, settings.decides(), wishes),)
                 return self._given(contents, on, alone, (who,), ("",), keep=keep)[0]
             days = self.plan_each(on, now, keep=keep, wishes=wishes)
@@ -111,7 +111,7 @@ class SeasonPlans(SeasonDays):
             In the order of the team, or of the crew.
         """
         with self._lock:
-            contents = self._now()
+            contents, wishes = self._now(), self._wished(on, wishes)
             if crew is not None:
                 days = self._crew_days(contents, on, now, wishes, crew)
                 return self._given(contents, on, days, crew.names, crew.kept_as, keep=keep)
@@ -126,6 +126,13 @@ class SeasonPlans(SeasonDays):
             else:
                 days = (plan_in(scenes[0], settings.decides(), wishes),)
             return self._given(contents, on, days, _names(settings), keep=keep)
+
+    def _wished(self, on: date, wishes: Wishes | None) -> Wishes | None:
+        """Return what is wanted of a day besides; None: nothing."""
+        if wishes is None:
+            with self.store.reading() as db:
+                wishes = kept_wishes.kept_in(db, on, len(self.plant_numbers.line)).wishes
+        return wishes or None
 
     def _crew_days(
         self, contents: SeasonContents, on: date, now: time | None, wishes: Wishes | None,
@@ -232,7 +239,9 @@ class SeasonPlans(SeasonDays):
     def planned_and_done(self, on: Day, who: str | None = None) -> PlannedAndDone | None:
         """Return the plan kept of the day `on`, held to what was done; None: none was kept.
 
-        Of a plan that nobody goes by any more only what was done of it is part.
+        Of a plan that nobody goes by any more only what was done of it is part. Of a plan of which
+        others have some rows by now, its hours are those of the stops that count, as if each took
+        the same.
 
         Parameters
         ----------
@@ -259,11 +268,16 @@ class SeasonPlans(SeasonDays):
         goes_by = {one.who: one.last for one in kept if one.who in out}
         if "" in goes_by and who is None:
             goes_by[""] = self._in_nobodys_rows(goes_by[""], codes, out)
+        told = np.unique(np.concatenate(done))
         return PlannedAndDone.of(
-            [(goes_by.get(one.who, none), one.of_all) for one in kept],
-            np.unique(np.concatenate(done)),
-            [one.hours(self._begun(contents, on, one, codes)) for one in kept if one.who in out],
-        )
+            [(goes_by.get(one.who, none), one.of_all) for one in kept], told,
+            [
+                one.hours(self._begun(contents, on, one, codes))
+                * one.share_of(goes_by[one.who], told)
+                for one in kept
+                if one.who in out
+            ],
+        )  # fmt: skip
 
     def _begun(
         self, contents: SeasonContents, on: date, kept: KeptPlans,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from fieldmon.compute.wording import worded
 from fieldmon.errors import SettingError
+from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES
 from fieldmon.monitoring.changes import season_log
 from fieldmon.monitoring.file import phone_tables
 from fieldmon.monitoring.inspecting import batches, undone_batches
@@ -13,6 +14,8 @@ from fieldmon.monitoring.inspecting.undone_batches import Undone
 from fieldmon.monitoring.phones.people import written_in
 
 if TYPE_CHECKING:
+    from datetime import date
+
     from fieldmon.monitoring.estimates.season_contents import SeasonChange
     from fieldmon.monitoring.season.open_season import OpenSeason
 
@@ -49,6 +52,25 @@ def undo_with_batches(
             return Undone(said, None)
         but = season_log.left_out_of(db, again)
         return Undone(said, again, undone_batches.to_redo_first(db, again, but))
+
+
+def let_hold(season: OpenSeason, plant: int, on: date, result: int, who: str = "") -> int:
+    """Take back what else was found at a plant on a day than `result`; return how many that were.
+
+    `result` is `CLEAN` or `FOUND`. Where it is not recorded by now, or nothing else is, nothing is
+    taken back.
+    """
+    counts = "SELECT fid, result FROM inspections WHERE undone = 0 AND plant = ? AND date = ?"
+    with season.store.reading() as db:
+        told = [*db.execute(counts, (plant, str(on)))]
+    wrong = {RESULT_NAMES[CLEAN], RESULT_NAMES[FOUND]} - {RESULT_NAMES[result]}
+    if {said for _, said in told} >= {RESULT_NAMES[CLEAN], RESULT_NAMES[FOUND]}:
+        others = [fid for fid, said in told if said in wrong]
+    else:
+        others = []
+    for fid in others:
+        undo_with_batches(season, inspection=fid, who=who)
+    return len(others)
 
 
 def redo_batch(season: OpenSeason, batch: int, who: str = "") -> str:

@@ -11,12 +11,17 @@ import pytest
 
 from app.actions import handing_out
 from app.actions.handing_out import made
+from app.state import morning_steps, wishes
 from app.state.choices import Choices
 from fieldmon.compute.wording import worded
 from fieldmon.io.writers import FORMATS, HandoffPlan
 from fieldmon.io.writers.day_file import RouteNotes
 from fieldmon.io.writers.handoff import HandoffFormat
-from tests.app.chosen import a_plot, chosen
+from fieldmon.monitoring.days.day_ahead import WorkPart, planned_again
+from fieldmon.monitoring.days.kept_wishes import wishes_kept
+from fieldmon.planning.wishes import Wishes
+from tests.app.chosen import a_plot, chosen, in_season
+from tests.monitoring.seasons import BEGINS, a_season
 
 
 @pytest.fixture(scope="module")
@@ -73,3 +78,33 @@ def test_a_sheet_to_print_is_in_the_language_of_the_app(monkeypatch, speaking):
     page = made(FORMATS["sheet"], handed[0]).decode()
     assert '<html lang="he" dir="rtl"' in page
     assert "<th>שורה</th>" in page
+
+
+def test_what_is_used_with_the_plan_holds_for_scouts_and_other_browsers(tmp_path, session):
+    season = a_season(tmp_path / "s.gpkg")
+    choices = in_season(season, BEGINS)
+    out = Wishes(unwanted=tuple(range(len(season.plot.grid) // 2)))
+    handing_out.give_out(choices)
+    wishes.want(choices.laid, choices.day, out)
+    assert choices.are_wishes_unused
+    (step,) = (
+        one
+        for one in morning_steps.steps(choices, choices.plan())
+        if one.name == morning_steps.PLAN
+    )
+    assert not step.done
+    assert not wishes_kept(season, BEGINS), "until the plan is used nobody else has it"
+    handing_out.give_out(choices)
+    assert wishes_kept(season, BEGINS) == out
+    rows = (2, int(season.plant_numbers.line.max()))
+    led = planned_again(season, BEGINS, WorkPart(rows, "Cat")).plant
+    assert len(led)
+    assert not {*led.tolist()} & {*out.unwanted}
+    session.clear()  # another browser
+    other = in_season(season, BEGINS)
+    assert other.besides == out
+    assert not other.are_wishes_unused
+    assert not {*other.plan().route.plant.tolist()} & {*out.unwanted}
+    wishes.want(other.laid, other.day, Wishes())
+    handing_out.give_out(other)
+    assert not wishes_kept(season, BEGINS), "and taken back it holds no more"

@@ -4,14 +4,19 @@ from dataclasses import replace
 from datetime import UTC, date, datetime
 
 import numpy as np
+import pytest
 
-from app.actions import handing_out
+from app.actions import handing_out, morning_steps
+from app.state import chosen_day, widget_memory
+from app.state.choices import WHOSE_DAY
 from app.words import texts
 from fieldmon.infestation.inspections import Inspections
+from fieldmon.planning.members import team_of
 from fieldmon.plot import local_clock
+from fieldmon.plot.robot import Robot
 from tests.app.chosen import in_season
 from tests.app.driving import boxed, go, headline, opened, press, tap, texts_of
-from tests.monitoring.seasons import logged_at
+from tests.monitoring.seasons import BEGINS, a_season, logged_at
 
 
 def test_without_a_season_one_button_begins_it(app):
@@ -147,3 +152,34 @@ def test_a_planned_day_that_was_forgotten_is_recorded_from_any_later_day(
     go(season_app, "season")
     season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 20)).run()
     assert texts.UNRECORDED.format(days="Mon 16 Nov") in [one.value for one in season_app.caption]
+
+
+@pytest.mark.usefixtures("session")
+def test_of_a_team_each_page_has_what_this_one_planned_and_did(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", team=team_of(2, Robot(hours=1.0)))
+    first, second = (len(one.route) for one in season.plan_each(BEGINS))
+    done = season.kept_route(BEGINS, "robot-2")[:6]
+    result = (np.arange(6) == 2).astype(np.int8)
+    season.record(Inspections.of(done, result, np.datetime64(BEGINS)), "f", "robot-2")
+    choices, said = in_season(season, BEGINS), {}
+    for name in ("robot-1", "robot-2"):
+        widget_memory.put(WHOSE_DAY, name)
+        plan = choices.plan()
+        said[name] = (
+            morning_steps._planned(choices, plan), morning_steps._today(choices, plan),
+            chosen_day.inspected_by_shown(choices), len(plan.route),
+        )  # fmt: skip
+    for name, n, of_it in (("robot-1", first, 0), ("robot-2", second, 6)):
+        plan, today, own, now = said[name]
+        assert own == (of_it, int(of_it > 0))
+        assert plan.startswith(f"{n:,} plants")
+        left = n - of_it
+        if now == left:
+            assert plan.endswith(f"; {left:,} left")
+        else:
+            assert f": {of_it} done, {left:,} left; " in plan
+            assert plan.endswith(f" {now:,}")
+        assert ("all together 1 found on 6 plants" in today) == (name == "robot-1")
+    assert any(
+        now != n for (_, _, _, now), n in zip(said.values(), (first, second - 6), strict=True)
+    )

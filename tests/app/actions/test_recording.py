@@ -451,6 +451,20 @@ def test_what_two_people_said_otherwise_is_shown_with_who_said_it(season_app, se
         assert "plant 8" in shown
 
 
+def test_which_of_two_results_of_a_plant_holds_is_said_there_and_the_rest_stays(season_app, season):
+    plants, day = np.array([6, 7, 8]), np.datetime64("2026-11-16")
+    season().record(Inspections.of(plants, np.array([0, 1, 0]), day), "", "Ann")
+    season().record(Inspections.of(plants[1:2], np.array([0]), day), "", "Ben", confirmed=True)
+    go(season_app, "record")
+    press(season_app, "Clean holds")
+    assert "1 result taken back" in season_app.success[0].value
+    assert not [one for one in season_app.info if "Said otherwise" in one.value]
+    left = season().inspections
+    assert sorted(zip(left.plant.tolist(), left.result.tolist(), left.who, strict=True)) == [
+        (6, 0, "Ann"), (7, 0, "Ben"), (8, 0, "Ann")
+    ]  # fmt: skip
+
+
 def test_what_a_phone_saved_as_not_sent_is_recorded_by_uploading_it(season_app, season):
     on = season().settings.begins
     one = {"id": str(uuid.UUID(int=1)), "at": f"{on}T06:00:00Z", "plant": 3, "result": "found"}

@@ -4,6 +4,7 @@ import shutil
 from dataclasses import replace
 from datetime import timedelta
 
+import numpy as np
 import pytest
 
 from fieldmon.infestation.inspections import FOUND
@@ -77,6 +78,25 @@ def test_which_plan_was_given_last_is_known_before_anything_is_recorded_by_it(fr
     assert len({alone, shared, of(fresh, "Ben").plan}) == 3
     planned_again(fresh, BEGINS, WorkPart(None, "Ann"), seconds_left=3000.0)
     assert of(fresh, "Ann").plan not in {alone, shared}
+
+
+def test_neighbours_of_a_find_are_ahead_as_on_the_phone_that_goes_to_them(fresh):
+    part = WorkPart((1, 8), "Ann")
+    key = scouts.let_in(fresh, "Ann", part.rows)
+    given = route_ahead(fresh, BEGINS, part).plant
+    start, second = fresh.plot.grid.adjacent
+    line = fresh.plant_numbers.line
+
+    def added(plant):
+        beside = second[start[plant] : start[plant + 1]]
+        return np.setdiff1d(beside[(line[beside] >= 1) & (line[beside] <= 8)], given)
+
+    plant = next(int(one) for one in given if len(added(one)))
+    take(fresh, key, [a_finding(plant, FOUND, on=BEGINS)], utc_now())
+    one = of(fresh, "Ann")
+    assert (one.done, one.ahead) == (1, len(given) - 1 + len(added(plant)))
+    planned_again(fresh, BEGINS, part, seconds_left=3000.0)
+    assert of(fresh, "Ann").ahead == len(fresh.kept_route(BEGINS, "Ann")), "a new plan has its own"
 
 
 def test_a_person_is_one_though_an_older_file_writes_the_name_in_two_ways(fresh):

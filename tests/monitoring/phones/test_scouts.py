@@ -80,7 +80,7 @@ def test_a_scout_has_a_name(season, name):
         scouts.let_in(season, name)
 
 
-@pytest.mark.parametrize("rows", [(0, 2), (3, 2), (1, 10_000)])
+@pytest.mark.parametrize("rows", [(0, 2), (0, 0), (1, 10_000)])
 def test_a_part_is_rows_of_the_plot(season, rows):
     with pytest.raises(SettingError, match="rows from 1 to"):
         scouts.let_in(season, "Ann", rows)
@@ -136,3 +136,8 @@ def test_parts_are_of_the_rows_that_the_file_of_plants_names(tmp_path):
     assert scouts.key_owner(season, scouts.let_in(season, "Ann", (101, last))).rows is None
     with pytest.raises(SettingError, match=f"rows from 101 to {last} on this plot"):
         scouts.let_in(season, "Ann", (1, 3))
+
+
+def test_rows_whose_ends_are_exchanged_are_said_to_be_so(season):
+    with pytest.raises(SettingError, match="Exchange them: 3 to 8"):
+        scouts.let_in(season, "Ann", (8, 3))

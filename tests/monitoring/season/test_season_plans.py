@@ -330,6 +330,8 @@ def test_a_code_for_some_rows_leaves_the_rest_of_the_days_plan_as_it_is(tmp_path
     others = own[line[own] != rows[0]]
     held = season.planned_and_done(BEGINS)
     assert (held.planned, held.people) == (len(ann) + len(others), 2)
+    counted = season.planned_and_done(BEGINS, "").hours * len(others) / len(own)
+    assert held.hours == pytest.approx(ann.end_s / 3600 + counted, abs=0.01)
     season.record(Inspections.of(others[:2], np.zeros(2, np.int8), day), "typed in")
     held = season.planned_and_done(BEGINS)
     assert (held.done, held.added, held.left) == (2, 0, len(ann) + len(others) - 2)

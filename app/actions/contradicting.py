@@ -109,7 +109,9 @@ def _leave_out(choices: Choices) -> str:
     if waiting is None:
         return ""
     against = contradictions(waiting.results, choices.open_season.inspections)
-    return _settled(choices, ~against.concerns(waiting.results))
+    out = against.concerns(waiting.results)
+    said = _settled(choices, ~out)
+    return f"{said}\n\n{texts.LEFT_OUT_CONTRADICTING.format(n=int(out.sum()))}" if said else ""
 
 
 def _settled(choices: Choices, which: np.ndarray | slice) -> str:

@@ -93,7 +93,7 @@ class Contradictions:
         return Contradictions(*(getattr(self, name)[stays] for name in columns))
 
     def concerns(self, brought: Inspections) -> NDArray[np.bool_]:
-        """Return ``(k,)`` which of those brought are of the same plants and days, on either side."""
+        """Return ``(k,)`` which of those brought are of these plants and days, on either side."""
         keys = {*_keys(self)}
         return np.array([key in keys for key in _keys(brought)], bool)
 

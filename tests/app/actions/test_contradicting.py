@@ -146,3 +146,5 @@ def test_a_file_that_says_both_of_a_plant_leaves_out_both_and_neither_is_the_new
     assert label == "Leave these out, record the other one"
     season_app.button(key="leave_out").click().run()
     assert season().inspections.plant.tolist() == [plant_at(season().plot.grid, 7, 1)]
+    said = [one.value for one in (*season_app.success, *season_app.warning)]
+    assert any("2 contradicting results left out." in one for one in said)

@@ -15,6 +15,7 @@ from fieldmon.plot.field import Field
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
 from tests.app.driving import (
     begun,
     boxed,
@@ -137,7 +138,7 @@ def test_rows_that_nobody_confirmed_are_asked_about_before_a_season_keeps_them(
     # they were asked about: they are assumed no more
     begun = Season(file).plot
     assert begun.assumed == ()
-    assert begun.with_gate(None).aisles.gate_m == pytest.approx(begun.aisles.gate_m, abs=1e-3)
+    assert Aisles.of(begun.grid).gate_m == pytest.approx(begun.aisles.gate_m, abs=1e-3)
     assert texts.ASSUMED_WHAT["gate"] not in texts_of(go(app, "season"))
 
 

@@ -32,8 +32,7 @@ def test_a_file_that_cannot_be_read_is_said_there_and_taken_out_there(app, tmp_p
 
 
 def test_a_file_that_was_taken_out_is_no_part_of_what_is_dropped_next(app, tmp_path):
-    box = app.file_uploader(key="plot_file")
-    box.upload("pic.png", b"no plot").run()
+    upload(app, plot=("pic.png", b"no plot"))
     app.button(key="no_map_take_out").click().run()
     (box,) = (one for one in app.file_uploader if one.key.startswith("plot_file"))
     assert not box.value

@@ -95,8 +95,9 @@ def test_plants_gone_or_not_inspected_say_so_and_have_a_sign_of_their_own(tmp_pa
     shown = plants_in(by_state)
     assert shown.of_colour(colours.NOT_INSPECTED).tolist() == free[[2, 3]].tolist()
     assert {*free[[0, 4]].tolist()} <= {*shown.of_colour(colours.CLEAN).tolist()}
-    for day, signed in ((choices.on, True), (BEGINS - timedelta(days=1), False)):
-        legend = map_layers.legend(in_season(season, day))
+    untouched = a_season(tmp_path / "other.gpkg")
+    for of, signed in ((choices, True), (in_season(untouched, BEGINS), False)):
+        legend = map_layers.legend(of)
         named = [name for part in legend for _, _, name in part["items"]]
         assert (texts.LEGEND_NOT_INSPECTED in named) is signed
     assert [str(one) for one in chosen_day.not_inspected_said(choices)] == [

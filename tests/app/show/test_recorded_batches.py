@@ -76,7 +76,7 @@ def test_a_correction_says_what_it_is_of_and_what_was_corrected_is_no_other_reco
     contents = kept.contents([one.number for one in batches])
     corrections, before = (line(here, one, contents[one.number]) for one in batches)
     assert "corrections: \u2068typed in\u2069 · row 1, plant 6: clean" in corrections
-    assert before.endswith("plant 6: found, count 2 · corrected since")
+    assert before.endswith("plant 6: found, count 2 · inspected Mon 6 Apr · corrected since")
     kept.undo()
     (_, before) = batches = kept.batches()
     assert "corrected" not in line(here, before, kept.contents([before.number])[before.number])

@@ -32,6 +32,7 @@ from . import acting, assuming, editing_plot, telling_team
 
 if TYPE_CHECKING:
     from fieldmon.infestation.earlier_season import EarlierSeason
+    from fieldmon.plot.plot import Plot
 
     from ..state.choices import Choices
 
@@ -149,9 +150,7 @@ def begin(choices: Choices) -> str:
     said = [one.message for one in choices.messages]
     messages = [KeptMessage("import", str(m.severity), m.feature, m.sentence) for m in said]
     path = seasons_folder.new_path(name)
-    # rows that were asked about are assumed no more
-    sure = assumptions.asked(choices) != ""
-    plot = replace(choices.plot, assumed=()) if sure else choices.plot
+    plot = _as_answered(choices.plot) if assumptions.asked(choices) else choices.plot
     Season.create(path, plot, choices.records, settings, messages, choices.risk)
     assumptions.ask(choices, "")
     told_team.drop(_team_box(choices))
@@ -162,6 +161,12 @@ def begin(choices: Choices) -> str:
     more = (*chosen_day.messages_on_records(choices), *shared_plots.of_one_plot([name]))
     begun = texts.BEGUN.format(name=texts.isolated(name), path=path)
     return "\n- ".join([begun, *map(language.in_words, more)])
+
+
+def _as_answered(plot: Plot) -> Plot:
+    """Return a plot of which rows and gate were asked about: they are assumed no more."""
+    (gate,) = plot.grid.frame.lonlat(plot.aisles.gate_m).tolist()
+    return replace(plot, field=replace(plot.field, gate=tuple(gate)), assumed=())
 
 
 def another(choices: Choices) -> None:

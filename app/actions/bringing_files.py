@@ -68,8 +68,9 @@ def show() -> None:
               PLANTS: texts.PLANT_FILE, ROWS: texts.ROWS_FILE,
               BLOCKS: texts.BLOCKS_FILE}  # fmt: skip
     for kind, label in labels.items():
-        dropped = st.file_uploader(label, key=brought_files.box(kind), accept_multiple_files=True,
-                                   on_change=_take, args=(kind,))  # fmt: skip
+        box = brought_files.box(kind)
+        dropped = st.file_uploader(label, key=box, accept_multiple_files=True,
+                                   on_change=_take, args=(kind, box))  # fmt: skip
         if not dropped:
             _kept(kind)
         if kind == PLOT:
@@ -78,7 +79,7 @@ def show() -> None:
 
 def show_raster(label: str, kind: str) -> None:
     """Show a box for one raster."""
-    st.file_uploader(label, key=brought_files.box(kind), on_change=_take_one, args=(kind,))
+    _show_box_of_one(label, kind)
 
 
 def show_kept_raster(kind: str) -> None:
@@ -88,8 +89,13 @@ def show_kept_raster(kind: str) -> None:
 
 def show_one(label: str, kind: str, problem: FieldmonError | None) -> None:
     """Show a box for one file, which file is kept, and what is wrong with it."""
-    st.file_uploader(label, key=brought_files.box(kind), on_change=_take_one, args=(kind,))
+    _show_box_of_one(label, kind)
     _kept_or(kind, problem)
+
+
+def _show_box_of_one(label: str, kind: str) -> None:
+    box = brought_files.box(kind)
+    st.file_uploader(label, key=box, on_change=_take_one, args=(kind, box))
 
 
 def _kept_or(kind: str, problem: FieldmonError | None) -> None:
@@ -101,19 +107,19 @@ def _kept_or(kind: str, problem: FieldmonError | None) -> None:
 def _kept(kind: str) -> None:
     kept = brought().get(kind)
     if kept is not None:
-        st.caption(texts.KEPT_FILE.format(name=texts.isolated(kept.name)))
+        st.caption(texts.KEPT_FILE.format(name=listed(map(texts.isolated, kept.names))))
         st.button(texts.FORGET_FILE, key=f"forget {kind}", on_click=brought_files.take_out,
                   args=(kind,))  # fmt: skip
 
 
-def _take(kind: str) -> None:
-    parts = st.session_state.get(brought_files.box(kind)) or []
+def _take(kind: str, box: str) -> None:
+    parts = st.session_state.get(box) or []
     if kind != PLOT or not bringing_seasons.hold(parts):
         brought_files.keep(kind, parts)
 
 
-def _take_one(kind: str) -> None:
-    part = st.session_state.get(brought_files.box(kind))
+def _take_one(kind: str, box: str) -> None:
+    part = st.session_state.get(box)
     if part is not None:
         brought_files.keep(kind, [part])
 

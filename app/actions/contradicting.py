@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 import streamlit as st
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
@@ -21,6 +20,8 @@ from ..words.language import in_words, plant_in_words
 from .recording_results import listed, recorded, said_of, warn_of_lost
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from fieldmon.monitoring.inspecting.batches import Recorded
 
     from ..state.choices import Choices
@@ -41,7 +42,10 @@ def ask_about_contradictions(choices: Choices) -> None:
     if not said:  # what they contradicted was taken back since
         _ask_anew(choices, waiting)
         return
-    others = waiting.results.take(_but(against.which, len(waiting.results)))
+    others = waiting.results.take(~against.concerns(waiting.results))
+    hidden = set() if len(others) else {"leave_out"}
+    if against.both_brought(waiting.results):  # neither of them is the new one
+        hidden |= {"holds"}
     new = count_new(season, others)
     source = recorded_batches.source(waiting.source)
     st.warning(texts.CONTRADICTING.format(n=len(said), source=source))
@@ -59,7 +63,7 @@ def ask_about_contradictions(choices: Choices) -> None:
             ("confirm", texts.CONFIRM.format(n=len(said)), _confirm),
             ("record_none", texts.RECORD_NONE, _drop),
         ):
-            if key != "leave_out" or len(others):
+            if key not in hidden:
                 st.button(label, key=key, on_click=action, args=(choices,))
 
 
@@ -128,17 +132,14 @@ def _record_instead(choices: Choices) -> str:
 
 @notices.reporting
 def _leave_out(choices: Choices) -> str:
-    """Record what does not contradict."""
+    """Record what is of other plants and days than those that contradict."""
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
         return ""
-    against = contradictions(waiting.results, choices.open_season.inspections).which
-    return _settled(choices, _but(against, len(waiting.results)))
-
-
-def _but(against: np.ndarray, n: int) -> np.ndarray:
-    """Return the numbers of so many results but for those that contradict."""
-    return np.setdiff1d(np.arange(n), against)
+    against = contradictions(waiting.results, choices.open_season.inspections)
+    out = against.concerns(waiting.results)
+    said = _settled(choices, ~out)
+    return f"{said}\n\n{texts.LEFT_OUT_CONTRADICTING.format(n=int(out.sum()))}" if said else ""
 
 
 def _settled(choices: Choices, which: np.ndarray | slice) -> str:

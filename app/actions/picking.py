@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import streamlit as st
 
+from fieldmon.monitoring.estimates.plant_states import NO_LONGER
 from fieldmon.planning.wishes import Wishes
 
 from ..show.maps import plant_layers
-from ..state import wishes
+from ..state import chosen_day, wishes
 from ..words import texts
 
 if TYPE_CHECKING:
@@ -53,8 +54,10 @@ def show(choices: Choices, plan: DayPlan) -> None:
         said.append(texts.WISHES_UNUSED)
     st.caption(" ".join(said))
     unmet = wanted.unmet(plan.route)
-    if len(unmet):
-        st.warning(texts.WISHES_UNMET.format(plants=texts.PLANTS_COUNTED.format(n=len(unmet))))
+    gone = chosen_day.not_inspected(choices)[unmet] == NO_LONGER
+    for text, n in ((texts.WISHES_GONE, gone.sum()), (texts.WISHES_UNMET, (~gone).sum())):
+        if n:
+            st.warning(text.format(n=int(n)))
     if wanted:
         st.button(texts.WISHES_DROP, key="wishes_drop", icon=":material/undo:", on_click=_drop,
                   args=(choices,))  # fmt: skip

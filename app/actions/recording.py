@@ -142,7 +142,7 @@ def _record_one(choices: Choices) -> str:
     if {None, ""} & {row, number, result}:
         raise SettingError(texts.ONE_UNSAID)
     plant = _plant_meant(choices, row, number, said("one_face"))
-    counted = np.array([np.nan if count is None or result != FOUND else float(count)])
+    counted = np.array([np.nan if count is None else float(count)])
     result, note = as_kept(result)
     results = Inspections.of(
         np.array([plant]), np.array([result]), np.datetime64(choices.day),

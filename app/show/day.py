@@ -211,6 +211,8 @@ def beside_figures(choices: Choices) -> None:
     left = chosen_day.figures(choices, choices.day)
     for said in flagged_said(left, chosen_day.flagged(choices)):
         st.caption(in_words(said))
+    for said in chosen_day.not_inspected_said(choices):
+        st.caption(in_words(said))
     if (finds := progress.finds) > (plants := progress.found):
         st.caption(texts.FOUND_AGAIN.format(finds=finds, plants=plants, again=finds - plants))
 

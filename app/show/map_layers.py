@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.digest import digest
+from fieldmon.infestation.inspections import SKIPPED
+from fieldmon.monitoring.estimates.plant_states import NO_LONGER
 
 from ..state import cached, chosen_day
 from ..words import language, texts
@@ -17,6 +19,7 @@ from . import field_map
 from .map_view import Frames, MapContent, Switch
 from .maps import colours, labels, legends, marks, plan_layers, plant_layers, route_layers
 from .maps.plant_layers import PlantNotes
+from .recorded_batches import GONE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -117,8 +120,10 @@ def switches(
 
 def legend(choices: Choices) -> list[legends.LegendPart]:
     """Return the legend of a day's map; the browser leaves out what has no switch."""
-    dark, recorded = choices.dark, bool(chosen_day.states_apart(choices)[1].any())
-    return [legends.by_chance(dark=dark), legends.by_state(recorded=recorded),
+    dark, (state, recorded) = choices.dark, chosen_day.states_apart(choices)
+    not_inspected = (state < 0) & (chosen_day.not_inspected(choices) > 0)
+    few = {"recorded": bool(recorded.any()), "not_inspected": bool(not_inspected.any())}
+    return [legends.by_chance(dark=dark), legends.by_state(**few),
             legends.by_age(dark=dark), *legends.signs(dark=dark), legends.gate(),
             *legends.plan(choices.plot.field, dark=dark)]  # fmt: skip
 
@@ -201,15 +206,25 @@ def _known(choices: Choices, state: NDArray[np.int8]) -> Known:
     looks = finds = np.zeros(len(state), np.int64)
     if choices.season is not None:
         looks, finds = chosen_day.counts(choices)
+    why = chosen_day.not_inspected(choices).astype(np.int64)
     ages = np.maximum(chosen_day.ages(choices), -1)
     # one number a plant: sorting those is a hundred times as fast as sorting rows of four
-    known = (((finds << 12) + looks << 20) + ages + 1 << 2) + state
-    # what differs between plants that were never looked at is not said
+    known = ((((finds << 12) + looks << 20) + ages + 1 << 2) + state << 2) + why
+    # what else differs between plants that were never looked at is not said
     _, first, which = np.unique(
-        np.where(state < 0, -1, known), return_index=True, return_inverse=True
+        np.where(state < 0, -1 - why, known), return_index=True, return_inverse=True
     )
     several = np.stack([state, ages, looks, finds], axis=1)[first].tolist()
-    return tuple(_said(*one) for one in several), which
+    said = zip(several, why[first].tolist(), strict=True)
+    return tuple(_said_last(_said(*one), one[0], last) for one, last in said), which
+
+
+def _said_last(said: str, state: int, why: int) -> str:
+    """Return what is known of a plant, and why it was not inspected since, if it could not be."""
+    if not why:
+        return said
+    later = texts.RESULTS_OF[GONE] if why == NO_LONGER else texts.HISTORY_RESULTS[SKIPPED]
+    return later if state < 0 else texts.TIP_THEN.format(said=said, later=later)
 
 
 def _said(state: int, age: int, looks: int, finds: int) -> str:
@@ -230,8 +245,10 @@ def in_states(choices: Choices, state: NDArray[np.int8], known: Known | None = N
     grid, names = choices.plot.grid, texts.LEGEND_STATES
     said = tuple(texts.TIP_STATE.format(state=names[name]) for name in ("never", "clean", "found"))
     notes = PlantNotes(known=known) if known else PlantNotes(by_rank=said)
+    not_inspected = chosen_day.not_inspected(choices) > 0 if known else None
+    shade = colours.by_state(state, not_inspected)
     return [
-        plant_layers.plants(grid, colours.by_state(state), notes, "plants-state"),
+        plant_layers.plants(grid, shade, notes, "plants-state"),
         *plant_layers.finds(grid, state),
     ]
 

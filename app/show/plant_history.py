@@ -14,6 +14,7 @@ import streamlit as st
 from fieldmon.compute.wording import chance_figure
 from fieldmon.errors import FieldmonError
 from fieldmon.infestation.inspections import FOUND
+from fieldmon.io.parse.result_words import noted_beside_gone
 from fieldmon.io.writers.day_file import faces
 from fieldmon.monitoring.phones import photos
 from fieldmon.pests.weather import DAY_S
@@ -230,7 +231,8 @@ def _inspected(choices: Choices, done: Inspections, gone: NDArray[np.bool_]) -> 
         result = texts.RESULTS_OF[GONE] if gone[k] else texts.HISTORY_RESULTS[int(done.result[k])]
         if not np.isnan(done.count[k]):
             result = texts.RESULT_COUNTED.format(result=result, n=number(done.count[k], ",g"))
-        beside = [texts.written(said) for said in (done.notes[k], done.who[k]) if said]
+        note = noted_beside_gone(str(done.notes[k])) if gone[k] else done.notes[k]
+        beside = [texts.written(said) for said in (note, done.who[k]) if said]
         lines.append(" · ".join([_listed(choices, day, second, result), *beside]))
     return lines
 

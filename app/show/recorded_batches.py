@@ -47,6 +47,7 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
     else:
         of = _what(choices, said) if batch.kind == "corrections" and said is not None else ""
         parts.append(texts.BATCHES_SAID[batch.kind].format(source=from_ or of))
+        parts.append(of if from_ else "")
     if batch.kind == "treatment" and said is not None:
         parts.append(texts.PLANTS_COUNTED.format(n=said.n))
         if said.efficacy is not None:
@@ -59,7 +60,8 @@ def line(choices: Choices, batch: Batch, said: BatchContents | None) -> str:
         parts.append(said_days if treated else texts.BATCH_OF_DAY.format(days=said_days))
     who = batch.by(said)
     parts += [texts.isolated(who) if who else "", texts.UNDONE if batch.undone else ""]
-    parts.append(texts.COUNTS_ELSEWHERE if batch.stands_back(said) else "")
+    if said is not None and batch.stands_back(said):
+        parts.append(texts.CORRECTED_SINCE if said.corrected else texts.COUNTS_ELSEWHERE)
     return " · ".join(part for part in parts if part)
 
 

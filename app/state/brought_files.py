@@ -23,7 +23,7 @@ PLOT, RECORDS, PLANTS, FINDINGS = "plot", "record", "plant", "findings"
 ROWS, BLOCKS = "rows", "blocks"
 #: what a plot that was drawn here is called as a file
 DRAWN = "drawn.geojson"
-_BROUGHT, _ASKING, _MOVED = "brought", "asking", "files moved"
+_BROUGHT, _ASKING = "brought", "asking"
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +42,13 @@ class File:
     @property
     def name(self) -> str:
         """Return its name; that of the first one, where several make one file."""
-        first = self.source[0] if isinstance(self.source, tuple) else self.source
-        return first.name
+        return self.names[0]
+
+    @property
+    def names(self) -> list[str]:
+        """Return the names of all that make it up."""
+        parts = self.source if isinstance(self.source, tuple) else (self.source,)
+        return [part.name for part in parts]
 
     @property
     def is_drawn(self) -> bool:
@@ -108,25 +113,31 @@ def file_of(kind: str, uploads: tuple[Upload, ...]) -> File:
 
 
 def take_out(kind: str) -> None:
-    """Forget a file."""
+    """Forget a file; its box is empty then, too: what is dropped next is no part of it."""
     brought().pop(kind, None)
+    st.session_state[_emptied(kind)] = st.session_state.get(_emptied(kind), 0) + 1
 
 
 def take_as_plants(asked: str) -> None:
     """Take the plot's file as measured plants, with what was answered about how to read it."""
     file = brought()[PLOT]
     take_out(PLOT)
+    take_out(PLANTS)
     brought()[PLANTS] = plants = replace(file, kind=PLANTS)
     known = {option.name for option in fields(ReadOptions)}
     said = tuple(one for one in answers(asked) if one[0] in known)
     st.session_state[f"answers {plants.asked}"] = said
-    st.session_state[_MOVED] = st.session_state.get(_MOVED, 0) + 1
 
 
 def box(kind: str) -> str:
-    """Return the key of a box for files: an empty one, once its file was taken as another's."""
-    moved = st.session_state.get(_MOVED, 0)
-    return f"{kind}_file {moved}" if moved and kind in {PLOT, PLANTS} else f"{kind}_file"
+    """Return the key of a box for files: an empty one, once its file was taken out."""
+    emptied = st.session_state.get(_emptied(kind), 0)
+    return f"{kind}_file {emptied}" if emptied else f"{kind}_file"
+
+
+def _emptied(kind: str) -> str:
+    """Return the key of how often a box was emptied."""
+    return f"emptied {kind}_file"
 
 
 # -- what was answered about them

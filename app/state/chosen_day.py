@@ -25,6 +25,7 @@ from . import cached
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.infestation.forecast import Forecast
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.infestation.learnt import Learnt
@@ -187,6 +188,20 @@ def states(choices: Choices) -> NDArray[np.int8]:
         return cached.newest_records(*_recorded(choices)).state
     history, settings = choices.season.history, choices.season.settings
     return plant_states.shown_states(history, settings.day(choices.on))
+
+
+def not_inspected(choices: Choices) -> NDArray[np.int8]:
+    """Return ``(n,)`` 1 nobody could inspect it last time, 2 it is gone, 0 neither."""
+    season = choices.season
+    if season is None:
+        return np.zeros(len(choices.plot.grid), np.int8)
+    return plant_states.not_inspected(season.history, season.settings.day(choices.on))
+
+
+def not_inspected_said(choices: Choices) -> list[Worded]:
+    """Return how many plants a season could not inspect last time, and how many are gone."""
+    season = choices.open_season
+    return plant_states.not_inspected_said(season.history, season.settings.day(choices.on))
 
 
 def states_apart(choices: Choices) -> tuple[NDArray[np.int8], NDArray[np.bool_]]:

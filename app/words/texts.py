@@ -70,7 +70,7 @@ NO_MAP_DO = {
     "bring": "Drop its file into the first box, or draw it beside: rows, plants and today's route "
     "then stand here.",
     "asked": "Answer it beside: the plot is then drawn here.",
-    "file": "Drop another file into its box, or take this one out.",
+    "file": "Take it out, and drop another file; or add what belongs to it.",
     "plot": "Change the rows, or take back what was drawn last, beside.",
 }
 NO_MAP_TAKE_OUT, NO_MAP_TAKE_OUT_ALL = "Take out {name}", "Take out {name} and {n} more"
@@ -223,6 +223,7 @@ LEGEND_SEEN, LEGEND_NOT_SEEN = "record: pests seen", "record: none seen"
 LEGEND_NOT_KNOWN, TIP_NOT_KNOWN = "record: not known", "not known"
 LEGEND_STATES = {"found": "found", "clean": "looked clean", "never": "never inspected"}
 LEGEND_RECORDED = "known from records"
+LEGEND_NOT_INSPECTED = "could not inspect, or gone"
 LEGEND_TRUTH = "infested, not yet found (only a simulation knows)"
 # on the map itself, where the browser shows it
 MAP_WORDS = {
@@ -462,8 +463,13 @@ SEASON_LONG = "A season's name must have {most} letters at most, but it has {n}.
 PICKED = "**{plants} selected.**"
 PICKED_ALSO, PICKED_NEVER, PICKED_NONE = "Inspect these too", "Not these", "Clear"
 WISHED, UNWISHED = "{plants} to be inspected besides.", "{plants} left out."
-WISHES_UNMET = (
-    "{plants} of those are not on the route: the hours, or the strategy, do not allow it."
+WISHES_UNMET = Plural(
+    "{n:,} of those is not on the route: the hours, or the strategy, do not allow it.",
+    "{n:,} of those are not on the route: the hours, or the strategy, do not allow it.",
+)
+WISHES_GONE = Plural(
+    "{n:,} of those is not on the route: that plant is gone.",
+    "{n:,} of those are not on the route: those plants are gone.",
 )
 WISHES_DROP = "As planned before"
 WISHES_UNUSED = (
@@ -644,6 +650,7 @@ TIP_CHANCE, TIP_STATE = ": {chance} chance", ": {state}"
 TIP_LEAST, TIP_MOST = "under 0.1 %", "over 99.9 %"
 TIP_CHANCE_BETWEEN = ": {chance} chance ({low} to {high})"
 TIP_SEEN_TODAY, TIP_NEVER = "{result} today", "never inspected"
+TIP_THEN = "{said}, then {later}"
 TIP_SEEN_BEFORE = Plural("{result} {n} day ago", "{result} {n} days ago")
 TIP_LOOKS = Plural(", inspected {n} time", ", inspected {n} times")
 TIP_FINDS = Plural(", found {n} time", ", found {n} times")
@@ -1005,7 +1012,10 @@ BY_A_SECOND = Plural(
     "{n} known inspection was made by a second person, too: it counts once.",
     "{n} known inspections were made by a second person, too: they count once.",
 )
-RECORDED_OF = "Recorded for {days}, not for {day}."
+RECORDED_OF = "Recorded for {days}; this page is about {day}."
+LEFT_OUT_CONTRADICTING = Plural(
+    "{n} contradicting result left out.", "{n} contradicting results left out."
+)
 RECORD_REST = (
     "Say how many stops were done, from the first: they are recorded as clean, unless marked as "
     "found. A mark counts wherever it stands."
@@ -1051,7 +1061,7 @@ CONFIRM = Plural("Record this too, both hold", "Record these {n} too, both hold"
 RECORD_NONE = "Record nothing"
 NOTICE_CLOSE = "Close this message"
 BATCHES, UNDO, UNDONE = "Recorded so far", "Undo", "undone"
-COUNTS_ELSEWHERE = "counts in another recording"
+COUNTS_ELSEWHERE, CORRECTED_SINCE = "counts in another recording", "corrected since"
 BATCHES_MORE = "Show {n} more"
 REDO, REDONE_BEFORE = "Redo", "This counts again already. Nothing changed."
 UNDO_ASK = "Take this back? It can be redone here."

@@ -121,7 +121,8 @@ def _show_batches(kept: Season) -> None:
         kind = batch.kind.removesuffix("s") + "s" * (batch.rows != 1)
         undone = "  (undone)" if batch.undone else ""
         if batch.stands_back(said):
-            undone = "  (counts in another batch)"
+            other = said is not None and said.corrected
+            undone = "  (corrected since)" if other else "  (counts in another batch)"
         typer.echo(
             f"{batch.number:5d}  {at:%Y-%m-%d %H:%M}  {batch.rows:5d} {kind}{who}  "
             f"{batch.source}{what}{undone}"

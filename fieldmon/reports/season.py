@@ -20,7 +20,7 @@ from fieldmon.monitoring.days.kept_routes import planned_only
 from fieldmon.monitoring.estimates.day_figures import flagged_said, found_pct
 from fieldmon.monitoring.estimates.figures_of_day import found_again
 from fieldmon.monitoring.estimates.last_days import last_date
-from fieldmon.monitoring.estimates.plant_states import finds_apart
+from fieldmon.monitoring.estimates.plant_states import finds_apart, not_inspected_said
 from fieldmon.plot.grid import plant_numbers, rows_listed
 from fieldmon.plot.local_clock import local_clock
 from fieldmon.reports import words
@@ -169,11 +169,13 @@ def _stands(facts: _Facts) -> Iterator[Block]:
     ]  # fmt: skip
     said += flagged_said(ahead, status.flagged)
     if ahead.chance_clean >= 0.005:
-        said.append(worded(words.STANDS_CLEAN, chance=chance_figure(ahead.chance_clean)))
+        said.append(worded(words.STANDS_CLEAN, chance=chance_figure(ahead.chance_clean, 1)))
     if len(status.hot_spots):
         said.append(worded(words.STANDS_HOT, n=counted(len(status.hot_spots), "hot spot")))
     yield Paragraph(joined(" ", said), lead=True)
     yield _figures(facts)
+    if away := not_inspected_said(facts.season.history, status.day):
+        yield Paragraph(joined(" ", away))
     assumed = assumed_sentence(facts.goes_by, facts.units)
     if assumed:
         yield Paragraph(assumed)
@@ -406,8 +408,9 @@ def _counts(one: Batch, kind: str, said: BatchContents | None) -> str:
     """Return what a batch is, and whether it counts."""
     if one.undone:
         return worded(words.BATCH_UNDONE, kind=kind)
-    if one.stands_back(said):
-        return worded(words.BATCH_ELSEWHERE, kind=kind)
+    if said is not None and one.stands_back(said):
+        why = words.BATCH_CORRECTED if said.corrected else words.BATCH_ELSEWHERE
+        return worded(why, kind=kind)
     if said is not None and one.kind == "findings" and said.counting < one.rows:
         return worded(words.BATCH_PART, kind=kind, n=said.counting)
     return kind

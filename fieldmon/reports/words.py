@@ -131,6 +131,7 @@ BATCH_KINDS = {
 BATCH_BROUGHT = "records brought"
 BATCH_UNDONE = "{kind}, taken back"
 BATCH_ELSEWHERE = "{kind}, counts in another recording"
+BATCH_CORRECTED = "{kind}, corrected since"
 BATCH_PART = "{kind}, of which {n:,} {n:counts|count}"
 BATCHES_NONE = "Nothing was recorded yet."
 #: where records come from that no file brought, as the season's file calls it

@@ -173,7 +173,9 @@ def upload(app, **files):
     else:
         go(app, "plot", **{plot_source.KEY: plot_source.FILES})
     for key, data in files.items():
-        app.file_uploader(key=f"{key}_file").upload(*data)
+        # another box, once what was in it was taken out
+        box = next(one for one in app.file_uploader if one.key.split()[0] == f"{key}_file")
+        box.upload(*data)
     return app.run()
 
 

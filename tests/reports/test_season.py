@@ -52,6 +52,28 @@ def test_where_it_stands_is_the_season_s_status_with_its_intervals(of_season, wo
     assert lead.startswith(f"About {estimate(left.expected)} plants are still infested")
 
 
+def test_the_chance_that_it_is_clean_is_one_figure_and_plants_not_inspected_are_named(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    n = len(season.plot.grid)
+    for day in range(9):
+        if season.status(BEGINS).estimate.chance_clean >= 0.005:
+            break
+        on = np.datetime64(BEGINS)
+        season.record(Inspections.of(np.arange(n), [0] * n, on, second=np.full(n, 60.0 * day)), "")
+    later = BEGINS + timedelta(days=1)
+    gone = Inspections.of([0, 1, 2], [2, 2, 2], np.datetime64(later), notes=["gone", "", ""])
+    season.record(gone, "")
+    report = season_report(season, later, Units())
+    shown = {each.label: each for each in one(report, KeyFigures).figures}
+    paragraphs = [str(each.text) for each in on_sheet(report, 0, Paragraph)]
+    chance = shown["Chance it is clean"].value
+    assert f"The plot is clean with a chance of {chance}." in paragraphs[0]
+    assert (
+        "2 plants could not be inspected last time. 1 plant is gone: plans leave it out."
+        in paragraphs
+    )
+
+
 def test_the_share_found_lies_in_its_interval(of_season):
     (share,) = [
         each for each in one(of_season, KeyFigures).figures

@@ -27,6 +27,7 @@ _MAGMA_IN_DARK: tuple[Colour, ...] = (
 FOUND: Colour = (213, 30, 30)
 CLEAN: Colour = (90, 160, 230)
 NEVER: Colour = (150, 150, 145)
+NOT_INSPECTED: Colour = (140, 105, 60)
 TRUTH: Colour = (0, 0, 0)
 TRUTH_IN_DARK: Colour = (255, 255, 255)
 ROUTE: Colour = (12, 62, 170)
@@ -115,9 +116,17 @@ def classes(chance: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.searchsorted(CHANCE_FROM, chance, side="right") - 1
 
 
-def by_state(state: NDArray[np.int8]) -> Shade:
-    """Return plants shaded as found (1), clean (0) or never inspected (-1: an empty ring)."""
-    return Shade.of([(*NEVER, _EMPTY), CLEAN, FOUND], state + np.int8(1))
+def by_state(state: NDArray[np.int8], not_inspected: NDArray[np.bool_] | None = None) -> Shade:
+    """Return plants shaded as found (1), clean (0) or never inspected (-1: an empty ring).
+
+    Of those some could not be inspected, or are gone: ``(n,)``.
+    """
+    shades: list[Colour | Translucent] = [(*NEVER, _EMPTY), CLEAN, FOUND]
+    rank = state + np.int8(1)
+    if not_inspected is not None and not_inspected.any():
+        shades.insert(1, NOT_INSPECTED)
+        rank = np.where(rank > 0, rank + 1, not_inspected & (rank == 0))
+    return Shade.of(shades, rank)
 
 
 def by_age(days: NDArray[np.integer], *, dark: bool = False) -> Shade:

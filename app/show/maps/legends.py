@@ -40,13 +40,17 @@ def by_chance(*, dark: bool = False) -> LegendPart:
     return {"title": texts.LEGEND_CHANCE, "of": "shade:chance", "scale": True, "items": items}
 
 
-def by_state(*, recorded: bool = False) -> LegendPart:
-    """Return the three states, and finds of records alone where there are any."""
+def by_state(*, recorded: bool = False, not_inspected: bool = False) -> LegendPart:
+    """Return the three states, and finds of records alone where there are any.
+
+    And plants that could not be inspected, or are gone.
+    """
     names = texts.LEGEND_STATES
     items = [
         ("find", colours.FOUND, names["found"]),
         *([("ring", colours.FOUND, texts.LEGEND_RECORDED)] if recorded else []),
         ("dot", colours.CLEAN, names["clean"]),
+        *([("dot", colours.NOT_INSPECTED, texts.LEGEND_NOT_INSPECTED)] if not_inspected else []),
         ("ring", colours.NEVER, names["never"]),
     ]
     return part("", items, "shade:state")  # its signs are its title

@@ -166,6 +166,11 @@ def begins_gone(note: str) -> bool:
     return note.partition(":")[0].strip().casefold() == GONE
 
 
+def noted_beside_gone(note: str) -> str:
+    """Return what else the note of a plant that is gone says."""
+    return note.partition(":")[2].strip() if begins_gone(note) else note
+
+
 def says_gone(note: str) -> bool:
     """Return whether the note of a skipped plant says in one of its parts that it is gone.
 

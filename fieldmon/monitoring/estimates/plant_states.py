@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fieldmon.compute.wording import worded
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.infestation.inspections import SKIPPED
 from fieldmon.infestation.records import PRESENT, UNKNOWN
@@ -14,9 +15,12 @@ from fieldmon.io.parse.result_words import begins_gone
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from fieldmon.compute.wording import Worded
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.monitoring.estimates.history import History
 
+#: why a plant is not inspected any more: nobody could when it was asked for last, or it is gone
+NOT_LAST_TIME, NO_LONGER = 1, 2
 #: found infested, treated since, and not inspected since then
 TREATED_SINCE = 2
 
@@ -55,6 +59,30 @@ def shown_states(history: History, day: int, *, own: bool = False) -> NDArray[np
     """Return `latest_states` with a plant that was treated as found until somebody looked again."""
     state = latest_states(history, day, own=own)
     return np.where(state == TREATED_SINCE, np.int8(PRESENT), state)
+
+
+def not_inspected(history: History, day: int) -> NDArray[np.int8]:
+    """Return ``(n,)`` `NOT_LAST_TIME`, `NO_LONGER`, or 0: neither, by the evening of a day."""
+    skipped = history.skips(day).times > 0
+    why = np.where(skipped, NOT_LAST_TIME, 0)
+    return np.where(history.gone(day), NO_LONGER, why).astype(np.int8)
+
+
+def not_inspected_said(history: History, day: int) -> list[Worded]:
+    """Return how many plants nobody could inspect last time, and how many are gone, if any."""
+    why = not_inspected(history, day)
+    skipped, gone = (int(np.count_nonzero(why == one)) for one in (NOT_LAST_TIME, NO_LONGER))
+    said = []
+    if skipped:
+        said.append(worded("{n:,} {n:plant|plants} could not be inspected last time.", n=skipped))
+    if gone:
+        said.append(
+            worded(
+                "{n:,} {n:plant is|plants are} gone: plans leave {n:it|them} out.",
+                n=gone,
+            )
+        )
+    return said
 
 
 def gone_by_note_alone(history: History, day: int) -> tuple[int, str]:

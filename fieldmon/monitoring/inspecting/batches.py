@@ -13,6 +13,7 @@ from fieldmon.io.parse.result_words import GONE, says_gone
 from fieldmon.io.writers.day_file import with_face
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.file.geopackage import touch
+from fieldmon.monitoring.file.rows_that_count import STANDS_BACK
 from fieldmon.plot.local_clock import utc_text
 
 if TYPE_CHECKING:
@@ -65,7 +66,10 @@ class Batch:
         return named or self.who
 
     def stands_back(self, said: BatchContents | None) -> bool:
-        """Return whether it was not undone, and all that it says counts in another batch."""
+        """Return whether it was not undone, and all that it says counts in another batch.
+
+        Or was corrected since: see `BatchContents`.
+        """
         return said is not None and not self.undone and not said.counting
 
 
@@ -92,6 +96,8 @@ class BatchContents:
         Everybody who inspected, by name.
     efficacy
         Of a treatment: the chance that an infested plant is clean afterwards.
+    corrected
+        How many inspections stand back for a correction.
     """
 
     n: int
@@ -107,6 +113,7 @@ class BatchContents:
     at: int = -1
     who: str = ""
     efficacy: float | None = None
+    corrected: int = 0
 
     @property
     def is_gone(self) -> bool:
@@ -281,8 +288,21 @@ def contents(db: sqlite3.Connection, numbers: Sequence[int]) -> dict[int, BatchC
     who: dict[int, list[str]] = {}
     for number, name in named:
         who.setdefault(number, []).append(name)
+    # what counts in another batch has the same digest there
+    corrected = dict(
+        db.execute(
+            "SELECT batch, count(*) FROM inspections AS one "  # noqa: S608 - ours
+            f"WHERE batch IN ({asked}) AND undone = ? AND NOT EXISTS "
+            "(SELECT 1 FROM inspections WHERE digest = one.digest AND undone = 0) GROUP BY batch",
+            (*numbers, STANDS_BACK),
+        ).fetchall()
+    )
     return {
-        number: replace(BatchContents(*said), who=", ".join(who.get(number, ())))
+        number: replace(
+            BatchContents(*said),
+            who=", ".join(who.get(number, ())),
+            corrected=corrected.get(number, 0),
+        )
         for number, *said in [*rows, *treated]
     }
 

@@ -92,6 +92,16 @@ class Contradictions:
         columns = ("which", "plant", "date", "recorded", "brought", "together")
         return Contradictions(*(getattr(self, name)[stays] for name in columns))
 
+    def concerns(self, brought: Inspections) -> NDArray[np.bool_]:
+        """Return ``(k,)`` which of those brought are of these plants and days, on either side."""
+        keys = {*_keys(self)}
+        return np.array([key in keys for key in _keys(brought)], bool)
+
+    def both_brought(self, brought: Inspections) -> bool:
+        """Return whether of one of these plants and days both results are brought."""
+        done = brought.take(self.concerns(brought)).inspected
+        return any(len(results) > 1 for results in _held(done, done).values())
+
     def refuse(self, grid: PlantGrid, *, corrected: bool = False) -> None:
         """Raise `ContradictionError` if there are any, with the first few by name.
 

@@ -136,9 +136,10 @@ def _check(inspections: Inspections, grid: PlantGrid) -> None:
     _refuse(
         (inspections.result != FOUND) & (count > 0),
         lambda k: worded(
-            "Only a find has a count of pests, but result {value} is {said!r} and counts "
+            "Only a find has a count of pests, but result {value} is {said} and counts "
             "{found:g}. Say found, or give no count.",
-            value=k + 1, said=RESULT_NAMES[int(inspections.result[k])], found=count[k],
+            value=k + 1, said=worded(RESULT_NAMES[int(inspections.result[k])]),
+            found=count[k],
         ),
     )  # fmt: skip
     told = ~np.isnan(detects)

@@ -15,6 +15,7 @@ from fieldmon.plot.field import Field
 from fieldmon.plot.planting import Planting
 from fieldmon.plot.plot import Plot
 from fieldmon.plot.robot import Robot
+from fieldmon.plot.travel import Aisles
 from tests.app.driving import (
     begun,
     boxed,
@@ -135,7 +136,10 @@ def test_rows_that_nobody_confirmed_are_asked_about_before_a_season_keeps_them(
     assert file.stem == "Glass 1"
     assert Season(file).plot.grid.row_spacing_m == 2.5
     # they were asked about: they are assumed no more
-    assert Season(file).plot.assumed == ()
+    begun = Season(file).plot
+    assert begun.assumed == ()
+    assert Aisles.of(begun.grid).gate_m == pytest.approx(begun.aisles.gate_m, abs=1e-3)
+    assert texts.ASSUMED_WHAT["gate"] not in texts_of(go(app, "season"))
 
 
 def test_while_nothing_is_recorded_another_season_is_begun_with_other_rows(

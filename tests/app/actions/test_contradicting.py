@@ -129,3 +129,22 @@ def test_those_that_are_known_are_none_of_the_others_to_record(season_app, seaso
         season_app.session_state[unconfirmed._KEY] = kept
         go(season_app, "record")
         assert season_app.button(key="leave_out").label == label
+
+
+def test_a_file_that_says_both_of_a_plant_leaves_out_both_and_neither_is_the_new_one(
+    season_app, season
+):
+    go(season_app, "record")
+    rows = b"date,row,number,result\n" + b"".join(
+        b"2026-11-16,%s\n" % row for row in (b"7,1,clean", b"7,2,clean", b"7,2,found")
+    )
+    boxed(season_app.file_uploader, "findings_file").upload("both.csv", rows).run()
+    season_app.button(key="record_file").click().run()
+    assert "brought as clean and as found" in texts_of(season_app)
+    assert "holds" not in [button.key for button in season_app.button]
+    label = season_app.button(key="leave_out").label
+    assert label == "Leave these out, record the other one"
+    season_app.button(key="leave_out").click().run()
+    assert season().inspections.plant.tolist() == [plant_at(season().plot.grid, 7, 1)]
+    said = [one.value for one in (*season_app.success, *season_app.warning)]
+    assert any("2 contradicting results left out." in one for one in said)

@@ -1,5 +1,8 @@
 """Plants selected on the map are inspected too, or not, and it is said what cannot be."""
 
+from datetime import timedelta
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import streamlit as st
@@ -7,8 +10,11 @@ import streamlit as st
 import fieldmon as fm
 from app.actions import picking
 from app.state import wishes
-from tests.app.chosen import a_plot, chosen
+from fieldmon.infestation.inspections import SKIPPED, Inspections
+from fieldmon.planning.wishes import Wishes
+from tests.app.chosen import a_plot, chosen, in_season
 from tests.app.driving import go, map_of, opened, press, row_box, texts_of, word_of
+from tests.monitoring.seasons import BEGINS, a_season
 from tests.paths import ROOT
 
 
@@ -67,3 +73,18 @@ def test_a_plant_that_is_not_there_is_not_selected():
     picking.take(choices, ())
     assert picking.layers(choices) == []
     assert st.session_state["plants picked"] == (choices.laid, ())
+
+
+@pytest.mark.usefixtures("session")
+def test_a_plant_wanted_that_is_gone_is_said_to_be_gone(tmp_path, monkeypatch):
+    season = a_season(tmp_path / "s.gpkg")
+    gone = Inspections.of([3], [SKIPPED], np.datetime64(BEGINS), notes=["gone"])
+    season.record(gone, "test")
+    choices, said = in_season(season, BEGINS + timedelta(days=1)), []
+    monkeypatch.setattr(wishes, "of", lambda *_: Wishes((3, 5)))
+    monkeypatch.setattr(picking.st, "warning", said.append)
+    picking.show(choices, SimpleNamespace(route=SimpleNamespace(plant=np.array([7]))))
+    assert said == [
+        "1 of those is not on the route: that plant is gone.",
+        "1 of those is not on the route: the hours, or the strategy, do not allow it.",
+    ]

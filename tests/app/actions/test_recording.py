@@ -17,7 +17,7 @@ from app.state import seasons_folder
 from app.state.choices import WHOSE_DAY
 from app.state.fresh_boxes import FreshBoxes
 from app.words import texts
-from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import Season
 from fieldmon.plot.grid import plant_numbers
 from tests.app.actions.test_scouting import of_two
@@ -54,6 +54,21 @@ def test_one_plant_is_recorded_undone_or_gone(season_app, season):
         season().history.inspections.plant[-1]
     ]
     assert season().treatments() == ()
+
+
+@pytest.mark.parametrize("result", [CLEAN, SKIPPED, GONE])
+def test_only_a_find_is_recorded_with_a_count_and_the_boxes_keep_what_is_refused(
+    season_app, season, result
+):
+    go(season_app, "record")
+    for name, value in {"one_row": 3, "one_plant": 5, "one_result": result, "one_count": 7}.items():
+        season_app.session_state[key_of(season_app, name)] = value
+    send(season_app, "one")
+    (said,) = (one.value for one in season_app.error)
+    word = "clean" if result == CLEAN else "skipped"
+    assert f"Only a find has a count of pests, but result 1 is {word} and counts 7" in said
+    assert not len(season().inspections)
+    assert boxed(season_app.number_input, "one_count").value == 7
 
 
 def test_in_a_team_who_inspected_or_treated_is_who_is_said_to_have(season_app, season):

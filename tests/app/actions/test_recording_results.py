@@ -17,7 +17,9 @@ def test_a_file_of_another_day_says_of_which_day_it_was_recorded(season_app, sea
     season_app.button(key="record_file").click().run()
     assert season().history.inspections.date.astype(str).tolist() == ["2026-11-16"] * 2
     shown = [*season_app.success, *season_app.warning]
-    assert any("Recorded for Mon 16 Nov, not for Tue 17 Nov." in one.value for one in shown)
+    assert any(
+        "Recorded for Mon 16 Nov; this page is about Tue 17 Nov." in one.value for one in shown
+    )
 
 
 def test_what_is_recorded_of_a_day_that_has_not_come_is_said_on_the_pages_of_today(
@@ -52,4 +54,4 @@ def test_past_midnight_the_answer_names_the_day_that_a_find_was_kept_for(
     monkeypatch.setattr(local_clock, "utc_now", lambda: late)
     season_app.button(key="record_one").click().run()
     assert season().history.inspections.date.astype(str).tolist() == ["2026-11-16"]
-    assert "Recorded for Mon 16 Nov, not for Tue 17 Nov." in season_app.success[0].value
+    assert "Recorded for Mon 16 Nov; this page is about Tue 17 Nov." in season_app.success[0].value

@@ -31,6 +31,17 @@ def test_a_file_that_cannot_be_read_is_said_there_and_taken_out_there(app, tmp_p
     assert map_of(app)["layers"]
 
 
+def test_a_file_that_was_taken_out_is_no_part_of_what_is_dropped_next(app, tmp_path):
+    upload(app, plot=("pic.png", b"no plot"))
+    app.button(key="no_map_take_out").click().run()
+    (box,) = (one for one in app.file_uploader if one.key.startswith("plot_file"))
+    assert not box.value
+    box.upload("plot.zip", zipped(tmp_path, square())).run()
+    assert card(app) == []
+    kept = app.session_state["brought"]["plot"]
+    assert kept.names == ["plot.zip"]
+
+
 def test_rows_that_leave_no_plot_are_said_there_too(tmp_path):
     app = upload(opened(), plot=("plot.zip", zipped(tmp_path, square(0.0006))))
     row_box(app, "headland").set_value(49.0).run()

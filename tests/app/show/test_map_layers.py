@@ -11,7 +11,7 @@ from app.show.maps import colours
 from app.state import chosen_day
 from app.words import texts
 from fieldmon.infestation.hotspots import hot_spots
-from fieldmon.infestation.inspections import Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import Application
 from tests.app.chosen import a_plot, chosen, in_season, records_at
 from tests.app.shown_plants import plants_in
@@ -75,6 +75,34 @@ def test_finds_of_records_alone_have_a_sign_of_their_own_in_a_season(season):
     assert len(of_name(layers, "finds-recorded").data) == len({*before} - {*own}) > 0
     named = [name for part in map_layers.legend(choices) for _, _, name in part["items"]]
     assert texts.LEGEND_RECORDED in named
+
+
+def test_plants_gone_or_not_inspected_say_so_and_have_a_sign_of_their_own(tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    free = np.flatnonzero(season.history.recorded < 0)
+    plants, on = free[:5], np.datetime64(BEGINS)
+    results, notes = [CLEAN, FOUND, SKIPPED, SKIPPED, CLEAN], ["", "", "", "gone: burnt", ""]
+    season.record(Inspections.of(plants, results, on, notes=np.array(notes, object)), "test")
+    later = Inspections.of(plants[:2], [SKIPPED, SKIPPED], on + 1, notes=["", "gone"])
+    season.record(later, "test")
+    choices = in_season(season, BEGINS + timedelta(days=1))
+    by_state = of_name(map_layers.plants(choices), "plants-state")
+    notes = np.frombuffer(by_state.arrays["notes"], "<u2")[free[:6]]
+    assert [by_state.tips["notes"][note] for note in notes] == [
+        "clean 1 day ago, then could not inspect", "found 1 day ago, then gone",
+        "could not inspect", "gone", "clean 1 day ago", "never inspected",
+    ]  # fmt: skip
+    shown = plants_in(by_state)
+    assert shown.of_colour(colours.NOT_INSPECTED).tolist() == free[[2, 3]].tolist()
+    assert {*free[[0, 4]].tolist()} <= {*shown.of_colour(colours.CLEAN).tolist()}
+    untouched = a_season(tmp_path / "other.gpkg")
+    for of, signed in ((choices, True), (in_season(untouched, BEGINS), False)):
+        legend = map_layers.legend(of)
+        named = [name for part in legend for _, _, name in part["items"]]
+        assert (texts.LEGEND_NOT_INSPECTED in named) is signed
+    assert [str(one) for one in chosen_day.not_inspected_said(choices)] == [
+        "2 plants could not be inspected last time.", "2 plants are gone: plans leave them out.",
+    ]  # fmt: skip
 
 
 def test_plants_by_age_have_the_colours_of_the_days_since(season):

@@ -77,6 +77,19 @@ def test_nothing_is_told_before_a_plant_is_tapped(said):
     assert said
 
 
+def test_a_plant_that_is_gone_is_said_to_be_so_once_with_what_else_was_noted(said, tmp_path):
+    season = a_season(tmp_path / "s.gpkg")
+    for plant, note, words in ((PLANT, "gone", "**gone** · "), (18, "gone: burnt", "burnt")):
+        one = Inspections.of([plant], [SKIPPED], np.datetime64(BEGINS), notes=[note], who=["Ann"])
+        season.record(one, "test")
+        choices = in_season(season, BEGINS)
+        tap(choices, plant)
+        plant_history.show_chosen(choices)
+        assert said[-1].count("gone") == 1
+        assert words in said[-1]
+        assert "Ann" in said[-1]
+
+
 def test_every_inspection_of_the_plant_is_told_in_order_with_its_time_if_it_has_one(said, season):
     choices = in_season(season, BEGINS)
     tap(choices, PLANT)

@@ -7,7 +7,7 @@ import numpy as np
 from shapely import MultiPolygon, box
 
 from app.show.recorded_batches import counts_again, in_short, last, line, source, undone
-from fieldmon.infestation.inspections import FOUND, RESULT_NAMES, SKIPPED, Inspections
+from fieldmon.infestation.inspections import CLEAN, FOUND, RESULT_NAMES, SKIPPED, Inspections
 from fieldmon.monitoring import Application, Season
 from fieldmon.plot.grid import plant_numbers
 from tests.app.chosen import in_season
@@ -65,6 +65,21 @@ def test_what_counts_in_another_recording_is_told_from_what_counts(season_app, s
     go(season_app, "record")
     lines = [one.value for one in season_app.markdown if "Oil" in one.value and " · " in one.value]
     assert [line.endswith("counts in another recording") for line in lines] == [True, False]
+
+
+def test_a_correction_says_what_it_is_of_and_what_was_corrected_is_no_other_recording(tmp_path):
+    kept = a_season(tmp_path / "s.gpkg")
+    on, plant = np.datetime64(BEGINS), np.array([5])
+    kept.record(Inspections.of(plant, np.array([FOUND]), on, count=np.array([2.0])), "typed in")
+    kept.record_instead(Inspections.of(plant, np.array([CLEAN]), on), "typed in")
+    here, batches = in_season(kept, BEGINS), kept.batches()
+    contents = kept.contents([one.number for one in batches])
+    corrections, before = (line(here, one, contents[one.number]) for one in batches)
+    assert "corrections: \u2068typed in\u2069 · row 1, plant 6: clean" in corrections
+    assert before.endswith("plant 6: found, count 2 · inspected Mon 6 Apr · corrected since")
+    kept.undo()
+    (_, before) = batches = kept.batches()
+    assert "corrected" not in line(here, before, kept.contents([before.number])[before.number])
 
 
 def test_ways_to_record_are_said_in_the_language_of_the_page_and_files_by_their_names(speaking):

@@ -35,6 +35,17 @@ def test_parts_dropped_together_are_one_file_with_one_key():
 
 
 @pytest.mark.usefixtures("session")
+def test_a_box_is_another_one_once_its_file_was_taken_out():
+    before = brought_files.box("plot"), brought_files.box("record")
+    brought_files.keep("plot", [part("a.shp", b"1"), part("a.dbf", b"2")])
+    assert brought_files.brought()["plot"].names == ["a.shp", "a.dbf"]
+    brought_files.take_out("plot")
+    after = brought_files.box("plot"), brought_files.box("record")
+    assert after[0] != before[0]
+    assert after[1] == before[1]
+
+
+@pytest.mark.usefixtures("session")
 def test_the_same_bytes_under_another_name_are_another_file():
     keys = set()
     for name, data in (("a.csv", b"1"), ("b.csv", b"1"), ("a.csv", b"2"), ("a.csv", b"1")):

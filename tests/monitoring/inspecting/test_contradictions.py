@@ -66,6 +66,20 @@ def test_one_file_contradicts_itself_as_two_files_contradict_each_other():
     assert not len(contradictions(apart, results()))
 
 
+def test_whatever_is_of_the_plant_and_day_of_a_contradiction_is_told_on_either_side():
+    brought = results((3, CLEAN), (3, CLEAN), (4, CLEAN), (5, CLEAN))
+    found = contradictions(brought, results((3, FOUND)))
+    assert found.concerns(brought).tolist() == [True, True, False, False]
+    assert not found.both_brought(brought)
+    brought = brought.and_those(results((4, FOUND))).and_those(results((5, FOUND), on=NEXT))
+    found = contradictions(brought, results((3, FOUND)))
+    assert found.concerns(brought).tolist() == [True, True, True, False, True, False]
+    assert found.both_brought(brought)
+    # one that says both, of which the other is recorded
+    brought = results((3, FOUND), (3, CLEAN))
+    assert contradictions(brought, results((3, FOUND))).both_brought(brought)
+
+
 def test_what_is_brought_at_once_is_not_said_to_be_recorded():
     grid = rectangle(1, 9)
     both, held = results((3, FOUND), (3, CLEAN)), results((4, CLEAN))

@@ -133,8 +133,8 @@ def test_of_none_recorded_there_are_none(db):
         (one(plant=-1), "from another plot"),
         (one(on=np.datetime64("NaT")), "result 1 has none"),
         (one(count=-2.0), "0 or more, but result 1 says -2.0"),
-        (one(result=CLEAN, count=3.0), "Only a find has a count.*result 1 is 'clean' and counts 3"),
-        (one(result=SKIPPED, count=1.0), "'skipped' and counts 1"),
+        (one(result=CLEAN, count=3.0), "Only a find has a count.*result 1 is clean and counts 3"),
+        (one(result=SKIPPED, count=1.0), "is skipped and counts 1"),
         (one(second=90_000.0), "within its day"),
     ],
 )

@@ -14,6 +14,7 @@ from fieldmon.io.formats.signatures import USUAL_FILES
 from fieldmon.io.import_report import Severity
 from fieldmon.io.parse.result_words import words_in, words_told
 
+from ..show import plot_place
 from ..state import brought_files, chosen_day, drawn_plot, plot_source, rasters
 from ..state.brought_files import (
     BLOCKS,

@@ -7949,7 +7949,7 @@ border-radius:12px;background:var(--surface,#fff);box-shadow:0 1px 8px rgba(0,0,
 .legend{max-height:calc(100% - 136px);overflow:auto}
 }
 @media (min-width:560px) and (max-height:520px){.drawbar{top:64px;inset-inline-end:12px}}
-@media (max-width:760px) and (max-height:520px){.legend{bottom:62px}}
+@media (max-width:760px) and (max-height:520px){.scale{display:none}.legend{bottom:62px}}
 @media (max-width:559px) and (max-height:640px){
 .legend{inset-inline-end:108px}
 .legend .step{min-width:0;flex:auto}

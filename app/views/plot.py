@@ -18,7 +18,7 @@ from ..actions import (
     turning_rows,
     without_map,
 )
-from ..show import assumed, field_map, plot_figures, plot_place
+from ..show import assumed, field_map, plot_figures
 from ..show import records as records_shown
 from ..state import menu, plot_before, plot_source
 from ..words import texts
@@ -52,7 +52,6 @@ def show(choices: Choices) -> None:
     st.button(texts.TO_ROUTE, key="to_route", type="primary", on_click=menu.turn_to_page,
               args=("today",))  # fmt: skip
     plot_figures.show(choices.plot, choices.units)
-    st.caption(plot_place.sentence(choices.plot))
     before = plot_before.plot_before(choices) if choices.season is None else None
     if before is not None:
         st.caption(texts.BEFORE_NOTE)

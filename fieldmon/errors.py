@@ -112,6 +112,20 @@ class PlotError(FieldmonError):
     """
 
 
+class NoRowsError(PlotError):
+    """Measured plants show no rows: add plants, or say that they stand in none.
+
+    Examples
+    --------
+    >>> import fieldmon as fm
+    >>> try:
+    ...     fm.plot_around("one", [[35.15, 30.36]])
+    ... except fm.NoRowsError as problem:
+    ...     print(str(problem).partition(", but")[0])
+    Rows can be found from 2 plants or more
+    """
+
+
 class ObservationError(FieldmonError):
     """What was observed, records or inspections, does not fit the plot or its own columns.
 

@@ -520,12 +520,17 @@ def is_a_tie(fields):
     np.testing.assert_allclose(shapely.area(fields[0].boundary), half, rtol=1e-6)
 
 
-@case("plots", says="repaired: crosses itself at 35.151000, 30.361000", at=CORNERS, check=is_a_tie)
+@case(
+    "plots",
+    says="doubtful: wrong order: the outline crosses itself at 35.151000",
+    at=CORNERS,
+    check=is_a_tie,
+)
 def a_bow_tie():
     return geojson(TIE)
 
 
-@case("plots", says="repaired: 2.13", at=CORNERS)
+@case("plots", says="doubtful: 2.13", at=CORNERS)
 def a_bow_tie_says_its_new_area():
     return geojson(TIE)
 

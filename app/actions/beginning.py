@@ -11,6 +11,7 @@ from fieldmon.errors import SettingError
 from fieldmon.monitoring import KeptMessage, MonitoringSettings, Season
 from fieldmon.monitoring.settings.belief_settings import BeliefSettings
 
+from ..show import plot_place
 from ..show.assumed import of_rows
 from ..state import (
     assumptions,
@@ -48,6 +49,8 @@ def show(choices: Choices) -> None:
     with st.container(border=True):
         st.markdown(f"### {texts.BEGIN_TITLE}")
         st.caption(texts.BEGIN_NOTE)
+        if not assumptions.asked(choices):
+            st.caption(plot_place.sentence(choices.plot))
         # outside the form: it counts for the button above, too, which begins at once
         assuming.finds_are(widget_memory.show, _FINDS, default=True)
         _form(choices)
@@ -61,6 +64,7 @@ def ask(choices: Choices, place: str) -> None:
     key, grid = choices.plot_key, choices.plot.grid
     with st.container(border=True, key="begin_asks"):
         st.markdown(of_rows(assumptions.of_rows(choices.plot), choices.units))
+        st.markdown(plot_place.sentence(choices.plot))
         with st.container(horizontal=True):
             acting.at_press(texts.BEGIN_RIGHT, begin, choices, key="begin_right", at_once=False,
                             type="primary")  # fmt: skip

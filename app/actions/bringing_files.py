@@ -14,7 +14,7 @@ from fieldmon.io.formats.signatures import USUAL_FILES
 from fieldmon.io.import_report import Severity
 from fieldmon.io.parse.result_words import words_in, words_told
 
-from ..show import answers_map
+from ..show import plot_place
 from ..state import brought_files, chosen_day, drawn_plot, plot_source, rasters
 from ..state.brought_files import (
     BLOCKS,
@@ -196,7 +196,7 @@ def _label(number: int, answer: str, one: TriedAnswer | None) -> str:
     """Return what a button says: what is answered and, where it was tried, where that leads."""
     if one is None:
         return answer
-    where = answers_map.place_of(one)
+    where = plot_place.of_zone(one.zone)
     if one.records is not None:
         said = texts.ANSWER_RECORDS.format(near=one.near, n=len(one.records), found=one.finds)
         where = said if one.near else f"{where}, {said}"

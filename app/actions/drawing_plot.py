@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import streamlit as st
 
 from fieldmon.errors import FieldmonError
-from fieldmon.plot.local_clock import LocalClock, at_sea, clock_at
+from fieldmon.plot.local_clock import LocalClock, clock_at
 
-from ..show import drawn_map, field_map
+from ..show import drawn_map, field_map, plot_place
 from ..show.map_view import MapAnswers
 from ..state import browser, drawn_plot, notices, plot_source
 from ..state.chosen_units import units
 from ..words import texts
-from ..words.language import country, listed, number, of_error
+from ..words.language import listed, number, of_error
 from . import bringing_files, laying_ground
 
 if TYPE_CHECKING:
@@ -89,16 +89,10 @@ def _place() -> None:
         return
     at = found.lonlat
     lon, lat = (number(one, ".8g") for one in at)
-    st.caption(texts.OUTLINE_READ.format(lat=lat, lon=lon, where=_where(*at)))
+    st.caption(texts.OUTLINE_READ.format(lat=lat, lon=lon, where=plot_place.at(*at)))
     if not found.is_certain and abs(at[0]) <= 90 and drawn_plot.so_far().at == at:
         st.button(texts.OUTLINE_TURN, key="outline_turn", icon=":material/swap_horiz:",
                   on_click=_exchange, args=(found,))  # fmt: skip
-
-
-def _where(lon: float, lat: float) -> str:
-    """Return the country of a place, as its time zone says."""
-    zone = clock_at(lon, lat).zone
-    return texts.AT_SEA if at_sea(lon, lat) else country(zone) or zone.replace("_", " ")
 
 
 def _go() -> None:

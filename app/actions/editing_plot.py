@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import shapely
 import streamlit as st
 
-from fieldmon.errors import FieldmonError, PlotError
+from fieldmon.errors import FieldmonError, NoRowsError, PlotError
 from fieldmon.infestation.records import UNKNOWN
 from fieldmon.plot.clearance import USUAL_HALF_CANOPY_M
 from fieldmon.plot.planting import Planting
@@ -16,7 +16,8 @@ from fieldmon.plot.planting import Planting
 from ..show import field_map, map_layers
 from ..show.map_view import Drawable, MapAnswers, MapContent
 from ..show.maps import colours, deck, legends, marks, plant_layers
-from ..state import cached, menu, notices, row_settings, widget_memory
+from ..state import brought_files, cached, menu, notices, row_settings, widget_memory
+from ..state.brought_files import PLANTS
 from ..state.chosen_units import units
 from ..state.folds import fold
 from ..state.plot_edits import CUT, GATE, NO_GO, PATH, ROW, Edit, points_of
@@ -66,10 +67,20 @@ def rows(plot_key: str, *, measured: bool = False) -> None:
 
 def within_reach(problem: FieldmonError) -> None:
     """Show what was set or drawn by hand where no plot could be laid: it may be what is wrong."""
-    if isinstance(problem, PlotError):
-        if row_settings.is_said(laying()):
-            rows(laying())
+    if is_within_reach(problem):
+        if _are_rows_within_reach(problem):
+            rows(laying(), measured=PLANTS in brought_files.brought())
         undo_last(laying())
+
+
+def is_within_reach(problem: FieldmonError) -> bool:
+    """Return whether what is wrong with a plot can be changed by hand."""
+    of_plot = isinstance(problem, PlotError)
+    return of_plot and (_are_rows_within_reach(problem) or bool(drawn(laying())))
+
+
+def _are_rows_within_reach(problem: FieldmonError) -> bool:
+    return row_settings.is_said(laying()) or isinstance(problem, NoRowsError)
 
 
 def direction(plot_key: str, now: float | None = None) -> None:

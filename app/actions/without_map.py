@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 import streamlit as st
 
-from fieldmon.errors import ChoiceNeeded, PlotError
+from fieldmon.errors import ChoiceNeeded
 
 from ..show import field_map
 from ..state import brought_files, plot_source
 from ..state.brought_files import BLOCKS, PLANTS, PLOT, RECORDS, ROWS
 from ..words import texts
+from . import editing_plot
 
 if TYPE_CHECKING:
     from fieldmon.errors import FieldmonError
@@ -61,4 +62,4 @@ def _case(problem: FieldmonError | None) -> tuple[str, str]:
         return "season", ""
     brought, asking = brought_files.brought(), brought_files.asking()
     file = next((k for k in _KINDS if k in brought and brought[k].asked == asking), "")
-    return ("plot" if isinstance(problem, PlotError) else "file"), file
+    return ("plot" if editing_plot.is_within_reach(problem) else "file"), file

@@ -11,7 +11,7 @@ from pydeck import Layer
 from fieldmon.plot.local_clock import zone_outline, zones_within
 
 from ..words import texts
-from ..words.language import country
+from . import plot_place
 from .map_view import MapContent
 from .maps import legends
 
@@ -81,14 +81,7 @@ def label(number: int, place: list[float]) -> Label:
 
 def said(tried: tuple[TriedAnswer, ...], number: int) -> str:
     """Return what is said of an answer, by its number from 0, where one points at it."""
-    return " · ".join([f"{number + 1}", tried[number].said, place_of(tried[number])])
-
-
-def place_of(one: TriedAnswer) -> str:
-    """Return the country to which an answer leads, or that it leads into the sea."""
-    if one.zone.startswith("Etc/"):
-        return texts.AT_SEA
-    return country(one.zone) or one.zone.replace("_", " ")
+    return " · ".join([f"{number + 1}", tried[number].said, plot_place.of_zone(tried[number].zone)])
 
 
 def colour(number: int) -> Colour:

@@ -1,4 +1,4 @@
-"""A plot in figures: how large it is and how it is planted."""
+"""A plot in figures: how large it is, how it is planted and where it lies."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from fieldmon.io.parse.geometry import area_m2
 
 from ..words import texts
 from ..words.language import number
+from . import plot_place
 from .assumed import mark
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def show(plot: Plot, units: UnitsInLanguage) -> None:
-    """Show the figures side by side."""
+    """Show the figures side by side, and where the plot lies."""
     grid = plot.grid
     apart = f"{units.metres(grid.row_spacing_m, 1)} / {units.metres(grid.plant_spacing_m, 1)}"
     rows = ("row_spacing_m", "plant_spacing_m")
@@ -34,3 +35,4 @@ def show(plot: Plot, units: UnitsInLanguage) -> None:
             bearing = number(grid.frame.bearing_deg % 180, ".1f")
             st.metric(texts.BEARING_IS, f"{bearing}°", width="content")
         st.metric(spacing, apart, width="content")
+    st.caption(plot_place.sentence(plot))

@@ -717,6 +717,7 @@ OUTLINE_PLACE_HELP = (
 )
 OUTLINE_GO, OUTLINE_ADD = "Show this place", "Add as a corner"
 OUTLINE_READ = "Read as latitude {lat}, longitude {lon}: {where}."
+PLOT_LIES = "It lies at latitude {lat}, longitude {lon}: {where}."
 OUTLINE_TURN = "Exchange latitude and longitude"
 OUTLINE_STANDING = (
     "With a phone in the field: *Where I am* and *Corner where I stand*, on the map. The browser "

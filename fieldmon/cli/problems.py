@@ -10,7 +10,7 @@ import typer
 
 from fieldmon.cli.progress import WAITING
 from fieldmon.cli.stopped import STOPPED, STOPPED_CODE
-from fieldmon.errors import FieldmonError
+from fieldmon.errors import FieldmonError, NoRowsError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,6 +33,8 @@ def run(command: Callable[..., object]) -> None:
         if code == STOPPED_CODE:  # which typer makes of Ctrl-C
             _stopped()
         sys.exit(code if isinstance(code, int) else 0)
+    except NoRowsError as error:
+        _end(f"{error} That says --no-rows.", 2)
     except FieldmonError as error:
         _end(str(error), 2)
     except typer.Exit as stop:

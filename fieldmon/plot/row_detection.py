@@ -11,7 +11,7 @@ import shapely
 from scipy.spatial import cKDTree
 
 from fieldmon.compute.wording import counted, worded
-from fieldmon.errors import PlotError
+from fieldmon.errors import NoRowsError, PlotError
 from fieldmon.plot.projection import Frame
 
 if TYPE_CHECKING:
@@ -122,11 +122,10 @@ def rows_from_plants(lonlat: Float, near_bearing_deg: float | None = None) -> Ro
         Where rows are known to run about there, degrees; None: anywhere.
     """
     if len(lonlat) < 2:
-        raise PlotError(
+        raise NoRowsError(
             worded(
-                "Rows can be found from 2 plants or more, but there are {n}. "
-                "Add plants, or say that they stand in no rows: --no-rows, in Python Plot.among "
-                "or in_rows=False.",
+                "Rows can be found from 2 plants or more, but {n} {n:is|are} there. Add plants, or "
+                "say that they stand in no rows.",
                 n=len(lonlat),
             )
         )

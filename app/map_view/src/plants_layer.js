@@ -50,7 +50,7 @@ export class PlantsLayer extends CompositeLayer {
     const own = this.levels[0].step * M_PER_DEGREE;
     const k = Math.min(LEVELS, Math.max(0, Math.ceil(Math.log2(metres / own))));
     while (this.levels.length <= k) this.levels.push(halved(this.levels.at(-1)));
-    return (this.levels[k].picture ??= drawable(painted(this.levels[k], table)));
+    return (this.levels[k].picture ??= drawable(painted(filled(this.levels[k], this.props), table)));
   }
 
   renderLayers() {
@@ -140,6 +140,24 @@ export function halved({ top, width, height, step, ...rest }) {
     }
   }
   return { top: less, width: wide, height: high, step: 2 * step, ...rest };
+}
+
+// Return the same with plants on all the ground that is theirs, where pixels are nearly as wide: between two
+// plants one pixel here and there held neither, and looked like a missing plant.
+export function filled(level, { places, ranks, apart }) {
+  const { top, width, height, step, flat, west, north } = level, wide = apart / M_PER_DEGREE / step;
+  if (wide > 2) return level;
+  const full = top.slice(), reach = (wide + 1) / 2 - 1e-6;
+  for (let k = 0; k < places.n; k++) {
+    const px = ((places.lon[k] - west) * flat) / step - 0.5, py = (north - places.lat[k]) / step - 0.5;
+    for (let y = Math.max(0, Math.ceil(py - reach)); y <= Math.min(height - 1, py + reach); y++) {
+      for (let x = Math.max(0, Math.ceil(px - reach)); x <= Math.min(width - 1, px + reach); x++) {
+        const at = y * width + x;
+        if (!top[at] && ranks[k] + 1 > full[at]) full[at] = ranks[k] + 1;
+      }
+    }
+  }
+  return { ...level, top: full };
 }
 
 // Return a picture as deck.gl takes it: of a bare object it does not know the size, and draws all black.

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { halved, inView, painted, pictureOf, pointsOf, ranksOf } from "../src/plants_layer.js";
+import { filled, halved, inView, painted, pictureOf, pointsOf, ranksOf } from "../src/plants_layer.js";
 import { gridOf, random, scattered } from "./plots.mjs";
 
 const TABLE = [[10, 20, 30, 40], [50, 60, 70, 255], [200, 100, 50, 255]];
@@ -100,4 +100,41 @@ test("a picture seen from further away loses no important plant: four pixels bec
     level = next;
   }
   assert.ok(share < 1 && level.width === 1);
+});
+
+// 60 x 60 plants, 2.4 m and 2 m apart, on pixels of this many metres
+function levelOf(pixel, missing = []) {
+  const degree = 111320, lon = [], lat = [];
+  for (let r = 0; r < 60; r++) {
+    for (let k = 0; k < 60; k++) {
+      if (missing.some(([y, x]) => y === r && x === k)) continue;
+      lon.push((1 + 2 * k) / degree);
+      lat.push((1 + 2.4 * r) / degree);
+    }
+  }
+  const places = { n: lon.length, lon, lat, step: pixel / degree, bounds: [0, 0, 120 / degree, 144 / degree] };
+  places.bounds[1] = -72 / degree; // flat: about the equator
+  places.bounds[3] = 144 / degree;
+  const props = { places, ranks: new Uint8Array(lon.length), apart: 2 };
+  return [ranksOf(props), props];
+}
+
+function emptyOf({ top, width, height }, rows) {
+  let n = 0;
+  for (let y = 2; y < rows; y++) for (let x = 2; x < width - 2; x++) if (!top[y * width + x]) n++;
+  return n;
+}
+
+test("no pixel between plants is empty where pixels are nearly as wide as plants are apart", () => {
+  for (const pixel of [1.1, 1.6, 1.9]) {
+    const [level, props] = levelOf(pixel), rows = Math.floor(140 / pixel);
+    assert.ok(emptyOf(level, rows) > 0, `${pixel}`);
+    assert.equal(emptyOf(filled(level, props), rows), 0, `${pixel}`);
+  }
+});
+
+test("a missing plant stays empty, and none that is there changes its colour", () => {
+  const [level, props] = levelOf(1.1, [[30, 30]]), full = filled(level, props);
+  assert.ok(emptyOf(full, 120) > 0);
+  level.top.forEach((rank, at) => { if (rank) assert.equal(full.top[at], rank); });
 });

@@ -11,6 +11,7 @@ from shapely.errors import GEOSException
 
 from fieldmon.compute.wording import worded
 from fieldmon.io.import_report import ImportMessage, doubtful, dropped, repaired
+from fieldmon.io.parse.crossed_outline import crossed_at, in_order
 from fieldmon.plot.projection import GEOD
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ SMALLEST_M2, LARGEST_M2 = 10.0, 100_000_000.0
 _NO_AREA_M2 = 0.01
 #: a part smaller or narrower than this carries no plant
 _SLIVER_M2, _SLIVER_WIDTH_M = 1.0, 0.1
+_MANY_CROSSED = "the outlines of {n} plots cross themselves"
 _REASONS = {
     "Self-intersection": "its outline crosses itself",
     "Ring Self-intersection": "its outline touches itself",
@@ -169,7 +171,12 @@ def boundary(area: shapely.Geometry, name: str) -> tuple[MultiPolygon, list[Impo
             return MultiPolygon(), [dropped(said, name, many=many)]
     measured = _measured(whole)
     if whole is not drawn:
-        messages.append(_repaired(drawn, whole, measured, name, why))
+        crossed = crossed_at(drawn)
+        messages.append(
+            _repaired(drawn, whole, measured, name, why)
+            if crossed is None
+            else doubtful(_crossed(drawn, whole, measured, crossed), name, many=_MANY_CROSSED)
+        )
     is_wide = _is_wide(measured)
     if not is_wide.all():
         whole = MultiPolygon([p for p, wide in zip(whole.geoms, is_wide, strict=True) if wide])
@@ -203,6 +210,25 @@ def _repaired(
         "The shape was not valid ({why}) and was repaired: {change}.", why=why, change=change
     )
     return repaired(said, name, many="{n} shapes were not valid and were repaired")
+
+
+def _crossed(
+    drawn: MultiPolygon, whole: MultiPolygon, now: _PolygonSizes, at: tuple[float, float]
+) -> str:
+    """Return what to say of an outline that crosses itself: the plot may be another."""
+    n, kept, (lon, lat) = len(whole.geoms), _amount(now.area_m2.sum()), at
+    if (ordered := in_order(drawn, whole.area)) is not None:
+        return worded(
+            "The corners seem to be in the wrong order: the outline crosses itself at {lon:.6f}, "
+            "{lat:.6f}, and {kept} in {n} {n:part|parts} was kept. Around the same corners, "
+            "without a crossing, it has {ordered}. Put the corners in order, or draw the plot.",
+            lon=lon, lat=lat, kept=kept, n=n, ordered=_amount(area_m2(ordered)),
+        )  # fmt: skip
+    return worded(
+        "The outline crosses itself at {lon:.6f}, {lat:.6f}, and {kept} in {n} {n:part|parts} was "
+        "kept. If that is not the plot, mend the outline, or draw the plot.",
+        lon=lon, lat=lat, kept=kept, n=n,
+    )  # fmt: skip
 
 
 def _polygons(geometry: shapely.Geometry) -> MultiPolygon:

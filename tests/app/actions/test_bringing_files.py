@@ -183,3 +183,12 @@ def test_a_plot_with_room_for_hardly_a_plant_is_doubted(n, warned, monkeypatch):
     choices = SimpleNamespace(plot=SimpleNamespace(grid=grid), season=object(), messages=())
     bringing_files.show_of_plot(choices)
     assert said == ([texts.FEW_PLANTS.format(n=n)] if warned else [])
+
+
+def test_corners_in_the_wrong_order_are_doubted_on_today(app):
+    corners = [[35.15, 30.36], [35.152, 30.362], [35.152, 30.36], [35.15, 30.362], [35.15, 30.36]]
+    tie = {"type": "Polygon", "coordinates": [corners]}
+    upload(app, plot=("plot.geojson", json.dumps(tie).encode()))
+    said = texts_of(go(app, "today"))
+    assert texts.SEVERITIES["doubtful"] in said
+    assert "corners seem to be in the wrong order" in said

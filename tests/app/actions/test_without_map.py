@@ -1,5 +1,7 @@
 """Where there is no map, a card says what is wrong and offers the next step."""
 
+import json
+
 from app.actions import without_map
 from app.state.brought_files import File
 from app.words import texts
@@ -64,3 +66,20 @@ def test_of_several_files_that_are_one_the_button_says_how_many_it_takes_out():
     assert texts.isolated("vines.shp") in without_map._take_out(several)
     assert without_map._take_out(several).endswith("and 2 more")
     assert without_map._take_out(one).endswith(texts.isolated("vines.shp"))
+
+
+def test_one_measured_plant_is_planned_where_it_is_said_that_it_stands_in_no_row(app):
+    one = {"type": "Point", "coordinates": [0.62, 41.62]}
+    upload(app, plot=("one.geojson", json.dumps(one).encode()))
+    press(app, texts.THESE_ARE_PLANTS)
+    assert card(app) == [texts.NO_MAP["plot"]]
+    assert "--" not in app.error[0].value
+    next(box for box in app.toggle if box.label == texts.NO_ROWS).set_value(True).run()
+    assert not app.error
+    assert card(app) == []
+
+
+def test_a_plot_with_nothing_to_change_by_hand_points_to_its_file(app, tmp_path):
+    upload(app, plot=("plot.zip", zipped(tmp_path, square(0.00002))))
+    assert app.error
+    assert card(app) == [texts.NO_MAP["file"]]

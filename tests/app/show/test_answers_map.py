@@ -6,7 +6,6 @@ import pytest
 from app.show import answers_map
 from app.show.answers_map import PLACES, SHAPES
 from app.state.tried_answers import TriedAnswer
-from app.words import texts
 from tests.app.chosen import a_plot
 
 NEAR = a_plot().field
@@ -60,21 +59,3 @@ def test_answers_in_a_line_stand_on_a_map_and_no_strip(strip):
     corners = np.array([corner for row in zones.data for corner in row["p"]])
     wide, high = np.ptp(corners, axis=0)
     assert min(wide, high) >= 0.45 * max(wide, high)
-
-
-@pytest.mark.parametrize(
-    ("zone", "says"),
-    [
-        ("Africa/Juba", "South Sudan"),
-        ("Etc/GMT+1", texts.AT_SEA),
-        ("Moon/Sea_of_Rain",) * 2,
-        ("", ""),
-    ],
-)
-def test_an_answer_is_named_by_its_country(zone, says):
-    assert answers_map.place_of(TriedAnswer("EPSG:1", zone=zone)) == says.replace("_", " ")
-
-
-def test_countries_are_named_in_the_page_s_language(speaking):
-    speaking("he")
-    assert answers_map.place_of(HERE) == "ישראל"

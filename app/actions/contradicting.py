@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
 import streamlit as st
 
 from fieldmon.infestation.inspections import CLEAN, FOUND
@@ -20,8 +21,6 @@ from ..words.language import in_words, plant_in_words
 from .recording_results import listed, recorded, said_of, warn_of_lost
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from fieldmon.monitoring.inspecting.batches import Recorded
 
     from ..state.choices import Choices

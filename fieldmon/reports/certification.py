@@ -93,9 +93,11 @@ class _PlotRecord:
         corrected: dict[str, set[str]] = {}
         for (_, day, *_), who in corrected_by(season).items():
             corrected.setdefault(str(day), set()).add(who)
-        when = on, units
-        of_plants = seen, corrected, seen_by_others(season)
-        return cls(season, called, *when, done, unsaid, beware, told, log, wrong, *of_plants)
+        others = seen_by_others(season)
+        return cls(
+            season, called, on, units, done, unsaid, beware, told, log, wrong, seen,
+            corrected, others,
+        )  # fmt: skip
 
     @property
     def name(self) -> str:

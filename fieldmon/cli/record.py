@@ -152,6 +152,11 @@ def _read(
     return read
 
 
+def _leaves_out(brought: BroughtFile) -> bool:
+    """Return whether a file has results that were not taken."""
+    return any(one.severity.is_loss for one in brought.messages)
+
+
 def _tell_other_days(read: list[BroughtFile], told: np.datetime64) -> None:
     """Say of which files the day of --date is not, as they name their own.
 
@@ -217,11 +222,13 @@ def _record(
         batch = "" if done.batch is None else f" (batch {done.batch})"
         more = f", {done.more}" if done.more else ""
         typer.echo(f"{one.name}: {done.new} new, {done.known} known already{more}{batch}")
-    if len(read) == n_files and not any(one.new + one.known + one.corrected for one in every):
+    took = any(one.new + one.known + one.corrected for one in every)
+    # a sheet that nobody filled in lacks nothing
+    if len(read) == n_files and not took and any(_leaves_out(one) for one in read):
         names = " or ".join(one.name for one in read)
         raise SettingError(
-            f"At least one result must be taken, but there is none in {names}: see above. Nothing "
-            "was recorded. Fill in what was found, or mend what was left out."
+            f"At least one result must be taken, but all in {names} were left out: see above. "
+            "Nothing was recorded."
         )
     days = [inspections.date.max().item() for inspections in found if len(inspections)]
     return max(days, default=None)

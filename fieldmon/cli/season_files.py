@@ -247,7 +247,11 @@ def _is_filled_in(file: Path) -> bool:
         text = file.read_text(encoding="utf-8-sig", errors="replace")
         mark = max(",;\t", key=text.partition("\n")[0].count)
         rows = csv.DictReader(text.splitlines(), delimiter=mark)
-        return any((row.get("found") or "").strip() or (row.get("count") or "") for row in rows)
+        # a table of days has finds, too
+        of_plants = bool({"row", "plant", "lon"} & {*(rows.fieldnames or ())})
+        return of_plants and any(
+            (row.get("found") or "").strip() or (row.get("count") or "") for row in rows
+        )
     if ending in {".geojson", ".json"}:
         return _is_geojson_filled_in(file)
     if ending in _READ_WHOLE:

@@ -10,6 +10,8 @@ def test_a_season_is_simulated_and_its_table_written(run, tmp_path):
     lines = (tmp_path / "season.csv").read_text(encoding="utf-8").splitlines()
     assert len(lines) == 1 + 3 * 3
     assert all(name in out for name in ("naive", "bouncy", "dynamic"))
+    # a table that is simulated again is no sheet that somebody filled in
+    assert run(*words)[0] == 0
     run(*words[:-1], "again.csv")
     assert (tmp_path / "again.csv").read_text(encoding="utf-8").splitlines() == lines
 

@@ -152,7 +152,8 @@ _ELSEWHERE = {
     "decisions/leaves.py", "decisions/taylor.py", "infestation/belief.py",
     "infestation/hotspots.py", "infestation/inspections.py", "infestation/insects/kernels.py",
     "infestation/records.py", "infestation/insects/spread.py", "monitoring/estimates/asked_day.py",
-    "monitoring/estimates/monitor.py", "planning/routes", "plot/frames.py", "plot/positions.py",
+    "monitoring/estimates/monitor.py", "planning/routes", "plot/frames.py",
+    "plot/order_in_frame.py", "plot/positions.py",
 }  # fmt: skip
 _SAYS = {"seen", "repaired", "guessed", "dropped", "doubtful", "ask_for_crs"}
 _LABEL = {"Remedy": 2, "ask_for_crs": 2}

@@ -117,9 +117,9 @@ class NoRowsError(PlotError):
 
     Examples
     --------
-    >>> import fieldmon as fm
+    >>> import numpy as np, fieldmon as fm
     >>> try:
-    ...     fm.plot_around("one", [[35.15, 30.36]])
+    ...     fm.Plot.around("one", np.array([[35.15, 30.36]]))
     ... except fm.NoRowsError as problem:
     ...     print(str(problem).partition(", but")[0])
     Rows can be found from 2 plants or more

@@ -7,7 +7,7 @@ from pathlib import Path
 
 ROOM = Path(__file__).resolve().parents[1] / "fieldmon"
 #: they gather what comes in while they live
-THAT_GROW = {"DrivenDay", "Recording", "Workroom", "Mornings", "TeamWorker", "_Self"}
+THAT_GROW = {"DrivenDay", "Recording", "Workroom", "Mornings", "TeamWorker", "_Self", "_Visits"}
 ARRAYS = re.compile(r"\bNDArray\b|\bFloats?\b|\bInts?\b|\bBools?\b")
 
 

@@ -228,7 +228,7 @@ def test_a_day_that_no_file_takes_is_refused_and_one_that_some_take_is_said(run,
 def test_where_no_result_could_be_taken_the_exit_code_says_so(run, season, tmp_path):
     assert run("plan", season, "--date", BEGINS, "--no-bound", "-o", "day.csv")[0] == 0
     assert run("record", season, "day.csv")[0] == 0  # nobody filled it in
-    (tmp_path / "ahead.csv").write_text("plant,result,date\n3,found,2999-01-01\n")
+    (tmp_path / "ahead.csv").write_text("plant,result,date\n3,found,2030-01-01\n")
     code, _, err, _ = run("record", season, "ahead.csv")
     assert (code, "At least one result must be taken" in " ".join(err.split())) == (2, True)
     filled_in(tmp_path / "day.csv", {0}, 2)

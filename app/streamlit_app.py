@@ -129,14 +129,13 @@ def in_panel(name: str) -> None:
     from .actions import ways_in  # noqa: PLC0415
     from .actions.bringing_files import show_left_out  # noqa: PLC0415 - as just loaded
     from .actions.choosing import choose, choose_display, mark_day  # noqa: PLC0415
-    from .state import drawn_plot, notices, work_day  # noqa: PLC0415
+    from .state import drawn_plot, notices  # noqa: PLC0415
 
     if name == "today" and ways_in.is_first_run():
         with ways:
             ways_in.show()
 
     menu.take_from_address(name)
-    work_day.take_from_address(plot_source.chosen(), name)
     page = menu.shown_page(name)
     is_planned = page == "today"
     chosen = choose(head, foot, waiting.wait, day if is_planned else None)

@@ -227,7 +227,7 @@ def _day(source: str, calendar: Calendar, clock: LocalClock) -> date:
         label_visibility="collapsed",
         on_change=_choose_day, args=(source, key, calendar),
     )  # fmt: skip
-    work_day.keep_in_address(source, day, calendar.today)
+    work_day.keep_in_address(day, calendar.today)
     return day
 
 

@@ -34,12 +34,6 @@ def keep_in_address(source: str) -> None:
         st.query_params[KEY] = source
 
 
-def is_in_address(source: str, *, cleared: bool) -> bool:
-    """Return whether the address is a source's; that of the sample has no word, as a `cleared`."""
-    said = st.query_params.get(KEY)
-    return said == source if source != SAMPLE else said is None and not cleared
-
-
 def open_season(name: str) -> None:
     """Let the season of this name be open from the next run on."""
     st.session_state[_OPENS] = name

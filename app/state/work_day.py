@@ -8,14 +8,13 @@ from datetime import date
 
 import streamlit as st
 
-from . import fresh_boxes, plot_source
+from . import fresh_boxes
 
 #: the word in the address that leads back to a day chosen on purpose
 KEY = "day"
 #: the key of the box that shows the day of a source
 BOX = "day {source}"
 _CHOSEN, _READ = "days chosen", "day read from address"
-_WRITTEN, _ITEM = "day in address", "item of that day"
 
 
 @dataclass(frozen=True)
@@ -30,26 +29,6 @@ class Calendar:
         """Return a day, or the nearest that one may choose."""
         day = day if self.first is None else max(day, self.first)
         return day if self.last is None else min(day, self.last)
-
-
-def take_from_address(source: str, item: str) -> None:
-    """Show the day that the address of an item names where it was gone back to.
-
-    An address without a day means today, unless it was cleared by a turn to another item. What was
-    chosen just now comes first.
-    """
-    turned = item != st.session_state.get(_ITEM)
-    st.session_state[_ITEM] = item
-    said, written = st.query_params.get(KEY, ""), st.session_state.get(_WRITTEN)
-    now = str(_chosen().get(source, ""))
-    if written != (source, now) or said == now:
-        return
-    named = plot_source.is_in_address(source, cleared=turned)
-    if said:
-        with suppress(ValueError):
-            choose(source, date.fromisoformat(said))
-    elif named:
-        back_to_today(source)
 
 
 def begin_from_address(source: str) -> None:
@@ -83,9 +62,8 @@ def back_to_today(source: str) -> None:
     _chosen().pop(source, None)
 
 
-def keep_in_address(source: str, day: date, today: date) -> None:
-    """Let a reload lead back to a day of a source that is not today."""
-    st.session_state[_WRITTEN] = source, "" if day == today else str(day)
+def keep_in_address(day: date, today: date) -> None:
+    """Let a reload lead back to a day that is not today."""
     if day == today:
         st.query_params.pop(KEY, None)
     elif st.query_params.get(KEY) != str(day):

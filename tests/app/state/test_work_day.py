@@ -73,21 +73,3 @@ def test_a_tap_for_another_day_has_no_time_that_nobody_said(season_app, season):
     done = season().history.inspections
     assert done.date.tolist() == [date(2026, 11, 18)]
     assert np.isnan(done.second).all()
-
-
-def test_who_goes_back_is_on_the_day_that_was_shown_there(season_app):
-    season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 18)).run()
-    assert season_app.query_params["day"] in ("2026-11-18", ["2026-11-18"])
-    assert heading(season_app) == "Gate · 2026-11-18"
-    season_app.query_params.pop("day")
-    assert heading(season_app.run()) == "Gate · 2026-11-16"
-    assert "day" not in season_app.query_params
-    season_app.query_params["day"] = "2026-11-18"
-    assert heading(season_app.run()) == "Gate · 2026-11-18"
-
-
-def test_a_turn_to_another_item_clears_the_address_and_leaves_the_day(season_app):
-    season_app.date_input(key="day Gate 2026").set_value(date(2026, 11, 18)).run()
-    go(season_app, "season")
-    assert season_app.query_params["day"] in ("2026-11-18", ["2026-11-18"])
-    assert heading(go(season_app, "today")) == "Gate · 2026-11-18"

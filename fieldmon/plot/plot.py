@@ -168,8 +168,7 @@ class Plot:
         Warns
         -----
         ImportDoubt
-            Where rows are laid along the longest side of a ragged outline, and may run otherwise;
-            where measured plants are numbered in another order than the field has them.
+            Where rows are laid along the longest side of a ragged outline, and may run otherwise.
 
         Raises
         ------
@@ -177,10 +176,7 @@ class Plot:
             If there is no room for a plant, or no way to a row.
         """
         _warn_of(_doubts_of_bearing(field, planting))
-        plot = plot_of(field, planting)
-        if field.plants is not None:
-            _warn_of(said_of_order(plot.grid, field.plants, "field.plants"))
-        return plot
+        return plot_of(field, planting)
 
     @classmethod
     def around(

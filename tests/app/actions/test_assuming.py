@@ -56,7 +56,7 @@ def test_a_season_keeps_what_was_assumed_and_is_told_otherwise(season_app, seaso
     assert season().settings.prior.background_chance == 0.04
     assert season().settings.belief.spread.rate_per_day == 0.05
     assert season().verify() == ()
-    assert "where nothing is known" not in texts_of(season_app)
+    assert "of plants infested where nothing is known" not in texts_of(season_app)
 
 
 def test_whether_finds_are_treated_is_assumed_and_told_otherwise(season_app, season):
@@ -71,7 +71,7 @@ def test_whether_finds_are_treated_is_assumed_and_told_otherwise(season_app, sea
     assert "treated" not in {one.setting for one in season().assumed()}
     assert "plants found infested are treated at once" not in texts_of(season_app)
     assert "plants are expected to be still infested" in season_app.success[0].value
-    press(season_app, "Take back: finds only flagged")
+    press(season_app, "Take back")
     said = season_app.success[0].value
     assert "finds only flagged (now treated at once again)" in said
     assert "before this change it was" in said

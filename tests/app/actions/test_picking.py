@@ -81,6 +81,7 @@ def test_a_plant_wanted_that_is_gone_is_said_to_be_gone(tmp_path, monkeypatch):
     gone = Inspections.of([3], [SKIPPED], np.datetime64(BEGINS), notes=["gone"])
     season.record(gone, "test")
     choices, said = in_season(season, BEGINS + timedelta(days=1)), []
+    monkeypatch.setattr(wishes, "were_told", lambda *_: True)
     monkeypatch.setattr(wishes, "of", lambda *_: Wishes((3, 5)))
     monkeypatch.setattr(picking.st, "warning", said.append)
     picking.show(choices, SimpleNamespace(route=SimpleNamespace(plant=np.array([7]))))

@@ -26,7 +26,7 @@ def test_what_holds_for_many_plots_is_one_line_with_their_number():
     read = plots_of(layer_of([*[TIE] * 50, square(0)]), PlotOptions())
     grave = [str(m) for m in read.messages if m.severity in {"repaired", "doubtful"}]
     assert len(grave) == 2
-    assert grave[0].startswith("repaired: 50 shapes were not valid and were repaired; the first is")
+    assert grave[0].startswith("doubtful: the outlines of 50 plots cross themselves; the first is")
     assert grave[1].startswith("doubtful: 49 plots have the same outline as another; the first is")
 
 

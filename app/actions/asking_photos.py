@@ -12,7 +12,7 @@ from ..show import plant_history
 from ..state import notices, wishes
 from ..state.folds import fold
 from ..words import texts
-from ..words.language import plant_in_words
+from ..words.language import place_in_words
 
 if TYPE_CHECKING:
     from fieldmon.monitoring.phones.photos_asked import AskedPhoto
@@ -49,14 +49,11 @@ def _show_asking(choices: Choices, plants: tuple[int, ...]) -> None:
 
 
 def _show_one(choices: Choices, one: AskedPhoto) -> None:
-    numbered = choices.open_season.plant_numbers
-    row = choices.open_season.plot.grid.line_signs[int(numbered.line[one.plant])]
-    number = int(numbered.number[one.plant])
-    plant = plant_in_words(choices.open_season.plot.grid, one.plant, number)
+    place = place_in_words(choices.open_season.plot.grid, one.plant)
     note = texts.isolated(one.note)
     # a button is as wide as its words, in every language
     with st.container(horizontal=True, vertical_alignment="center"):
-        st.markdown(texts.ASKED_PHOTO.format(row=row, plant=plant, note=note))
+        st.markdown(texts.ASKED_PHOTO.format(**place, note=note))
         st.button(texts.ASK_NO_MORE, key=f"no photo {one.id}", width="content",
                   on_click=_ask_no_more, args=(choices, one.id))  # fmt: skip
 

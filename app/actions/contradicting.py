@@ -11,13 +11,12 @@ from fieldmon.infestation.inspections import CLEAN, FOUND
 from fieldmon.monitoring.inspecting.contradictions import contradicting, contradictions
 from fieldmon.monitoring.inspecting.known_inspections import count_new
 from fieldmon.monitoring.season import season_inspections, undoing
-from fieldmon.plot.grid import plant_numbers
 
 from ..show import recorded_batches
 from ..state import notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
 from ..words import texts
-from ..words.language import in_words, plant_in_words
+from ..words.language import in_words, place_in_words
 from .recording_results import listed, recorded, said_of, warn_of_lost
 
 if TYPE_CHECKING:
@@ -89,10 +88,7 @@ def settle(choices: Choices) -> None:
 
 
 def _place(choices: Choices, plant: int) -> str:
-    grid = choices.plot.grid
-    numbered = plant_numbers(grid, np.array([plant]))
-    said = plant_in_words(grid, plant, int(numbered.number[0]))
-    return texts.SETTLE_PLACE.format(row=grid.line_signs[int(numbered.line[0])], plant=said)
+    return texts.SETTLE_PLACE.format(**place_in_words(choices.plot.grid, plant))
 
 
 @notices.reporting

@@ -8,12 +8,11 @@ import numpy as np
 import streamlit as st
 
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
-from fieldmon.plot.grid import plant_numbers
 
 from ..show import plant_history, recorded_batches
 from ..state import notices
 from ..words import texts
-from ..words.language import plant_in_words
+from ..words.language import place_in_words
 from . import contradicting, recording_results, undoing
 from .recording import TYPED_IN
 
@@ -35,10 +34,7 @@ def show(choices: Choices) -> None:
     ahead = choices.today is not None and choices.on > choices.today
     if choices.season is None or ahead or not plants:
         return
-    numbered = plant_numbers(choices.plot.grid, np.array(plants))
-    row = choices.plot.grid.line_signs[int(numbered.line[0])]
-    plant = plant_in_words(choices.plot.grid, plants[0], int(numbered.number[0]))
-    st.markdown(texts.HERE.format(row=row, plant=plant))
+    st.markdown(texts.HERE.format(**place_in_words(choices.plot.grid, plants[0])))
     with st.container(horizontal=True, key="record_here"):
         for result in (FOUND, CLEAN):
             st.button(texts.HERE_RESULTS[result], key=f"here_{result}", on_click=_record,

@@ -147,9 +147,8 @@ def say_of_day(choices: Choices, plan: DayPlan) -> None:
     if choices.season is not None:
         if len(plan.route) and _is_of_nobody(choices):
             st.info(texts.ROUTE_OF_NOBODY)
-        own = chosen_day.inspected_by_shown(choices)
-        if own.inspected or is_over(choices, plan):
-            over = is_over(choices, plan)
+        own, over = chosen_day.inspected_by_shown(choices), is_over(choices, plan)
+        if own.inspected or over:
             st.info(texts.TODAY_OVER if over else texts.TODAY_DONE.format(**own._asdict()))
             return
     if not len(plan.route) and not cautions.are_all_closed(choices, plan):

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fieldmon.compute.wording import chance_figure
-from fieldmon.plot.grid import plant_numbers
 
 from ..words import texts
-from ..words.language import in_words, plant_in_words
+from ..words.language import in_words, place_in_words
 
 if TYPE_CHECKING:
     from fieldmon.planning.plan import DayPlan
@@ -38,7 +37,6 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
     """Return where to go next, from where the last result was noted; `done` stops are done."""
     route, scene = plan.route, plan.scene
     grid, plant = scene.aisles.grid, int(route.plant[0])
-    numbered = plant_numbers(grid, route.plant[:1])
     sector, lonlat = _heading(scene, plant)
     line_m = route.line_m[: int(route.line_stop[0]) + 1]
     drive_m = float(np.hypot(*np.diff(line_m, axis=0).T).sum())
@@ -48,8 +46,7 @@ def next_stop(plan: DayPlan, done: int, units: UnitsInLanguage) -> NextStop:
         plant,
         lonlat,
         (texts.NEXT_PLACE if grid.in_rows else texts.NEXT_ALONE).format(
-            row=grid.line_signs[int(numbered.line[0])],
-            plant=plant_in_words(grid, plant, int(numbered.number[0])),
+            **place_in_words(grid, plant)
         ),
         texts.NEXT_WAY.format(
             metres=units.metres(drive_m), compass=texts.COMPASS[sector],

@@ -15,9 +15,12 @@ from functools import cache, lru_cache
 from string import Formatter
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
+
 from fieldmon.compute import wording
 from fieldmon.compute.wording import KeptText, Worded, counted, estimate, joined, worded
 from fieldmon.io.writers.day_file import with_face
+from fieldmon.plot.grid import plant_numbers
 from fieldmon.reports.language import ENGLISH as ENGLISH_REPORTS
 from fieldmon.reports.language import ReportLanguage
 
@@ -200,6 +203,13 @@ def _in_language(language: str, context: str, value: Any) -> Any:  # noqa: ANN40
 def plant_in_words(grid: PlantGrid, plant: int, number: int) -> str:
     """Return a plant's number in its row, with the face where it has two."""
     return in_words(with_face(grid, plant, number))
+
+
+def place_in_words(grid: PlantGrid, plant: int) -> dict[str, str]:
+    """Return a plant's row, and its number in it, as texts with `row` and `plant` name them."""
+    numbered = plant_numbers(grid, np.array([plant]))
+    row = grid.line_signs[int(numbered.line[0])]
+    return {"row": row, "plant": plant_in_words(grid, plant, int(numbered.number[0]))}
 
 
 def in_words(sentence: str) -> str:

@@ -93,8 +93,8 @@ def plan_all(plots: Estate, orders: Orders, day: EstateDay, workers: int | None 
     """Plan every plot; write a route file each, and `SUMMARY` in the same folder.
 
     A plot that cannot be planned is refused with its sentence, and the others go on; the exit code
-    is `SOME_REFUSED` then. What an
-    earlier run finished with the same plot, records and orders is not planned again.
+    is `SOME_REFUSED` then. What an earlier run finished with the same plot, records and orders is
+    not planned again.
     """
     tasks = _tasks(plots, orders)
     day.folder.mkdir(parents=True, exist_ok=True)

@@ -162,8 +162,8 @@ def _tell_other_days(read: list[BroughtFile], told: np.datetime64) -> None:
 
     Raise `SettingError` where it is of no result: whoever gave it takes them for that day's.
     """
-    others = [one for one in read if len(one.findings) and not (one.findings.date == told).any()]
     dated = [one for one in read if len(one.findings)]
+    others = [one for one in dated if not (one.findings.date == told).any()]
     named = [
         f"{one.name} names the days of its results: "
         f"{first_few(sorted({str(day) for day in one.findings.date}))}"

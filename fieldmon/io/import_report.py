@@ -148,6 +148,11 @@ class UnreadDates(ImportMessage):
 
 
 @dataclass(frozen=True)
+class DaysToCome(ImportMessage):
+    """A doubt that days have not come yet."""
+
+
+@dataclass(frozen=True)
 class UnsureCells(ImportMessage):
     """A guess of what cells say that could say something else: no correction is taken on it."""
 

@@ -10,6 +10,7 @@ import numpy as np
 from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ChoiceNeeded
 from fieldmon.io.import_report import (
+    DaysToCome,
     Imported,
     ImportMessage,
     Remedy,
@@ -100,8 +101,7 @@ def come(
         today=today,
     )
     # of the same days it is not said besides that they lie in the future
-    ahead_too = _lies_ahead(0, None).words
-    told = [one for one in read.messages if getattr(one.sentence, "words", "") != ahead_too]
+    told = [one for one in read.messages if not isinstance(one, DaysToCome)]
     kept = read.value.take(~ahead)
     return Imported(kept, (*told, dropped(said, None, TAKE)))
 
@@ -111,13 +111,12 @@ def in_future(day: NDArray[np.datetime64], where: str | None = None) -> list[Imp
     n_future = int(to_come(day).sum())
     if not n_future:
         return []
-    return [doubtful(_lies_ahead(n_future, np.nanmax(day)), where)]
-
-
-def _lies_ahead(n: int, latest: object) -> Worded:
-    return worded(
-        "{n} {n:record lies|records lie} in the future, the last on {latest}.", n=n, latest=latest
+    said = worded(
+        "{n} {n:record lies|records lie} in the future, the last on {latest}.",
+        n=n_future,
+        latest=np.nanmax(day),
     )
+    return [DaysToCome(Severity.DOUBTFUL, said, where)]
 
 
 def midnights_left_out(n: int, where: str | None = None) -> list[ImportMessage]:

@@ -129,10 +129,7 @@ class SeasonPlans(SeasonDays):
 
     def _wished(self, on: date, wishes: Wishes | None) -> Wishes | None:
         """Return what is wanted of a day besides; None: nothing."""
-        if wishes is None:
-            with self.store.reading() as db:
-                wishes = kept_wishes.kept_in(db, on, len(self.plant_numbers.line)).wishes
-        return wishes or None
+        return (kept_wishes.wishes_kept(self, on) if wishes is None else wishes) or None
 
     def _crew_days(
         self, contents: SeasonContents, on: date, now: time | None, wishes: Wishes | None,

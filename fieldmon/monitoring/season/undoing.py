@@ -63,11 +63,10 @@ def let_hold(season: OpenSeason, plant: int, on: date, result: int, who: str = "
     counts = "SELECT fid, result FROM inspections WHERE undone = 0 AND plant = ? AND date = ?"
     with season.store.reading() as db:
         told = [*db.execute(counts, (plant, str(on)))]
-    wrong = {RESULT_NAMES[CLEAN], RESULT_NAMES[FOUND]} - {RESULT_NAMES[result]}
-    if {said for _, said in told} >= {RESULT_NAMES[CLEAN], RESULT_NAMES[FOUND]}:
-        others = [fid for fid, said in told if said in wrong]
-    else:
-        others = []
+    wrong = RESULT_NAMES[CLEAN if result == FOUND else FOUND]
+    if RESULT_NAMES[result] not in {said for _, said in told}:
+        return 0
+    others = [fid for fid, said in told if said == wrong]
     for fid in others:
         undo_with_batches(season, inspection=fid, who=who)
     return len(others)

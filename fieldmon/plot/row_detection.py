@@ -203,7 +203,7 @@ def _between_deg(a_deg: float, b_deg: float) -> float:
 def distinct(lonlat: Float, apart_m: float = SAME_PLANT_M) -> NDArray[np.intp]:
     """Return which plants ``(k,)`` are left if of those closer than `apart_m` the first is kept."""
     pairs = cKDTree(frame_around(lonlat).xy_m(lonlat)).query_pairs(apart_m, output_type="ndarray")
-    return np.setdiff1d(np.arange(len(lonlat)), pairs[:, 1])
+    return np.delete(np.arange(len(lonlat)), pairs[:, 1])
 
 
 def nearest_m(xy_m: Float) -> Float:

@@ -190,23 +190,8 @@ class Reach(KernelsOnCells):
     beyond: Floats = field(default_factory=lambda: BEYOND)
     anywhere: float = 0.0
 
-    def brought(self, values: Floats, shares: Floats, *, back: bool = False) -> Floats:
-        """Return what comes to each plant of what all plants send, ``(n,)``.
-
-        Parameters
-        ----------
-        values
-            ``(n,)`` what each plant sends.
-        shares
-            ``(6,)`` how much of it goes by each kernel.
-        back
-            Whether it goes the other way: from where it would land to where it came from.
-        """
-        mixed = self.mixed(shares)
-        return self.landed(values, np.conj(mixed) if back else mixed)
-
     def brought_by_each(self, values: Floats) -> Floats:
-        """Return the same for each kernel by itself, ``(6, n)``."""
+        """Return what each kernel brings each plant of the ``values (n,)`` sent, ``(6, n)``."""
         sent = self._sent(values)
         at_once = max(_AT_ONCE // sent.size, 1)
         parts = [
@@ -262,8 +247,9 @@ def transformed(cells: Cells, made: Floats) -> tuple[NDArray[np.complex128], tup
         fft.next_fast_len(max(int(side) + d // 2, d), real=True) for side in cells.shape
     )
     room = np.zeros((len(made), across, along))
-    room[:, :d, :d] = made
-    return fft.rfft2(np.roll(room, (-(d // 2), -(d // 2)), axis=(1, 2))), (across, along)
+    about = np.arange(d) - d // 2
+    room[:, about[:, None], about] = made
+    return fft.rfft2(room), (across, along)
 
 
 def _at_edge(grid: PlantGrid) -> Floats:

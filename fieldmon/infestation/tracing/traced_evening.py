@@ -167,8 +167,10 @@ def lowered(before: TracedMap, after: TracedMap, day: TracedDay, beyond: Floats)
     What clean inspections took from the chances about a plant, it would have infested, or
     would have been infested by, in that proportion.
     """
-    sent = before.reach.brought(day.dropped, beyond) * after.unseen / after.chance
-    sent += before.reach.brought(day.cleared * before.unseen, beyond, back=True)
+    reach = before.reach
+    mixed = reach.mixed(beyond)
+    sent = reach.landed(day.dropped, mixed) * after.unseen / after.chance
+    sent += reach.landed(day.cleared * before.unseen, np.conj(mixed, out=mixed))
     return np.exp(-np.minimum(sent, _MOST_LOWERED))
 
 

@@ -160,7 +160,7 @@ def brought_from_afar(
     if tells_apart:
         brought[JUMPED:] = reach.brought_by_each(moves) * by_jumps[:, None]
     else:
-        brought[JUMPED] = reach.brought(moves, by_jumps)
+        brought[JUMPED] = reach.landed(moves, reach.mixed(by_jumps))
     brought[ANYWHERE], brought[BY_EDGE] = evening.from_outside(reach, spread)
     if isinstance(spread, PestSpread):
         brought[ANYWHERE] += reach.anywhere * sends * float(moves.mean())

@@ -214,8 +214,9 @@ def test_what_each_kernel_brings_is_what_its_table_says_and_back_is_the_same_the
         assert brought == pytest.approx(told[:, i], abs=1e-12)
     shares, sent = np.linspace(0.3, 0.05, len(told)), chances(grid)
     mixed = np.einsum("k,kij->ij", shares, told)
-    assert reach.brought(sent, shares) == pytest.approx(sent @ mixed, abs=1e-12)
-    assert reach.brought(sent, shares, back=True) == pytest.approx(mixed @ sent, abs=1e-12)
+    by = reach.mixed(shares)
+    assert reach.landed(sent, by) == pytest.approx(sent @ mixed, abs=1e-12)
+    assert reach.landed(sent, np.conj(by)) == pytest.approx(mixed @ sent, abs=1e-12)
 
 
 def test_jumps_on_top_of_neighbours_are_what_a_pencil_says():

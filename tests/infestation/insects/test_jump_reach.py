@@ -38,13 +38,15 @@ def by_hand(grid, values, shares):
 def test_what_is_brought_is_the_sum_over_all_plants(grid):
     values = np.linspace(0.0, 1.0, len(grid))
     expected = by_hand(grid, values, SHARES)
-    assert reach_of(grid).brought(values, SHARES) == pytest.approx(expected, abs=1e-9)
+    reach = reach_of(grid)
+    assert reach.landed(values, reach.mixed(SHARES)) == pytest.approx(expected, abs=1e-9)
 
 
 def test_back_is_from_where_it_would_land():
     reach, n = reach_of(rectangle(6, 9)), 54
-    sent = np.array([reach.brought(np.eye(n)[i], SHARES) for i in range(n)])
-    back = np.array([reach.brought(np.eye(n)[i], SHARES, back=True) for i in range(n)])
+    mixed = reach.mixed(SHARES)
+    sent = np.array([reach.landed(np.eye(n)[i], mixed) for i in range(n)])
+    back = np.array([reach.landed(np.eye(n)[i], np.conj(mixed)) for i in range(n)])
     assert back == pytest.approx(sent.T, abs=1e-9)
 
 

@@ -56,8 +56,9 @@ def test_what_was_found_clean_about_a_plant_lowers_it_by_the_relatives_it_would_
     day.dropped[:], day.cleared[:] = rng.uniform(0, 0.3, 12), rng.uniform(0, 0.9, 12)
     after = replace(belief, unseen=belief.unseen * 0.5, chance=belief.chance * 0.8)
     beyond = 1.5 * np.array([0.2, 0.1, 0.05, 0.3, 0.02, 0.1])
-    to = belief.reach.brought(day.dropped, beyond)
-    back = belief.reach.brought(day.cleared * belief.unseen, beyond, back=True)
+    mixed = belief.reach.mixed(beyond)
+    to = belief.reach.landed(day.dropped, mixed)
+    back = belief.reach.landed(day.cleared * belief.unseen, np.conj(mixed))
     relatives = to * after.unseen / after.chance + back
     assert lowered(belief, after, day, beyond) == pytest.approx(np.exp(-np.minimum(relatives, 3.0)))
     assert (relatives > 3.0).any()

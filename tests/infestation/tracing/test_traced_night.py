@@ -59,7 +59,7 @@ def test_a_night_brings_each_plant_what_each_origin_sends_it(to, arrivals):
     brought = np.zeros((N_ORIGINS, 12))
     for k in range(6):
         sent = sends * jumps * reach.beyond[k] * scale[JUMPED + k]
-        brought[JUMPED + k] = sent * reach.brought(belief.chance, np.eye(6)[k])
+        brought[JUMPED + k] = sent * reach.landed(belief.chance, reach.mixed(np.eye(6)[k]))
     brought[ANYWHERE] = max(arrivals, 0.0002) * scale[ANYWHERE]
     brought[BY_EDGE] = 0.0001 * scale[BY_EDGE] * reach.at_edge
     arrives = 1.0 - np.exp(-brought.sum(axis=0))

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def digest(*parts: object, length: int = 64, end: bytes = b"\0") -> str:
@@ -40,3 +45,11 @@ def _bytes(value: object) -> bytes:
     if isinstance(value, np.ndarray):
         return value.tobytes()
     return repr(sorted(value.items()) if isinstance(value, dict) else value).encode()
+
+
+def places_by_name(most: int) -> Callable[[str], list[Any]]:
+    """Return what gives each name, as of a `digest`, its own list, empty at first.
+
+    What follows from a digest's parts can be kept there; of the `most` names asked for last.
+    """
+    return lru_cache(maxsize=most)(lambda _: [])

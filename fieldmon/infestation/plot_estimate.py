@@ -14,6 +14,7 @@ import numpy as np
 from scipy.special import gammaincinv, ndtri
 
 from fieldmon.compute.arrays import read_only
+from fieldmon.compute.digest import digest, places_by_name
 from fieldmon.compute.jit import inner_inlined, loop, routine
 from fieldmon.compute.random_streams import coin
 from fieldmon.compute.wording import chance_figure, worded
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 _DRAWS = 400
 # which fields are drawn: the same ones always, so that an answer is the same when asked again
 _KEY = np.uint64(0)
+# the fields of a map are drawn once: what is there now and what was at the start are told by them
+_kept = places_by_name(8)
 # fields drawn side by side: a plant's neighbours are looked up once for all of them
 _SIDE_BY_SIDE = 16
 # of fewer plants one processor draws fields while threads would begin
@@ -237,7 +240,10 @@ def drawn_numbers(
     """
     chance, pair_chance = believed
     table = _table(chance, pair_chance, grid.adjacent)
-    drawn = _drawn(table, _KEY, asked)
+    kept = _kept(digest(*table, asked))
+    if not kept:
+        kept.append(_drawn(table, _KEY, asked))
+    drawn = kept[0]
     # round the loops of a lattice the drawn fields are a little off the map: put right together
     right = float(chance[asked].sum()) / max(float(drawn.mean()), 1e-9)
     # of the others, the chain of plants draws no infested one

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from shapely import MultiPolygon, Point, box
 
-from fieldmon.compute.digest import digest
+from fieldmon.compute.digest import digest, places_by_name
 from fieldmon.monitoring.file.geopackage import blob
 
 AREA = MultiPolygon([box(35.15, 30.36, 35.1508, 30.3607)])
@@ -83,3 +83,12 @@ def test_the_order_of_a_mapping_does_not_matter_but_that_of_the_parts_does():
 @given(st.integers(1, 64))
 def test_a_shorter_digest_is_the_beginning_of_a_longer_one(length):
     assert digest("x", 1.5, length=length) == digest("x", 1.5)[:length]
+
+
+def test_each_name_has_a_place_of_its_own_until_so_many_others_were_asked_for():
+    place = places_by_name(2)
+    place("a").append(1)
+    assert (place("b"), place("a")) == ([], [1])
+    place("c")
+    place("d")
+    assert place("a") == []

@@ -8,6 +8,7 @@ from scipy.stats import binom
 
 from fieldmon.compute.random_streams import RandomStreams
 from fieldmon.errors import SettingError
+from fieldmon.infestation import plot_estimate
 from fieldmon.infestation.belief import Learning
 from fieldmon.infestation.pairs.pairs import PairApproximation, pair_chances
 from fieldmon.infestation.plot_estimate import (
@@ -90,6 +91,16 @@ def test_the_same_question_has_the_same_answer_and_a_surer_interval_is_wider():
     assert estimate_plot(GRID, chance) == estimate_plot(GRID, chance)
     sure, rough = estimate_plot(GRID, chance, sure=0.99), estimate_plot(GRID, chance, sure=0.5)
     assert sure.low < rough.low <= rough.high < sure.high
+
+
+def test_the_fields_of_a_map_are_drawn_once_and_those_of_another_anew(monkeypatch):
+    grid, maps, draw = rectangle(5, 7), [], plot_estimate._drawn
+    monkeypatch.setattr(plot_estimate, "_drawn", lambda *of: maps.append(of) or draw(*of))
+    first, again = (estimate_plot(grid, np.full(35, 0.0123)) for _ in range(2))
+    assert first == again
+    assert len(maps) == 1
+    assert estimate_plot(grid, np.full(35, 0.2)).high > first.high
+    assert len(maps) == 2
 
 
 def test_it_says_so_in_a_sentence():

@@ -7,11 +7,10 @@ are told by the same draws; so is a season that is opened again, changed on a la
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.arrays import read_only
-from fieldmon.compute.digest import digest
+from fieldmon.compute.digest import digest, places_by_name
 from fieldmon.infestation.ancestry.ancestry_night import ToldNight, overnight
 from fieldmon.infestation.ancestry.kept_ancestry import arrays_of
 from fieldmon.infestation.insects.jump_reach import reach_of
@@ -27,6 +26,8 @@ if TYPE_CHECKING:
 
 #: on larger plots nothing is kept: of a million plants one morning is some 160 MB
 KEPT_PLANTS = 50_000
+# up to four maps are believed, and each has its own; of 10 000 plants one is some 1.6 MB
+_kept = places_by_name(32)
 
 
 def overnight_once(of: Ancestry, night: ToldNight) -> Morning:
@@ -42,13 +43,6 @@ def overnight_once(of: Ancestry, night: ToldNight) -> Morning:
         kept.append((replace(ancestry, grid=nowhere), chance))
     ancestry, chance = kept[0]
     return replace(ancestry, grid=of.grid), chance
-
-
-# up to four maps are believed, and each has its own; of 10 000 plants one is some 1.6 MB
-@lru_cache(maxsize=32)
-def _kept(causes: str) -> list[Morning]:  # noqa: ARG001 - by which it is kept
-    """Return where the morning is kept that follows from these causes; empty: nowhere yet."""
-    return []
 
 
 def _causes(of: Ancestry, night: ToldNight) -> str:

@@ -134,7 +134,8 @@ def _leave_out_midnights(
 ) -> int:
     """Take midnights that are days without a time out of `when`; return how many to say.
 
-    `zoned`: written with a zone; `ends`: written as 24:00. Where all times are midnights, nothing is said.
+    `zoned`: written with a zone; `ends`: written as 24:00. Where all times are midnights, nothing
+    is said.
     """
     midnights = (when == day) & ~ends  # of here, written in UTC
     n_times, n = int((~np.isnat(when)).sum()), 0

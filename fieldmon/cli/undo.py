@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -12,6 +12,9 @@ from fieldmon.cli.options import SeasonFile
 from fieldmon.cli.season_files import season_of
 from fieldmon.compute.ranges import NUMBER
 from fieldmon.errors import SettingError
+
+if TYPE_CHECKING:
+    from fieldmon.monitoring import Season
 
 UndoChange = Annotated[
     bool, typer.Option("--change", help="Take back the last change of settings instead.")
@@ -46,22 +49,15 @@ def undo(
 
     Example: fieldmon undo season.gpkg
     """
-    from fieldmon.monitoring.changes.earlier_settings import before_change
     from fieldmon.monitoring.season.undoing import undo_with_batches
 
     if sum(one is not None for one in (batch, inspection, redo)) + change > 1:
         raise SettingError("Give --batch, --inspection, --redo or --change, not two of them.")
 
-    if change:
-        from fieldmon.monitoring.estimates.told_anew import telling_anew
-        from fieldmon.monitoring.settings.settings_words import taken_back
-
-        kept = season_of(season)
-        settings = kept.settings
-        with telling_anew(kept, settings, before_change(kept) or settings, typer.echo):
-            typer.echo(taken_back(settings, kept.undo_change(who)))
-        return
     kept = season_of(season)
+    if change:
+        _undo_change(kept, who)
+        return
     if redo is not None:
         typer.echo(kept.redo(redo, who))
         return
@@ -76,3 +72,14 @@ def undo(
             if one is not None
         )
         typer.echo(f"To let it count again: {again}")
+
+
+def _undo_change(kept: Season, who: str) -> None:
+    """Take back the last change of settings, and say what is believed otherwise for it."""
+    from fieldmon.monitoring.changes.earlier_settings import before_change
+    from fieldmon.monitoring.estimates.told_anew import telling_anew
+    from fieldmon.monitoring.settings.settings_words import taken_back
+
+    settings = kept.settings
+    with telling_anew(kept, settings, before_change(kept) or settings, typer.echo):
+        typer.echo(taken_back(settings, kept.undo_change(who)))

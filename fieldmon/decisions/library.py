@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fieldmon.decisions.label_file import read_labels as read_label_file
-from fieldmon.io.library import must_be_file, warn_of
+from fieldmon.io.library_calls import must_be_file, warn_of
 
 if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel

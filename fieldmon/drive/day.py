@@ -227,15 +227,23 @@ def drive_day(
         if visit.stuck:
             return driven
     if robot.returns and driven.stops and day.at != GATE:
-        driven.home_charged_s = travel_s(aisles.travel, clock, day.at, GATE)
-        driven.home_line_m = way_m(aisles, day.at, GATE)
-        since_s, visit_home = day.gone_s, driver.home(driven.home_line_m)
-        driven.home, driven.home_driven_s = visit_home, driven.home_charged_s
-        if visit_home is not None and visit_home.done_s is not None:
-            driven.home_driven_s = visit_home.done_s - since_s
+        home_charged_s = travel_s(aisles.travel, clock, day.at, GATE)
+        _drive_home(day, aisles, driver, driven, home_charged_s)
     late_s = day.gone_s + driven.home_driven_s - robot.day_s
     driven.late_s = late_s if driven.stops and late_s > _LATE_S else 0.0
     return driven
+
+
+def _drive_home(
+    day: DayToDrive, aisles: Aisles, driver: DrivingRobot, driven: DrivenDay, charged_s: float
+) -> None:
+    """Drive back to the gate, and note it; it takes as long as charged unless the driver says."""
+    driven.home_charged_s = charged_s
+    driven.home_line_m = way_m(aisles, day.at, GATE)
+    since_s, home = day.gone_s, driver.home(driven.home_line_m)
+    driven.home, driven.home_driven_s = home, charged_s
+    if home is not None and home.done_s is not None:
+        driven.home_driven_s = home.done_s - since_s
 
 
 def place_m(aisles: Aisles, at: int) -> Float:

@@ -18,7 +18,7 @@ from fieldmon.plot.block_cutting import blocks_from_outline, cut_blocks
 from fieldmon.plot.plot import planting_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -331,7 +331,6 @@ def cut_each(fields: Fields, cuts: MultiLineString) -> Imported[Fields]:
                 if len(fields) == len(cuts.geoms) == 1:
                     raise
         found.append(parted)
-    n_blocks = sum(len(field.blocks) for field in found)
     if not n_parted:
         raise PlotError(
             worded(
@@ -340,21 +339,24 @@ def cut_each(fields: Fields, cuts: MultiLineString) -> Imported[Fields]:
                 n=len(cuts.geoms),
             )
         )
-    told = {"n": n_parted, "blocks": n_blocks}
-    messages = [
-        seen(worded("{n} {n:line parts|lines part} the plot into {blocks} blocks.", **told))
-    ]
-    if len(fields) > 1:
-        messages = [
-            seen(
-                worded(
-                    "{n} {n:line parts|lines part} plots into {blocks} blocks.",
-                    n=n_parted,
-                    blocks=n_blocks,
-                )
-            )
-        ]
-    if (idle := len(cuts.geoms) - n_parted) > 0:
+    return Imported(tuple(found), tuple(_about_cuts(found, n_parted, len(cuts.geoms))))
+
+
+def _about_cuts(parted: Sequence[Field], n_parted: int, n_lines: int) -> list[ImportMessage]:
+    """Return what lines did to plots: of `n_lines`, `n_parted` parted one."""
+    blocks = sum(len(field.blocks) for field in parted)
+    if len(parted) > 1:
+        said = worded(
+            "{n} {n:line parts|lines part} plots into {blocks} blocks.", n=n_parted, blocks=blocks
+        )
+    else:
+        said = worded(
+            "{n} {n:line parts|lines part} the plot into {blocks} blocks.",
+            n=n_parted,
+            blocks=blocks,
+        )
+    messages = [seen(said)]
+    if (idle := n_lines - n_parted) > 0:
         messages.append(
             dropped(
                 worded(
@@ -364,7 +366,7 @@ def cut_each(fields: Fields, cuts: MultiLineString) -> Imported[Fields]:
                 )
             )
         )
-    return Imported(tuple(found), tuple(messages))
+    return messages
 
 
 def guess_each(fields: Fields) -> Imported[Fields]:

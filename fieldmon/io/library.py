@@ -6,23 +6,19 @@ The command line and the app read in the same way, by `fieldmon.io.prepare`, and
 from __future__ import annotations
 
 import warnings
-from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike, fspath
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fieldmon.compute.arguments import must_be, must_be_name_of_file
+from fieldmon.compute.arguments import must_be
 from fieldmon.compute.kinds import must_be_of
 from fieldmon.compute.wording import worded
-from fieldmon.errors import ChoiceNeeded, ImportDoubt, SettingError
-from fieldmon.io.import_report import Severity
+from fieldmon.errors import ImportDoubt, SettingError
+from fieldmon.io.library_calls import answered, chosen, must_be_file, warn_of
 from fieldmon.io.options import (
     PlotOptions,
     ReadOptions,
     RecordOptions,
-    Upload,
-    as_texts,
     yes_or_no,
 )
 from fieldmon.io.plot_records import records_on
@@ -44,14 +40,11 @@ from fieldmon.plot.local_clock import utc_now
 from fieldmon.plot.plot import must_be_plot
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     import numpy as np
     from numpy.typing import NDArray
 
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.infestation.records import Records
-    from fieldmon.io.import_report import ImportMessage
     from fieldmon.io.options import Source
     from fieldmon.pests.pest import Pest
     from fieldmon.pests.weather import Weather
@@ -60,15 +53,6 @@ if TYPE_CHECKING:
 
 #: files of rows, blocks and paths that a plot may have besides
 _DRAWN = ("rows", "blocks", "contours", "paths")
-#: questions that another file answers
-_OTHER_FILES = {
-    "kind": "Give points as plants=FILE, and lines as rows=FILE or paths=FILE.",
-    "plots": "Give the file of the plots first.",
-    "plants": "Give the plants as plants=FILE.",
-}
-#: options of the first file that count for plants measured on its plot, too
-_OF_PLANTS = {("plants", "doubles"), ("plants", "far")}
-_DOUBTS = (Severity.GUESSED, Severity.DROPPED, Severity.DOUBTFUL)
 
 
 def read_plot(
@@ -149,7 +133,7 @@ def read_plot(
     drawn["guess_blocks"] = yes_or_no("guess_blocks", options.pop("guess_blocks", False))
     sources = PlotSources(source, plants=plants, gate=gate, **drawn)
     sources = replace(sources, **_how_read(sources, feature, options))
-    with _answered(sources.first):
+    with answered(sources.first):
         ready = prepare(PlotRequest(sources, planting or PlantingChoices()))
     warn_of(said.message for said in ready.messages)
     for assumed in ready.assumed:
@@ -194,9 +178,9 @@ def read_plots(source: Source, **options: object) -> tuple[Field, ...]:
     3825
     """
     must_be_file(source)
-    chosen = _chosen(PlotOptions(), options)
-    with _answered():
-        read = read_fields(source, chosen)
+    wanted = chosen(PlotOptions(), options)
+    with answered():
+        read = read_fields(source, wanted)
     warn_of(read.messages)
     return read.value
 
@@ -242,8 +226,8 @@ def read_records(source: Source, near: Plot, **options: object) -> Records:
     """
     must_be_file(source)
     must_be_plot(near)
-    asked = RecordSource(source, _chosen(RecordOptions(), options))
-    with _answered():
+    asked = RecordSource(source, chosen(RecordOptions(), options))
+    with answered():
         read = records_on(near, asked)
     warn_of(read.messages)
     return read.value
@@ -293,8 +277,8 @@ def read_inspections(source: Source, plot: Plot, **options: object) -> Inspectio
     """
     must_be_file(source)
     must_be_plot(plot)
-    wanted = _chosen(InspectionOptions(), options).on(plot.field)
-    with _answered():
+    wanted = chosen(InspectionOptions(), options).on(plot.field)
+    with answered():
         read = read_on_grid(source, plot.grid, wanted, (plot.field.name,))
     warn_of(read.messages)
     return read.value
@@ -373,8 +357,8 @@ def read_weather(source: Source, plot: Plot, **options: object) -> Weather:
     """
     must_be_file(source)
     must_be_plot(plot)
-    wanted = _chosen(WeatherOptions(now=utc_now()), options).on(plot.field)
-    with _answered():
+    wanted = chosen(WeatherOptions(now=utc_now()), options).on(plot.field)
+    with answered():
         read = read_weather_file(source, wanted)
     warn_of(read.messages)
     return read.value
@@ -449,8 +433,8 @@ def read_risk(
 
     said: tuple[Any, float | None, bool] = meaning, mean_share, low_is_risky
     settings = None if said == (None, None, False) else RiskSettings(*said)
-    wanted: Any = _chosen(RasterOptions(), options), how
-    with _answered():
+    wanted: Any = chosen(RasterOptions(), options), how
+    with answered():
         read = risk_on(plot, RiskSource(source, settings, *wanted))
     warn_of(read.messages)
     return read.value
@@ -469,74 +453,10 @@ def _how_read(
                     feature=feature,
                 )
             )
-        said = _chosen(ReadOptions(), options)
+        said = chosen(ReadOptions(), options)
         return {"rows_options" if sources.plants is None else "plants_options": said}
-    chosen = _chosen(PlotOptions(), options)
+    said = chosen(PlotOptions(), options)
     if feature is not None:
-        chosen = chosen.choose("feature", str(feature))
-    measured = ReadOptions(doubles=chosen.doubles, far=chosen.far)
-    return {"plot_options": chosen, "plants_options": measured}
-
-
-def must_be_file(source: Any, what: str = "A file") -> None:  # noqa: ANN401 - anything
-    """Raise `SettingError` unless this is a file: its path, or what was uploaded."""
-    uploads = isinstance(source, tuple) and len(source)
-    frame = _written_as(source)
-    for one in source if uploads else (source,):
-        must_be(
-            f"{what} must be given by its path", one, Upload if uploads else (str, Path, Upload),
-            frame or 'Give "estate.zip", or Path("estate.zip").',
-        )  # fmt: skip
-    if not uploads:
-        must_be_name_of_file(what, source)
-
-
-def _written_as(source: Any) -> str:  # noqa: ANN401 - anything
-    """Return how a frame of GeoPandas, pandas or polars is given; empty: it is none."""
-    if hasattr(source, "to_file"):
-        return 'Write it to a file first: frame.to_file("table.gpkg").'
-    if hasattr(source, "to_csv"):
-        return 'Write it to a file first: frame.to_csv("table.csv", index=False).'
-    if hasattr(source, "write_csv"):
-        return 'Write it to a file first: frame.write_csv("table.csv").'
-    return ""
-
-
-@contextmanager
-def _answered(role: str = "") -> Iterator[None]:
-    """Say with a question how to answer it, where the file of this role asks.
-
-    Options are those of that file, but for a few that files of plants have too.
-    """
-    try:
-        yield
-    except ChoiceNeeded as question:
-        said = f"{question} {_answer(question, role)}".rstrip()
-        raise ChoiceNeeded(said, question.option, question.choices, question.role) from None
-
-
-def _answer(question: ChoiceNeeded, role: str) -> str:
-    """Return what to write, with the first of the choices; empty where no option answers."""
-    option = question.option
-    if option in _OTHER_FILES:
-        return _OTHER_FILES[option]
-    if question.role not in {"", role} and (question.role, option) not in _OF_PLANTS:
-        return ""
-    first = question.choices[0] if question.choices else "..."
-    column, _, named = first.partition("=")
-    told = {column: named} if option == "columns" else first
-    return f"Answer with {option}={told!r}, for instance."
-
-
-def _chosen(options: Any, more: dict[str, object]) -> Any:  # noqa: ANN401 - options of any kind
-    for name, value in more.items():
-        for said in as_texts(name, value):
-            options = options.choose(name, said)
-    return options
-
-
-def warn_of(messages: Iterable[ImportMessage]) -> None:
-    """Warn the caller of the caller of every doubt."""
-    for message in messages:
-        if message.severity in _DOUBTS:
-            warnings.warn(str(message), ImportDoubt, stacklevel=3)
+        said = said.choose("feature", str(feature))
+    measured = ReadOptions(doubles=said.doubles, far=said.far)
+    return {"plot_options": said, "plants_options": measured}

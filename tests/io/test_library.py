@@ -2,7 +2,6 @@
 
 import json
 import warnings
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -181,12 +180,6 @@ def test_inspections_that_name_another_plot_are_left_out(gate):
 def test_what_is_no_file_is_refused_by_its_name(name, told):
     with pytest.raises(SettingError, match=f"A file of {name} must be given by its path"):
         library.read_plot(ESTATE, feature="Gate", **{name: told})
-
-
-@pytest.mark.parametrize("writes", ["to_file", "to_csv", "write_csv"])
-def test_who_hands_over_a_frame_is_told_how_it_becomes_a_file(writes):
-    with pytest.raises(SettingError, match=rf"Write it to a file first: frame\.{writes}\("):
-        library.read_plot(SimpleNamespace(**{writes: None}))
 
 
 @pytest.mark.parametrize(

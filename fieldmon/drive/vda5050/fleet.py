@@ -9,8 +9,6 @@ from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from fieldmon.drive.errand import Visit
 from fieldmon.drive.vda5050.crossing import Crossing
 from fieldmon.drive.vda5050.messages import (
@@ -22,13 +20,13 @@ from fieldmon.drive.vda5050.messages import (
     encoded,
     header_of,
     home_order,
-    is_stopped,
     order_of,
     result_of,
     sent_at,
     side_of,
 )
 from fieldmon.drive.vda5050.mqtt import Wire
+from fieldmon.drive.vda5050.reported import Reported
 from fieldmon.drive.vda5050.robot_clock import RobotClock, day_s
 from fieldmon.errors import FieldmonError, ObservationError, SettingError
 from fieldmon.plot.clearance import STRAY_M
@@ -54,8 +52,6 @@ _MOST_TRIES = 24
 _MOST_CUT_OFF = 3
 # how far from a node it may pass where nobody said how wide it is, and nothing more is known
 _FREE_M = 0.3
-# errors with which a robot cannot go on with its order; 2.1 has only the last
-_ENDS = {"CRITICAL", "FATAL"}
 
 
 class Vda5050Robot:
@@ -163,7 +159,7 @@ class Vda5050Robot:
         def finished(state: dict[str, Any]) -> dict[str, Any] | None:
             if not there and state["lastNodeSequenceId"] >= node["sequenceId"]:
                 there.append(self._day_clock.state_s(state))
-            return self._finished(state, action)
+            return self._reported(state).finished(action, self._began)
 
         said = self._done(order, finished)
         # the next update begins at the node where it stands; what was done there is not done again
@@ -250,10 +246,10 @@ class Vda5050Robot:
 
     def _where(self) -> str:
         """Return where the robot stands by its own word, in a sentence."""
-        place = None if self._state is None else self._state.get("agvPosition")
-        if place is None or not place["positionInitialized"]:
+        place_m = None if self._state is None else self._heard.place_m
+        if place_m is None:
             return "It does not say where it stands."
-        lonlat = self._east_north.lonlat(np.array([[place["x"], place["y"]]]))
+        lonlat = self._east_north.lonlat(place_m)
         near = self._grid.tree.query(self._grid.frame.xy_m(lonlat))[1]
         numbered, (lon, lat) = plant_numbers(self._grid, near), lonlat[0].tolist()
         row = f"row {numbered.line[0]}, " if self._grid.in_rows else ""
@@ -270,12 +266,17 @@ class Vda5050Robot:
             return why
 
         def send(in_vain: int) -> None:
-            if in_vain and self._is_busy():  # what was left of an order of before was heard late
+            # what was left of an order of before was heard late
+            if in_vain and self._heard.is_busy():
                 self._ask("cancelOrder", f"cancel-{in_vain}")
             self._has_order = True
             self._wire.send("order", encoded("order", self._header, order))
 
-        return self._had(send, "taken its order", lambda: self._taken(order), wanted)
+        return self._had(send, "taken its order", lambda: self._has_taken(order), wanted)
+
+    def _has_taken(self, order: dict[str, Any]) -> bool:
+        """Tell whether the robot has said that it has this order."""
+        return self._state is not None and self._heard.has_taken(order)
 
     def _made_free(self) -> str:
         """Let the robot end what is left of an order of before; return why the day ends, if so.
@@ -284,14 +285,16 @@ class Vda5050Robot:
         """
         if isinstance(why := self._told_once(), str):
             return why
-        if (why := self._broken()) or not self._is_busy():
+        if (why := self._broken()) or not self._heard.is_busy():
             return why
         self._say("The robot still has an order of before; it is asked to end it.")
         why = self._had(
             lambda _: self._ask("cancelOrder", "cancel"),
             "ended its order of before",
-            lambda: self._status("cancel") is not None or not self._is_busy(),
-            lambda state: state if self._status("cancel") in OVER or not self._is_busy() else None,
+            lambda: self._heard.status("cancel") is not None or not self._heard.is_busy(),
+            lambda state: (
+                state if self._heard.status("cancel") in OVER or not self._heard.is_busy() else None
+            ),
         )
         return why if isinstance(why, str) else ""
 
@@ -330,12 +333,12 @@ class Vda5050Robot:
         while True:
             now, in_vain = time.monotonic(), 0
             if not has() and now - sent > _AGAIN_S:
-                if math.isfinite(sent) and self._state is not before and not self._stands():
+                if math.isfinite(sent) and self._state is not before and not self._heard.stands:
                     in_vain = tries = tries + 1
-                    said = f"The robot has not {what}{self._complaint()}."
+                    said = f"The robot has not {what}{self._heard.complaint()}."
                     if tries > _MOST_TRIES:
                         return said
-                    other = self._other_order()
+                    other = self._heard.other_order
                     self._say_once(said, said.replace(other, "") if other else said)
                 send(in_vain)
                 sent, before = now, self._state
@@ -350,35 +353,6 @@ class Vda5050Robot:
         """Ask for an instant action."""
         body = at_once(action, f"{self._known['orderId']}-{name}")
         self._wire.send("instantActions", encoded("instantActions", self._actions_header, body))
-
-    def _status(self, name: str) -> str | None:
-        """Return how far an instant action is; None: the robot does not know it."""
-        wanted = f"{self._known['orderId']}-{name}"
-        told = [one["actionStatus"] for one in self._heard["actionStates"]
-                if one["actionId"] == wanted]  # fmt: skip
-        return told[-1] if told else None
-
-    def _is_busy(self) -> bool:
-        """Tell whether something is left of an order that is not of this run."""
-        state = self._heard
-        left = [one for one in state["actionStates"] if one["actionStatus"] not in OVER]
-        others = state["orderId"] != self._known["orderId"]
-        return others and bool(state["nodeStates"] or state["edgeStates"] or left)
-
-    def _complaint(self) -> str:
-        """Return in words what the robot reports, to be put at the end of a sentence."""
-        told = [one.get("errorDescription") or one["errorType"] for one in self._heard["errors"]]
-        if told:
-            return f"; it reports: {', '.join(told)}"
-        other = self._other_order()
-        return (
-            f": it has the order {other}, which is not ours" if other else ", and does not say why"
-        )
-
-    def _other_order(self) -> str:
-        """Return which order the robot reports, if it is none of this run; "": it has none."""
-        order = str(self._heard["orderId"])
-        return "" if order == self._known["orderId"] else order
 
     def _say_once(self, sentence: str, about: str) -> None:
         """Say something, unless that was said in this run."""
@@ -428,33 +402,21 @@ class Vda5050Robot:
         )
 
     @property
-    def _heard(self) -> dict[str, Any]:
+    def _heard(self) -> Reported:
         """What the robot said last."""
         assert self._state is not None  # noqa: S101 - asked once it was heard
-        return self._state
+        return self._reported(self._state)
+
+    def _reported(self, state: dict[str, Any]) -> Reported:
+        return Reported(state, self._known["orderId"])
 
     def _broken(self) -> str:
         """Say that the robot cannot go on, if it says so now and not of a day before."""
-        state = self._heard
-        fatal = [one for one in state["errors"] if one["errorLevel"] in _ENDS]
-        is_ours = state["orderId"] == self._known["orderId"] or sent_at(state) >= self._began
-        if not fatal or not is_ours:
-            return ""
-        told = fatal[0].get("errorDescription") or fatal[0]["errorType"]
-        return f"The robot reports an error that it cannot mend: {told}."
+        return self._heard.broken(self._began)
 
     def _over(self) -> str:
         """Return why the day ends after the plant in hand; "" if it does not."""
-        return self._broken() or self._low()
-
-    def _finished(self, state: dict[str, Any], action: str) -> dict[str, Any] | None:
-        """Return the state of an action that is over; one that a broken robot let go is not."""
-        over = {"FINISHED"} if self._broken() else OVER
-        for one in state["actionStates"]:
-            if one["actionId"] == action and one["actionStatus"] in over:
-                done: dict[str, Any] = one
-                return done
-        return None
+        return self._broken() or self._heard.low(self._least_battery)
 
     def _must_come(self) -> None:
         """Say that a robot was never heard yet; raise `SettingError` once it takes too long."""
@@ -469,15 +431,6 @@ class Vda5050Robot:
             )
         if waited_s > _AGAIN_S:
             self._tell(f"Waiting for the robot {name}, which has not been heard yet.")
-
-    def _taken(self, order: dict[str, Any]) -> bool:
-        """Tell whether the robot has said that it has this order."""
-        state = self._state
-        return (
-            state is not None
-            and state["orderId"] == order["orderId"]
-            and state["orderUpdateId"] >= order["orderUpdateId"]
-        )
 
     def _hear(self) -> bool:
         """Take the robot's next state; return whether there was one within a moment.
@@ -503,17 +456,17 @@ class Vda5050Robot:
         if kind != "state" or self._late(message):
             return False
         self._state, self._is_lost = message, False
-        if message["orderId"] == self._known["orderId"]:
+        if self._heard.is_of_ours:
             self._day_clock.hear_order(message)
             self._had_ours = True
-        elif self._had_ours and (other := self._other_order()):
+        elif self._had_ours and (other := self._heard.other_order):
             self._say_once(
                 f"The robot had our order, but reports the order {other} now: another program may "
                 "give it orders, too. Let only one of them do so.",
                 "another order",
             )
         self._see(message)
-        if self._stands():
+        if self._heard.stands:
             self._tell("The robot is paused, or driven by hand; waiting.")
         else:
             self._told = ""
@@ -521,16 +474,11 @@ class Vda5050Robot:
 
     def _see(self, state: dict[str, Any]) -> None:
         """Pass on where the robot says that it is, once it has an order of this run."""
-        place = state.get("agvPosition")
-        is_ours = state["orderId"] == self._known["orderId"]
-        if self.sees is None or not is_ours or place is None or not place["positionInitialized"]:
+        reported = self._reported(state)
+        if self.sees is None or not reported.is_of_ours or (place_m := reported.place_m) is None:
             return
-        lonlat = self._east_north.lonlat(np.array([[place["x"], place["y"]]]))
+        lonlat = self._east_north.lonlat(place_m)
         self.sees(self._day_clock.state_s(state), self._grid.frame.xy_m(lonlat)[0])
-
-    def _stands(self) -> bool:
-        """Tell whether somebody has stopped the robot."""
-        return is_stopped(self._heard)
 
     def _late(self, message: dict[str, Any]) -> bool:
         """Tell whether a message came after one that was sent later, or twice; say a clock's jump.
@@ -555,16 +503,6 @@ class Vda5050Robot:
         if sentence != self._told:
             self._told = sentence
             self._say(sentence)
-
-    def _low(self) -> str:
-        charge = self._heard["batteryState"]["batteryCharge"]
-        if charge >= self._least_battery:
-            return ""
-        low = math.floor(10 * charge) / 10  # never rounded up to what would do
-        return (
-            f"The robot's battery is at {low:g} %, under {self._least_battery:g} %: the day ends "
-            "here. Charge it."
-        )
 
 
 @contextmanager

@@ -93,43 +93,64 @@ class PlacedTwice(ImportMessage):
             return []
         allowed_m = spacing_m + _SIGMAS * self._own_m()
         away_m = distance_m(self.lonlat, plot)
-        here = np.flatnonzero((away_m <= 0.0) & np.isin(names, list(others)))
+        gone = np.flatnonzero((names == plain(plot.name)) & (away_m > allowed_m))
+        return [
+            *self._about_strangers(plot, others, (names, away_m <= 0.0, allowed_m)),
+            *self._about_lost(plot, list(others.values()), gone),
+        ]
+
+    def _about_strangers(
+        self,
+        plot: Field,
+        others: dict[str, Field],
+        records: tuple[NDArray[np.str_], NDArray[np.bool_], NDArray[np.float64]],
+    ) -> list[ImportMessage]:
+        """Return a doubt where records on a plot name another one, away from that.
+
+        `others` by their plain names; of each record the plot's plain name, whether it lies on
+        `plot`, and how far from its own it may lie, metres.
+        """
+        names, is_on, allowed_m = records
+        here = np.flatnonzero(is_on & np.isin(names, list(others)))
         strangers = np.zeros(len(names), np.bool_)
         for name in np.unique(names[here]).tolist():
             mine = here[names[here] == name]
             from_own_m = distance_m(self.lonlat[mine], others[name])
             strangers[mine] = from_own_m > allowed_m[mine]
-        gone = np.flatnonzero((names == plain(plot.name)) & (away_m > allowed_m))
-        known = list(others.values())
-        tree = shapely.STRtree([one.boundary for one in known])
+        if not strangers.any():
+            return []
+        own = sorted(others[name].name for name in np.unique(names[strangers]).tolist())
+        sentence = worded(
+            "{n} {n:record lies|records lie} on {plot}, but {n:names|name} {n:a plant|plants} "
+            "of {others}, {example}. {n:Its position was|Their positions were} taken: look "
+            "which is right.",
+            n=int(np.count_nonzero(strangers)),
+            plot=plot.name,
+            others=first_few(own),
+            example=self._first(int(np.argmax(strangers))),
+        )
+        return [doubtful(sentence, remedy=_by_plant())]
+
+    def _about_lost(
+        self, plot: Field, others: list[Field], gone: NDArray[np.intp]
+    ) -> list[ImportMessage]:
+        """Return a doubt where records that name a plot and lie away from it lie on another."""
+        tree = shapely.STRtree([one.boundary for one in others])
         record, other = tree.query(shapely.points(self.lonlat[gone]), predicate="intersects")
         lost = np.unique(gone[record])
-        said: list[ImportMessage] = []
-        if strangers.any():
-            own = sorted(others[name].name for name in np.unique(names[strangers]).tolist())
-            sentence = worded(
-                "{n} {n:record lies|records lie} on {plot}, but {n:names|name} {n:a plant|plants} "
-                "of {others}, {example}. {n:Its position was|Their positions were} taken: look "
-                "which is right.",
-                n=int(np.count_nonzero(strangers)),
-                plot=plot.name,
-                others=first_few(own),
-                example=self._first(int(np.argmax(strangers))),
-            )
-            said.append(doubtful(sentence, remedy=_by_plant()))
-        if len(lost):
-            on = sorted({known[k].name for k in other.tolist()})
-            sentence = worded(
-                "{n} {n:record names|records name} {n:a plant|plants} of {plot}, but {n:lies|lie} "
-                "on {others}, {example}. {n:Its position was|Their positions were} taken: look "
-                "which is right.",
-                n=len(lost),
-                plot=plot.name,
-                others=first_few(on),
-                example=self._first(int(lost[0])),
-            )
-            said.append(doubtful(sentence, remedy=_by_plant()))
-        return said
+        if not len(lost):
+            return []
+        on = sorted({others[k].name for k in other.tolist()})
+        sentence = worded(
+            "{n} {n:record names|records name} {n:a plant|plants} of {plot}, but {n:lies|lie} "
+            "on {others}, {example}. {n:Its position was|Their positions were} taken: look "
+            "which is right.",
+            n=len(lost),
+            plot=plot.name,
+            others=first_few(on),
+            example=self._first(int(lost[0])),
+        )
+        return [doubtful(sentence, remedy=_by_plant())]
 
     def _first(self, record: int) -> Worded:
         """Return which plant the first of some records names."""

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from fieldmon.io.parse.values import CellCount
+
 
 from fieldmon.io.readers.record_columns import LOOKED_AT, RecordColumns
 
@@ -136,9 +138,16 @@ def _numbers_of(table: RecordColumns, name: str) -> RecordCounts:
         of_codes = np.isin(count, [*codes])
         count[of_codes], present[of_codes] = np.nan, UNKNOWN
         messages.append(_about_codes(name, sorted(codes), int(of_codes.sum())))
-    odd = [cell for cell in cells if known[cell].is_rough]
-    rough = [cell for cell in odd if known[cell].present != UNKNOWN]
-    none = [cell for cell in odd if known[cell].present == UNKNOWN]
+    messages += _about_odd(name, [(cell, known[cell]) for cell in cells])
+    return RecordCounts(count, present, messages)
+
+
+def _about_odd(name: str, cells: list[tuple[str, CellCount]]) -> list[ImportMessage]:
+    """Return what there is to say of cells of a column that are no plain numbers, as read."""
+    messages: list[ImportMessage] = []
+    unknown = [(cell, read) for cell, read in cells if read.present == UNKNOWN]
+    none = [cell for cell, read in unknown if read.is_rough]
+    rough = [cell for cell, read in cells if read.is_rough and read.present != UNKNOWN]
     if none:
         messages.append(
             doubtful(
@@ -162,9 +171,7 @@ def _numbers_of(table: RecordColumns, name: str) -> RecordCounts:
                 name,
             )
         )
-    missing = [cell for cell in cells if known[cell].present == UNKNOWN]
-    n_missing = len(missing) - len(none)
-    if n_missing:
+    if n_missing := len(unknown) - len(none):
         messages.append(
             seen(
                 worded(
@@ -173,7 +180,7 @@ def _numbers_of(table: RecordColumns, name: str) -> RecordCounts:
                 name,
             )
         )
-    return RecordCounts(count, present, messages)
+    return messages
 
 
 def _about_codes(name: str, codes: list[float], n: int) -> ImportMessage:

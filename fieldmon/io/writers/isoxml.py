@@ -85,22 +85,28 @@ def isoxml_taskdata(
     partfield = ET.SubElement(root, "PFD", A="PFD1", C=name, D=area)
     _polygons(partfield, boundary, _PARTFIELD)
     task = ET.SubElement(root, "TSK", A="TSK1", B=name, E="PFD1", G="1", H="0", I="0", J="0")
-    _rate(ET.SubElement(task, "TZN", A="0", B="not sprayed"), 0.0)
-    treated = ET.SubElement(task, "TZN", A="1", B="zones")
-    cells = zones if isinstance(zones, ZoneCells) else None
-    for zone in [] if isinstance(zones, ZoneCells) else zones:
-        _polygons(treated, zone, _ZONE)
-    if cells is None or cells.kind == 1:
-        _rate(treated, rate_l_ha)
-    else:
-        # which number is which: the cells themselves hold the rates
-        _rate(treated, 0.0)
-    binary = {} if cells is None else {f"{_GRID}.bin": _grid(task, cells, rate_l_ha)}
+    binary = _treatment_zones(task, zones, rate_l_ha)
     scale = f"{1 / _PER_L_HA:.9f}"
     ET.SubElement(root, "VPN", A="VPN1", B="0", C=scale, D="1", E="l/ha")
     written = ET.tostring(root, encoding="utf-8", xml_declaration=True)
     files = {"TASKDATA.XML": written, **binary}
     return zipped({f"TASKDATA/{name}": data for name, data in files.items()})
+
+
+def _treatment_zones(
+    task: ET.Element, zones: Iterable[MultiPolygon] | ZoneCells, rate_l_ha: float
+) -> dict[str, bytes]:
+    """Add what is sprayed and what is not; return the grid's binary file, if there is one."""
+    _rate(ET.SubElement(task, "TZN", A="0", B="not sprayed"), 0.0)
+    treated = ET.SubElement(task, "TZN", A="1", B="zones")
+    if not isinstance(zones, ZoneCells):
+        for zone in zones:
+            _polygons(treated, zone, _ZONE)
+        _rate(treated, rate_l_ha)
+        return {}
+    # of the other kind the cells themselves hold the rates
+    _rate(treated, rate_l_ha if zones.kind == 1 else 0.0)
+    return {f"{_GRID}.bin": _grid(task, zones, rate_l_ha)}
 
 
 def _grid(task: ET.Element, cells: ZoneCells, rate_l_ha: float) -> bytes:

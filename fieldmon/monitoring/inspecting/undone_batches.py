@@ -139,25 +139,7 @@ def redo(
                 batch=number,
             )
         )
-    before = rows_that_count.redo_corrections(db, number, but)
-    first = to_redo_first(db, number, but) if before is None else None
-    if first is not None:
-        raise SettingError(
-            worded(
-                "What batch {batch} corrected must count before the correction can, but batch "
-                "{first} was undone. Let that count again first: --redo {first}",
-                batch=number,
-                first=first,
-            )
-        )
-    if before is None:
-        raise SettingError(
-            worded(
-                "What batch {batch} corrected must stand there as it did before, but it was "
-                "corrected anew or taken back since. Undo that first, or correct it anew.",
-                batch=number,
-            )
-        )
+    before = _corrections_again(db, number, but)
     table = TABLE_OF[batch.kind]
     stays = ", ".join("?" * len(but))
     of = f"batch = ? AND undone = ? AND coalesce(digest, '') NOT IN ({stays})"
@@ -176,6 +158,33 @@ def redo(
         n -= rows_that_count.n_corrected(db, number)
     place = signs or {}, _plant_of(db, said)
     return {number, *before, *again}, _counts_again(batch, said, (n, elsewhere), place)
+
+
+def _corrections_again(db: sqlite3.Connection, number: int, but: Sequence[str]) -> set[int]:
+    """Let a batch's corrections hold again; return the batches that they change.
+
+    Raise `SettingError` where what they corrected does not stand there as it did before.
+    """
+    before = rows_that_count.redo_corrections(db, number, but)
+    if before is not None:
+        return before
+    first = to_redo_first(db, number, but)
+    if first is not None:
+        raise SettingError(
+            worded(
+                "What batch {batch} corrected must count before the correction can, but batch "
+                "{first} was undone. Let that count again first: --redo {first}",
+                batch=number,
+                first=first,
+            )
+        )
+    raise SettingError(
+        worded(
+            "What batch {batch} corrected must stand there as it did before, but it was "
+            "corrected anew or taken back since. Undo that first, or correct it anew.",
+            batch=number,
+        )
+    )
 
 
 def _plant_of(db: sqlite3.Connection, said: BatchContents | None) -> str:

@@ -90,22 +90,8 @@ def let_in(season: OpenSeason, name: str, rows: tuple[int, int] | None = None) -
             )
         )  # fmt: skip
     least, lines = int(season.plant_numbers.line.min()), int(season.plant_numbers.line.max())
-    if rows is not None and least <= rows[1] < rows[0] <= lines:
-        raise SettingError(
-            worded(
-                "The first row of a part must not come after its last one, but it is {low} to "
-                "{high}. Exchange them: {high} to {low}.",
-                low=rows[0], high=rows[1],
-            )
-        )  # fmt: skip
-    if rows is not None and not least <= rows[0] <= rows[1] <= lines:
-        raise SettingError(
-            worded(
-                "A part must be rows from {least} to {lines} on this plot, "
-                "but it is {low} to {high}.",
-                least=least, lines=lines, low=rows[0], high=rows[1],
-            )
-        )  # fmt: skip
+    if rows is not None:
+        _must_be_on_plot(rows, least, lines)
     if rows == (least, lines):
         rows = None
     key = secrets.token_urlsafe(_KEY_BYTES)
@@ -127,6 +113,27 @@ def let_in(season: OpenSeason, name: str, rows: tuple[int, int] | None = None) -
         insert(db, phone_tables.SCOUTS, [row])
         touch(db, phone_tables.SCOUTS.name)
     return key
+
+
+def _must_be_on_plot(rows: tuple[int, int], least: int, lines: int) -> None:
+    """Raise `SettingError` unless a part is rows from `least` to `lines`, the first one first."""
+    low, high = rows
+    if least <= high < low <= lines:
+        raise SettingError(
+            worded(
+                "The first row of a part must not come after its last one, but it is {low} to "
+                "{high}. Exchange them: {high} to {low}.",
+                low=low, high=high,
+            )
+        )  # fmt: skip
+    if not least <= low <= high <= lines:
+        raise SettingError(
+            worded(
+                "A part must be rows from {least} to {lines} on this plot, "
+                "but it is {low} to {high}.",
+                least=least, lines=lines, low=low, high=high,
+            )
+        )  # fmt: skip
 
 
 def _must_be_own(

@@ -130,15 +130,6 @@ def test_a_robot_may_pass_as_far_from_a_node_as_its_ways_keep_off_plants(
     assert said == {0.1 if is_wide else 0.3}
 
 
-@pytest.mark.parametrize(("charge", "told"), [(14.97, "14.9"), (9, "9")])
-def test_a_battery_that_is_too_low_is_never_rounded_to_one_that_would_do(charge, told):
-    driver = Vda5050Robot(SimpleNamespace(robot=ROBOT), "low")
-    driver._state = {"batteryState": {"batteryCharge": charge}}
-    assert driver._low().startswith(f"The robot's battery is at {told} %, under 15 %: ")
-    driver._state = {"batteryState": {"batteryCharge": 15.0}}
-    assert driver._low() == ""
-
-
 @pytest.mark.parametrize(
     ("state", "what"),
     [

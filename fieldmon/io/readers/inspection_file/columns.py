@@ -111,17 +111,7 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     if result is None and count is None:
         marks = names_in(layer)
         if marks is None:
-            raise ChoiceNeeded(
-                worded(
-                    "{name} must have a column that says what was found "
-                    "(found, result, count), but none was recognised among: "
-                    "{value}. Name it.",
-                    name=layer.name,
-                    value=", ".join(names) or "none",
-                ),
-                "columns",
-                tuple(f"{role}={n}" for role in ("present", "count") for n in _open(layer)),
-            )
+            raise _what_was_found(layer)
     _must_be_apart(
         {
             worded("row"): line,
@@ -133,10 +123,7 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     if plant is not None and line is not None and number is None:
         _must_count_in_rows(plant, options)
         plant, number = None, plant
-    arrive = next((n for n in names if plain(n) == "arrive"), None)
-    if arrive is None and any(plain(n) == plain("arrive_s") for n in names):
-        # a KML given out, in which the planned arrival is the time of a place
-        arrive = next((n for n in names if plain(n) == "timestamp"), None)
+    arrive = _arrival(names)
     block = options.column("block") or find("block", names, frozenset({line or "", plant or ""}))
     used = (result, count, marks, plant, line, number, block)
     species = options.column("species")  # empty: none says it
@@ -146,6 +133,30 @@ def columns_of(layer: Layer, options: InspectionOptions) -> InspectionColumns:
     return InspectionColumns(
         result, count, marks, plant, line, number, face, arrive, block, leaf, species or None
     )
+
+
+def _what_was_found(layer: Layer) -> ChoiceNeeded:
+    """Return the question which column says what was found, where none was recognised."""
+    return ChoiceNeeded(
+        worded(
+            "{name} must have a column that says what was found "
+            "(found, result, count), but none was recognised among: "
+            "{value}. Name it.",
+            name=layer.name,
+            value=", ".join(layer.columns) or "none",
+        ),
+        "columns",
+        tuple(f"{role}={n}" for role in ("present", "count") for n in _open(layer)),
+    )
+
+
+def _arrival(names: list[str]) -> str | None:
+    """Return the column of the planned arrival."""
+    arrive = next((n for n in names if plain(n) == "arrive"), None)
+    if arrive is None and any(plain(n) == plain("arrive_s") for n in names):
+        # a KML given out, in which the planned arrival is the time of a place
+        arrive = next((n for n in names if plain(n) == "timestamp"), None)
+    return arrive
 
 
 def _line(layer: Layer, options: InspectionOptions) -> str | None:

@@ -130,20 +130,7 @@ def positions_in(
     is_named = columns.plant is not None or columns.number is not None
     if not given and (is_named or not roles >= {"x", "y"}):
         if not is_named:
-            taken = {columns.line, columns.result, columns.number_found}
-            named = [f"plant={name}" for name in layer.columns]
-            choices = dict.fromkeys((*named, *could_be_positions(layer, options)))
-            raise ChoiceNeeded(
-                worded(
-                    "{name} must say which plants were inspected (a plant's "
-                    "number, a row and a number in it, or a position), but "
-                    "its columns are {names}. Name them.",
-                    name=layer.name,
-                    names=", ".join(layer.columns),
-                ),
-                "columns",
-                tuple(one for one in choices if one.partition("=")[2] not in taken),
-            )
+            raise _which_plants(layer, columns, options)
         return lonlat, accuracy_m, unread, ()
     rows = np.empty(len(layer), dtype=object)
     rows[:] = range(len(layer))
@@ -165,6 +152,26 @@ def positions_in(
         told = found.unread.messages()
         messages = tuple(one for one in messages if one not in told)
     return lonlat, accuracy_m, unread.astype(np.str_), messages
+
+
+def _which_plants(
+    layer: Layer, columns: InspectionColumns, options: InspectionOptions
+) -> ChoiceNeeded:
+    """Return the question which columns say the plants, where none was recognised."""
+    taken = {columns.line, columns.result, columns.number_found}
+    named = [f"plant={name}" for name in layer.columns]
+    choices = dict.fromkeys((*named, *could_be_positions(layer, options)))
+    return ChoiceNeeded(
+        worded(
+            "{name} must say which plants were inspected (a plant's "
+            "number, a row and a number in it, or a position), but "
+            "its columns are {names}. Name them.",
+            name=layer.name,
+            names=", ".join(layer.columns),
+        ),
+        "columns",
+        tuple(one for one in choices if one.partition("=")[2] not in taken),
+    )
 
 
 def _has(layer: Layer, role: str, options: InspectionOptions) -> bool:

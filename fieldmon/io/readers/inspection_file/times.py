@@ -84,11 +84,7 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     timed = np.array([read_clocks[cell] is not None for cell in at], bool)
     planned = _planned_days(layer, columns, timed)
     unsaid = np.array([is_missing(cell) for cell in on], bool)
-    told = options.day
-    if told is None and unsaid.all() and np.isnat(planned).all():
-        told = options.work_day
-    told = np.datetime64("NaT", "D") if told is None else told
-    otherwise = np.where(np.isnat(planned), told, planned)
+    otherwise = _days_otherwise(planned, options, is_any_said=not unsaid.all())
     day = np.where(unsaid, otherwise, read.day).astype("datetime64[D]")
     when = np.full(len(layer), "NaT", dtype="datetime64[s]")
     zone = None if options.zone is None else zone_of(options.zone)
@@ -108,13 +104,7 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
             if zone is not None and not zoned[i] and is_skipped(when[i], zone):
                 skipped.append(str(when[i]))
     day = np.where(np.isnat(when), day, when.astype("datetime64[D]")).astype("datetime64[D]")
-    midnights = (when == day) & ~ends  # of here, written in UTC
-    n_times = int((~np.isnat(when)).sum())
-    if midnights.sum() < n_times:
-        midnights &= zoned
-        n_days += n_here if are_days(n_here := int(midnights.sum()), n_times) else 0
-    if are_days(int(midnights.sum()), n_times):
-        when[midnights] = "NaT"
+    n_days += _leave_out_midnights(when, day, zoned, ends)
     of_days = midnights_left_out(n_days)
     about = unread_days(undated) + _about_times(broken, read.is_ambiguous, n_utc)
     about += [*_about_ends(int(ends.sum())), *_about_skipped(skipped)]
@@ -123,6 +113,39 @@ def times_in(layer: Layer, columns: InspectionColumns, options: InspectionOption
     # where others have come each that has not is left out, and said, unless they are taken
     ahead = in_future(day) if options.take_doubtful or not amid_past(day) else []
     return NotedTimes(when, day, [*ahead, *idle, *of_days, *about])
+
+
+def _days_otherwise(
+    planned: NDArray[np.datetime64], options: InspectionOptions, *, is_any_said: bool
+) -> NDArray[np.datetime64]:
+    """Return the days of records that say none: planned, told, or of the work if none is said."""
+    told = options.day
+    if told is None and not is_any_said and np.isnat(planned).all():
+        told = options.work_day
+    told = np.datetime64("NaT", "D") if told is None else told
+    return np.where(np.isnat(planned), told, planned)
+
+
+def _leave_out_midnights(
+    when: NDArray[np.datetime64],
+    day: NDArray[np.datetime64],
+    zoned: NDArray[np.bool_],
+    ends: NDArray[np.bool_],
+) -> int:
+    """Take midnights that are days without a time out of `when`; return how many to say.
+
+    `zoned`: written with a zone; `ends`: written as 24:00. Where all times are midnights, nothing
+    is said.
+    """
+    midnights = (when == day) & ~ends  # of here, written in UTC
+    n_times, n = int((~np.isnat(when)).sum()), 0
+    if midnights.sum() < n_times:
+        midnights &= zoned
+        n_here = int(midnights.sum())
+        n = n_here if are_days(n_here, n_times) else 0
+    if are_days(int(midnights.sum()), n_times):
+        when[midnights] = "NaT"
+    return n
 
 
 def _of_told_day(

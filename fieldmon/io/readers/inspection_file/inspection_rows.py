@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -134,4 +134,5 @@ class InspectionRows:
     def take(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Self:
         """Return those records."""
         columns = vars(self).items()
-        return replace(self, **{k: c[which] for k, c in columns if isinstance(c, np.ndarray)})
+        taken: dict[str, Any] = {k: c[which] for k, c in columns if isinstance(c, np.ndarray)}
+        return replace(self, **taken)

@@ -453,7 +453,8 @@ def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:
 
 def passed_by(history: History, day: int, state: NDArray[np.int8]) -> NDArray[np.bool_]:
     """Return ``(n,)`` plants never seen, by `state`, that could not be inspected, or are gone."""
-    return (state == UNKNOWN) & (not_inspected(history, day) > 0)
+    passed: NDArray[np.bool_] = (state == UNKNOWN) & (not_inspected(history, day) > 0)
+    return passed
 
 
 def is_any(signed: NDArray[np.bool_] | None) -> bool:

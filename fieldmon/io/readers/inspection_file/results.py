@@ -141,7 +141,8 @@ def _against(
 ) -> NDArray[np.bool_]:
     """Return in which rows ``(n,)`` a result that is said and a count contradict each other."""
     against: NDArray[np.bool_] = spoken & (by_count != UNKNOWN) & (result != by_count)
-    return against & ((result != UNKNOWN) | (by_count == PRESENT))
+    against &= (result != UNKNOWN) | (by_count == PRESENT)
+    return against
 
 
 def _contradicts() -> str:

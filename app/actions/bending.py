@@ -18,7 +18,7 @@ from ..state import cached, notices, widget_memory
 from ..state.plot_edits import ROW, Edit
 from ..state.plot_files import draw, drawn, laid
 from ..words import texts
-from ..words.language import number, of_error
+from ..words.language import of_error
 
 if TYPE_CHECKING:
     from pydeck import Layer
@@ -50,8 +50,8 @@ def show(choices: Choices) -> None:
     if plot is None:
         return
     rows = int(plot.grid.row_line.max()) + 1
-    plants = number(len(plot.grid), ",")
-    st.markdown(texts.BEND_MAKES.format(rows=number(rows, ","), plants=plants))
+    plants = texts.PLANTS_COUNTED.format(n=len(plot.grid))
+    st.markdown(texts.BEND_MAKES.format(n=rows, plants=plants))
     with st.container(horizontal=True):
         st.button(texts.BEND_USE, key="bend_use", type="primary", on_click=_use, args=(choices,))
         st.button(texts.BEND_DROP, key="bend_drop", on_click=drop, args=(choices,))

@@ -21,7 +21,7 @@ from ..state import shared_plots, widget_memory
 from ..state.chosen_units import units
 from ..state.shared_plots import EstateCrew, SharedPlots
 from ..words import texts
-from ..words.language import about, in_words, listed, number
+from ..words.language import about, in_words, listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -105,7 +105,7 @@ def _say(made: SharedPlots, not_among: Sequence[PlotLeftOut] = ()) -> None:
     finds = sum(one.route.expected_finds for one in made.turns)
     with st.container(key="lead"):
         lead = texts.PLAN_ALL_LEAD.format(
-            plants=number(plants, ","),
+            plants=texts.PLANTS_COUNTED.format(n=plants),
             n=len({one.plot for one in made.turns}),
             finds=about(finds),
         )

@@ -498,8 +498,8 @@ PLAN_ALL_CREW = {"robots": "Robots", "robot_hours": "Hours of each robot", "scou
                  "move_min": "Minutes from plot to plot"}  # fmt: skip
 ROBOT_NAMED, SCOUT_NAMED = "robot {n}", "scout {n}"
 PLAN_ALL_LEAD = Plural(
-    "{plants} plants on {n} plot; expect {finds} finds.",
-    "{plants} plants on {n} plots; expect {finds} finds.",
+    "{plants} on {n} plot; expect {finds} finds.",
+    "{plants} on {n} plots; expect {finds} finds.",
 )
 PLAN_ALL_ALSO = "Also plots seen in the last 2 days"
 PLAN_ALL_NONE = (
@@ -639,7 +639,7 @@ TODAY_DONE = Plural(
 FORMAT, DOWNLOAD_AS = "Format", "Download for {reader}"
 COLUMN_ARRIVE, COLUMN_ROW, COLUMN_PLANT, COLUMN_CHANCE = "arrive", "row", "plant", "chance"
 COLUMN_FACE = "face"
-MAP_ALT = "Map of plot {name}: {plants} plants, {stops} stops on the route, {finds} plants found."
+MAP_ALT = "Map of plot {name}. Plants: {plants}; stops on the route: {stops}; found: {finds}."
 
 # -- what stands beside a thing on the map that is pointed at
 TIP_PLANT, TIP_GATE, TIP_PATH = "row {row}, plant {plant}{note}", "gate: start and end", "path"
@@ -762,7 +762,10 @@ OUTLINE_RANGE = (
 )
 DRAW_NOTE = "Insects come in along paths; a no-go area carries no plants and is not driven through."
 BEND_ROW = "Row to bend; the others follow it"
-BEND_MAKES = "This makes {rows} rows with {plants} plants. They are drawn over the plot."
+BEND_MAKES = Plural(
+    "This makes {n:,} row with {plants}. It is drawn over the plot.",
+    "This makes {n:,} rows with {plants}. They are drawn over the plot.",
+)
 BEND_USE, BEND_DROP = "Use these rows", "Drop them"
 DIRECTIONS = "Which way do the rows run?"
 DIRECTIONS_NOTE = (
@@ -1385,8 +1388,8 @@ SCOUT_PAGE = {
     "map": "Map of the plot: arrow keys move it, + and - bring it closer",
     "zoom_in": "Closer", "zoom_out": "Farther", "to_next": "To the next plant",
     "whole_plot": "The whole plot",
-    "progress": "{done} done, {left} to go",
-    "progress_in_time": "{done} done, {left} of {all} fit",
+    "progress": "{done} of {all} done",
+    "progress_in_time": "{done} of {all} done, {left} fit",
     "time_left": "{hours}:{minutes} h left",
     "time_over": "The hours are over",
     "waiting": "{n} to send", "all_sent": "All sent", "some_refused": "{n} not taken",

@@ -154,12 +154,12 @@ def lines(season: Season, now: Status) -> Iterator[str]:
 
 def _of_inspections(season: Season, now: Status) -> Iterator[str]:
     """Yield how much was inspected, what was found, and what could not be inspected."""
-    from fieldmon.compute.wording import share_figure
+    from fieldmon.compute.wording import counted, share_figure
 
     yield f"{season.plot.field.name}, {now.on} (day {now.day + 1} of the season)"
     yield f"  inspected that day     {now.inspected_today:6,}, {now.found_today:,} found infested"
     yield (
-        f"  inspected so far       {now.inspected:6,} of {now.plants:,} plants "
+        f"  inspected so far       {now.inspected:6,} of {counted(now.plants, 'plant')} "
         f"({share_figure(now.inspected / now.plants)}), {now.found:,} found infested"
         + (f" ({now.finds:,} finds: some again)" if now.finds > now.found else "")
     )

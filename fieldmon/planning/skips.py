@@ -132,20 +132,28 @@ def left_out_in_words(scene: Scene, *routes: Route) -> tuple[Worded, ...]:
 
 
 def nothing_left_in_words(scene: Scene) -> Worded | None:
-    """Return that every plant that could be inspected is known and flagged; None: it is not so."""
-    if scene.flagged is None or (scene.last_inspected != scene.day).any():
+    """Return that no plant is left that could be inspected, and why; None: one is."""
+    if (scene.last_inspected != scene.day).any():
         return None
-    n, every = int(np.count_nonzero(scene.flagged)), len(scene.flagged)
+    every = len(scene.last_inspected)
+    n = 0 if scene.flagged is None else int(np.count_nonzero(scene.flagged))
+    if not n:
+        return worded(
+            "Nothing is left to inspect: every plant was inspected on this day or is left out of "
+            "it."
+        )
     if n == every:
         return worded(
-            "Every plant is known: all {n:,} were found and only flagged. Nothing is left to "
-            "inspect until they are treated.",
+            "Every plant is known: {plants} {n:was|were} found and only flagged. Nothing is left "
+            "to inspect until {n:it is|they are} treated.",
+            plants=counted(n, "plant"),
             n=n,
         )
     return worded(
-        "Nothing is left to inspect: {plants} were found and only flagged, and all others were "
-        "inspected on this day or are left out of it.",
+        "Nothing is left to inspect: {plants} {n:was|were} found and only flagged, and all others "
+        "were inspected on this day or are left out of it.",
         plants=counted(n, "plant"),
+        n=n,
     )
 
 

@@ -25,7 +25,7 @@ from fieldmon.reports.content import (
     Sheet,
     Table,
 )
-from fieldmon.reports.day import legend_block, map_alt
+from fieldmon.reports.day import legend_block, map_alt, passed_by
 from fieldmon.reports.maps import PlotMap
 
 if TYPE_CHECKING:
@@ -78,16 +78,17 @@ def _map(season: Season, on: date, advice: Advice, units: Units) -> list[Block]:
     with season.store.one_moment():
         day, evening = season.settings.day(on), season.evening(on)
         state, recorded = shown_apart(season.history, day)
+        passed = passed_by(season.history, day, state)
     grid = season.plot.grid
     what = PlotMap(
         grid, evening, state, hot_spots(grid, np.full(len(grid), -1, np.int8)),
         season.plot.aisles.gate_m, units,
         zones_m=tuple(grid.frame.geometry_m(area) for area in advice.outlines),
-        recorded=recorded,
+        recorded=recorded, passed=passed,
     )  # fmt: skip
     found = int(np.count_nonzero(state == PRESENT))
     alt = map_alt(season.plot.field.name, state, 0) if found else words.ADVICE_ALT
-    signs = legend_block(zones=True, recorded=bool(recorded.any()))
+    signs = legend_block(zones=True, recorded=bool(recorded.any()), passed=bool(passed.any()))
     return [Illustration("", alt, what.draw, what.heights(80.0, 150.0)), signs]
 
 

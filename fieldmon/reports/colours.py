@@ -24,6 +24,8 @@ CHANCE: tuple[Colour, ...] = (
 FOUND: Colour = (213, 30, 30)
 #: never inspected, looked clean, found
 STATES: tuple[Colour, ...] = ((205, 205, 198), (120, 176, 222), FOUND)
+#: could not be inspected, or gone
+NOT_INSPECTED: Colour = (140, 105, 60)
 ROUTE: Colour = (20, 80, 200)
 GATE: Colour = (0, 140, 90)
 INK: Colour = (20, 26, 30)

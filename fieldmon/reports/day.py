@@ -18,13 +18,13 @@ from fieldmon.compute.wording import (
     worded,
 )
 from fieldmon.infestation.inspections import FOUND
-from fieldmon.infestation.records import PRESENT
+from fieldmon.infestation.records import PRESENT, UNKNOWN
 from fieldmon.monitoring import day_was_worked, worked_route
 from fieldmon.monitoring.changes.earlier_settings import settings_on
 from fieldmon.monitoring.days.day_ahead import WorkPart, plan_ahead
 from fieldmon.monitoring.days.worked_route import past_midnight
 from fieldmon.monitoring.estimates.last_days import default_date
-from fieldmon.monitoring.estimates.plant_states import hot_spots_on, shown_apart
+from fieldmon.monitoring.estimates.plant_states import hot_spots_on, not_inspected, shown_apart
 from fieldmon.monitoring.inspecting.contradictions import contradiction_lines
 from fieldmon.monitoring.settings.shift_work import made_by
 from fieldmon.monitoring.treating.cautions import label_of, waits
@@ -62,6 +62,7 @@ if TYPE_CHECKING:
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.infestation.hotspots import HotSpots
     from fieldmon.monitoring import PlannedAndDone, Season
+    from fieldmon.monitoring.estimates.history import History
     from fieldmon.monitoring.treating.closures import Closure
     from fieldmon.monitoring.treating.treatments import KeptTreatment
     from fieldmon.planning.route import Route
@@ -127,6 +128,8 @@ class DayFacts:
         How many are left out because nobody could inspect them.
     recorded
         ``(n,)`` other finds, which only the records of before a season tell of; None: none.
+    passed
+        ``(n,)`` plants never seen that could not be inspected, or are gone; None: none.
     otherwise
         Who says what of each plant that was both clean and found that day.
     past_midnight
@@ -160,6 +163,7 @@ class DayFacts:
     closed: tuple[Closure, ...] = ()
     skipped: tuple[Worded, ...] = ()
     recorded: NDArray[np.bool_] | None = None
+    passed: NDArray[np.bool_] | None = None
     otherwise: tuple[Worded, ...] = ()
     past_midnight: tuple[int, int] = (0, 0)
     before: int = 0
@@ -211,7 +215,8 @@ class DayFacts:
                 infested=float(season.evening(on)[shown.plant].sum()),
                 closed=() if worked else season.closed(on, whose, plan.scene.seconds_left),
                 skipped=() if worked else left_out_in_words(plan.scene, route),
-                recorded=recorded, otherwise=contradiction_lines(
+                recorded=recorded, passed=passed_by(season.history, day, state),
+                otherwise=contradiction_lines(
                     season.inspections.on(on), season.plot.grid, words.isolated
                 ),
                 past_midnight=plants_past_midnight(season, on, who),
@@ -428,11 +433,13 @@ def _map(facts: DayFacts, units: Units) -> list[Block]:
     grid = facts.route.aisles.grid
     way = None if facts.team or facts.missed else facts.route
     what = PlotMap(grid, facts.chance, facts.state, facts.spots, facts.route.aisles.gate_m, units,
-                   way, recorded=facts.recorded)  # fmt: skip
+                   way, recorded=facts.recorded, passed=facts.passed)  # fmt: skip
     alt = map_alt(facts.name, facts.state, 0 if facts.missed else len(facts.route))
     return [
         Illustration("", alt, what.draw, what.heights(_MAP_MM[facts.worked], 190.0)),
-        legend_block(route=way is not None, recorded=is_any(facts.recorded)),
+        legend_block(
+            route=way is not None, recorded=is_any(facts.recorded), passed=is_any(facts.passed)
+        ),
     ]
 
 
@@ -444,20 +451,24 @@ def map_alt(name: str, state: NDArray[np.int8], stops: int) -> str:
     )
 
 
-def is_any(recorded: NDArray[np.bool_] | None) -> bool:
-    """Return whether a map has finds of which only records tell."""
-    return recorded is not None and bool(recorded.any())
+def passed_by(history: History, day: int, state: NDArray[np.int8]) -> NDArray[np.bool_]:
+    """Return ``(n,)`` plants never seen, by `state`, that could not be inspected, or are gone."""
+    passed: NDArray[np.bool_] = (state == UNKNOWN) & (not_inspected(history, day) > 0)
+    return passed
 
 
-def legend_block(
-    *, route: bool = False, by_state: bool = False, zones: bool = False, recorded: bool = False
-) -> Illustration:
-    """Return the legend below a map."""
-    signs = {"route": route, "by_state": by_state, "zones": zones, "recorded": recorded}
+def is_any(signed: NDArray[np.bool_] | None) -> bool:
+    """Return whether a map has plants with a sign: finds of records alone, or plants passed by."""
+    return signed is not None and bool(signed.any())
+
+
+def legend_block(**signs: bool) -> Illustration:
+    """Return the legend below a map, with those of the signs of `maps.legend` that it has."""
+    high = maps.legend_mm(passed=signs.get("passed", False))
     return Illustration(
         "", "",
         lambda size: maps.legend(size[0], **signs),
-        (8.0, 8.0), is_read=True,
+        (high, high), is_read=True,
     )  # fmt: skip
 
 

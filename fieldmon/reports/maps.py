@@ -50,6 +50,7 @@ _ALONE_MM = 1.2
 # more zones would hide each other
 _MOST_NUMBERS = 60
 _THREE_DIGITS = 100
+_LEGEND_MM = 8.0
 _ARROWS_MM, _MOST_STOPS = 24.0, 400
 
 
@@ -77,6 +78,8 @@ class PlotMap:
         Areas to be sprayed, metres of the plot.
     recorded
         ``(n,)`` other finds, known from records of before the season; None: none.
+    passed
+        ``(n,)`` plants that could not be inspected, or are gone; None: none.
     """
 
     grid: PlantGrid
@@ -89,6 +92,7 @@ class PlotMap:
     by_state: bool = False
     zones_m: tuple[MultiPolygon, ...] = ()
     recorded: NDArray[np.bool_] | None = None
+    passed: NDArray[np.bool_] | None = None
 
     @property
     def rank(self) -> NDArray[np.intp]:
@@ -115,6 +119,7 @@ class PlotMap:
             *_hot(self, placed),
             *_sprayed(self, placed),
             *([] if self.route is None else _way(self.route, placed)),
+            *_passed(self, placed),
             *_finds(self, placed),
             *_gate(self.gate_m, placed),
             *_row_numbers(self.grid, placed),
@@ -326,8 +331,24 @@ def _arrows(line: Floats) -> list[Part]:
     return [Areas((tip,), fill=colours.ROUTE, edge=colours.PAPER, width=0.2) for tip in tips]
 
 
+def _sign_radius(what: PlotMap, placed: _ToPaper) -> float:
+    return float(np.clip(0.35 * what.grid.row_spacing_m * placed.scale, 0.55, 1.3))
+
+
+def _passed(what: PlotMap, placed: _ToPaper) -> list[Part]:
+    """Return the plants that could not be inspected, or are gone, and were never found or clean."""
+    if what.passed is None or not what.passed.any():
+        return []
+    places = placed(what.grid.xy_m[what.passed])
+    return [_not_inspected(places, _sign_radius(what, placed))]
+
+
+def _not_inspected(places: Floats, radius: float) -> Part:
+    return Discs(places, radius, fill=colours.NOT_INSPECTED, edge=colours.PAPER, width=0.2)
+
+
 def _finds(what: PlotMap, placed: _ToPaper) -> list[Part]:
-    radius = float(np.clip(0.35 * what.grid.row_spacing_m * placed.scale, 0.55, 1.3))
+    radius = _sign_radius(what, placed)
     parts: list[Part] = []
     if what.recorded is not None and what.recorded.any():
         parts.append(_recorded(placed(what.grid.xy_m[what.recorded]), radius))
@@ -399,8 +420,9 @@ def legend(
     by_state: bool = False,
     zones: bool = False,
     recorded: bool = False,
+    passed: bool = False,
 ) -> Drawing:
-    """Return what the signs of a map mean, on a strip of that width."""
+    """Return what the signs of a map mean, on a strip of that width; `passed` has a second line."""
     y = 2.5
     x, parts = _states(y) if by_state else _chances(y)
     find = np.array([[x + 1.2, y]])
@@ -424,7 +446,16 @@ def legend(
                   *_arrows(np.array([[x - 9.2, y], [x + 16.0, y]])),
                   Lettering(x + 7.5, y, words.LEGEND_ROUTE_ONLY if recorded else words.LEGEND_ROUTE,
                             7.0)]  # fmt: skip
-    return Drawing(width, 8.0, tuple(parts))
+    if passed:
+        y = _LEGEND_MM + 1.5
+        parts += [_not_inspected(np.array([[1.2, y]]), 1.2),
+                  Lettering(3.5, y, words.LEGEND_NOT_INSPECTED, 7.0)]  # fmt: skip
+    return Drawing(width, legend_mm(passed=passed), tuple(parts))
+
+
+def legend_mm(*, passed: bool = False) -> float:
+    """Return how high a legend is, millimetres."""
+    return _LEGEND_MM + 4.0 * passed
 
 
 def _chances(y: float) -> tuple[float, list[Part]]:

@@ -42,6 +42,7 @@ from fieldmon.reports.day import (
     held_in_words,
     legend_block,
     map_alt,
+    passed_by,
     treatment_table,
     which,
 )
@@ -123,12 +124,13 @@ class _Facts:
     def plot_map(self, *, by_state: bool) -> Iterator[Block]:
         """Yield the map of plants by chance or by what was found there, and its legend."""
         plot, state = self.season.plot, self.state
+        passed = passed_by(self.season.history, self.status.day, state)
         what = PlotMap(
             plot.grid, self.season.evening(self.on), state, self.status.hot_spots,
-            plot.aisles.gate_m, self.units, by_state=by_state,
+            plot.aisles.gate_m, self.units, by_state=by_state, passed=passed,
         )  # fmt: skip
         yield Illustration("", map_alt(self.name, state, 0), what.draw, what.heights(75.0, 200.0))
-        yield legend_block(by_state=by_state)
+        yield legend_block(by_state=by_state, passed=bool(passed.any()))
 
 
 def _found_by(season: Season, days: tuple[DayFigures, ...]) -> NDArray[np.int64]:

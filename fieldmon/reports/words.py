@@ -45,6 +45,7 @@ LEGEND_CHANCE = "Chance that a plant is infested"
 LEGEND_RECORDED, LEGEND_ROUTE_ONLY = "from records", "route"
 LEGEND_FOUND, LEGEND_ROUTE = "found infested", "route, arrows show the way"
 LEGEND_STATES = ("never inspected", "looked clean")
+LEGEND_NOT_INSPECTED = "could not inspect, or gone"
 LEGEND_GATE, LEGEND_HOT, LEGEND_ZONES = "gate", "hot spot", "zones to treat"
 NORTH = "N"
 MAP_ALT = (

@@ -143,7 +143,7 @@ def apart(text):
 
 def plot_name(app):
     """Return what the map calls the plot."""
-    return map_of(app)["alt"].removeprefix("Map of plot ").split(": ")[0]
+    return map_of(app)["alt"].removeprefix("Map of plot ").split(". Plants: ")[0]
 
 
 def heading(app):

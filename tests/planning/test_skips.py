@@ -157,8 +157,14 @@ def test_where_every_plant_is_known_it_is_said_that_nothing_is_left(scene):
     assert nothing_left_in_words(scene) is None
     assert nothing_left_in_words(without_flagged(scene, every > 0)) is None
     flagged = without_flagged(scene, every >= 0)
-    said = f"Every plant is known: all {len(every):,} were found and only flagged."
+    said = f"Every plant is known: {len(every):,} plants were found and only flagged."
     assert str(nothing_left_in_words(flagged)).startswith(said)
+    one = replace(scene, last_inspected=np.full(len(every), scene.day))
+    said = "Nothing is left to inspect: every plant was inspected on this day"
+    assert str(nothing_left_in_words(one)).startswith(said)
+    said = "Nothing is left to inspect: 1 plant was found and only flagged, and all others"
+    one = without_flagged(replace(one, last_inspected=np.where(every, scene.day, NEVER)), every < 1)
+    assert str(nothing_left_in_words(one)).startswith(said)
     done = replace(scene, last_inspected=np.where(every > 2, scene.day, scene.last_inspected))
     said = "Nothing is left to inspect: 3 plants were found and only flagged, and all others"
     assert str(nothing_left_in_words(without_flagged(done, every >= 0))).startswith(said)

@@ -101,6 +101,28 @@ def test_the_map_of_a_day_draws_as_found_what_the_season_counts_as_found(worked)
     assert words.LEGEND_RECORDED not in legend(replace(facts, recorded=np.zeros_like(recorded)))
 
 
+def test_plants_nobody_could_inspect_and_gone_ones_have_a_sign_where_there_are_any(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+
+    def has_sign(report):
+        blocks = [block for sheet in report.sheets for block in sheet.blocks]
+        maps = [block for block in blocks if isinstance(block, Illustration)]
+        return any(words.LEGEND_NOT_INSPECTED in one.draw((186.0, 60.0)).words() for one in maps)
+
+    def reports():
+        yield day_report(DayFacts.of_season(season, BEGINS), Units())
+        yield season_report(season, BEGINS, Units())
+
+    assert not any(map(has_sign, reports()))
+    notes = np.array(["mud", "gone", "mud"], object)
+    day, plants = np.datetime64(BEGINS), np.array([3, 5, 7])
+    season.record(Inspections.of(plants, np.full(3, SKIPPED), day, notes=notes), "x")
+    season.record(Inspections.of(plants[2:], np.array([FOUND]), day), "y")
+    facts = DayFacts.of_season(season, BEGINS)
+    assert np.flatnonzero(facts.passed).tolist() == [3, 5], "what was found is shown as found"
+    assert all(map(has_sign, reports()))
+
+
 def test_a_day_that_is_over_has_all_its_finds_on_paper_and_no_room_for_notes(done, ahead):
     found = np.arange(0, len(done.chance), 8)
     full = day_report(replace(done, found=found), Units())

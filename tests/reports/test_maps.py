@@ -8,6 +8,7 @@ import pytest
 from fpdf import FPDF
 from PIL import Image
 
+from app.show.maps import colours as of_app
 from fieldmon.compute.units import Units
 from fieldmon.infestation.hotspots import hot_spots
 from fieldmon.plot.layout import rectangle
@@ -200,6 +201,21 @@ def test_by_state_a_plant_never_inspected_is_not_clean():
     drawing = a_map(grid, found=[19], by_state=True).draw(SIZE)
     count = {one.colour: len(one.ends) for one in parts(drawing, Segments)}
     assert count == dict(zip(colours.STATES, (9, 10, 1), strict=True))
+
+
+def test_plants_that_could_not_be_inspected_are_drawn_in_the_colour_of_the_app():
+    assert colours.NOT_INSPECTED == of_app.NOT_INSPECTED
+    grid = rectangle(2, 10)
+    passed = np.isin(np.arange(20), [12, 15])
+    for by_state in (False, True):
+        drawing = a_map(grid, by_state=by_state, passed=passed).draw(SIZE)
+        (signs,) = [one for one in parts(drawing, Discs) if one.fill == colours.NOT_INSPECTED]
+        assert len(signs.places) == 2
+        none = a_map(grid, by_state=by_state, passed=passed & False).draw(SIZE)
+        assert not [one for one in parts(none, Discs) if one.fill == colours.NOT_INSPECTED]
+    said = maps.legend(186.0, passed=True)
+    assert "could not inspect, or gone" in said.words()
+    assert max(places(part)[:, 1].max() for part in said.parts) <= maps.legend_mm(passed=True)
 
 
 @pytest.mark.parametrize(("route", "by_state"), [(True, False), (False, False), (False, True)])

@@ -517,8 +517,11 @@ export class Field {
   /** How many plants are done and on the disk. */
   kept() { return [...this.own.values()].filter((one) => one.state !== WRITING).length; }
 
-  /** How many plants are done, and are left within the hours, of all those ahead: who is quick, or finds, has more of them. */
-  progress() { return { done: this.kept(), left: this.inHours().length, all: this.ahead.length }; }
+  /** How many plants are done of how many, and whether and how many of those ahead fit the hours: who is quick, or finds, has more. */
+  progress() {
+    const done = this.kept(), left = this.inHours().length, ahead = this.ahead.length;
+    return { done, left, all: done + ahead, fits: left === ahead };
+  }
 
   /** How many plants beside the last one are ahead since, as it was found. */
   added() {

@@ -162,7 +162,7 @@ export class Page {
     const { field } = this;
     const far = field.day && field.progress();
     const said = far ? [
-      h("b", {}, say(far.left < far.all ? "progress_in_time" : "progress", far)),
+      h("b", {}, say(far.fits ? "progress" : "progress_in_time", far)),
       h("span", { id: "hours" }, this.#hours()),
     ] : [h("b", {}, "fieldmon")];
     const n = this.left.records + this.left.photos + field.unwritten();

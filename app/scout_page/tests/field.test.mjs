@@ -202,7 +202,7 @@ test("a find brings its neighbours, and undo brings back what was before", async
   await field.note({ open: true, count: 3, leaves: 5, stage: "egg" });
   await field.tell("found");
   assert.deepEqual(field.ahead, [1, 5, 2, 10, 11]);
-  assert.deepEqual([field.added(), field.progress()], [1, { done: 1, left: 5, all: 5 }], "as many are left as before");
+  assert.deepEqual([field.added(), field.progress()], [1, { done: 1, left: 5, all: 6, fits: true }], "as many are left as before");
   assert.equal((await again()).added(), 1);
   assert.equal(field.records[0].count, 3);
   await field.undo();
@@ -885,7 +885,7 @@ test("what no longer fits the hours that run is not ahead on a phone that idles,
   assert.equal(field.inHours(), field.ahead);
   const left = at("08:08:00"); // two minutes
   assert.deepEqual([left, field.inHours()], [[0, 1, 2], left]);
-  assert.deepEqual(field.progress(), { done: 0, left: 3, all: 5 });
+  assert.deepEqual(field.progress(), { done: 0, left: 3, all: 5, fits: false });
   assert.equal(at("08:08:01"), left, "the same way is not laid anew each second");
   assert.deepEqual([at("08:11:00"), field.plant], [[], 0]);
   assert.equal(at("08:00:00"), field.ahead);

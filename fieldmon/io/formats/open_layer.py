@@ -18,7 +18,7 @@ from fieldmon.io.formats.tables import read_sheet, read_text_table
 from fieldmon.io.formats.workbooks import sheet_names
 from fieldmon.io.import_report import seen
 from fieldmon.io.options import PlotOptions, ReadOptions, Source, source_name
-from fieldmon.io.sandbox.unpack import choose_member, members
+from fieldmon.io.sandbox.unpack import choose_member, is_of_several, members, of_all, unread
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -54,11 +54,36 @@ def layers_of(source: Source, workroom: Workroom) -> tuple[LayerInfo, ...]:
 def open_layer(source: Source, options: ReadOptions, workroom: Workroom) -> Layer:
     """Return the one layer meant; raise `ChoiceNeeded` where several could be."""
     found = _data_sets(members(source, workroom))
-    member = choose_member(found, options.member, source_name(source))
+    try:
+        member = choose_member(found, options.member, source_name(source))
+    except ChoiceNeeded:
+        if is_of_several(source):
+            _must_hold_one(found, source, options, workroom)
+        raise
     staged = StagedMember(member, workroom.stage(member), member.name)
-    layer = _read(staged, options).with_roles(options.columns)
+    try:
+        layer = _read(staged, options).with_roles(options.columns)
+    except FileProblem as problem:
+        raise of_all([problem, *unread(source, workroom)]) from problem
     pests = [name for role, name in options.columns if role == "species"]
     return layer.where(options.where, pests).checked()
+
+
+def _must_hold_one(
+    found: tuple[Member, ...], source: Source, options: ReadOptions, workroom: Workroom
+) -> None:
+    """Raise a problem that names all files brought at once, if none of them can be read."""
+    problems = []
+    for member in found:
+        try:
+            _read(StagedMember(member, workroom.stage(member), member.name), options)
+        except FileProblem as problem:
+            problems.append(problem)
+        except ChoiceNeeded:
+            return
+        else:
+            return
+    raise of_all([*problems, *unread(source, workroom)])
 
 
 def _data_sets(found: tuple[Member, ...]) -> tuple[Member, ...]:

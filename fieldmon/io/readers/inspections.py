@@ -82,7 +82,8 @@ def on_plot(
 ) -> Imported[Inspections]:
     """Return the inspections of rows that were read, as `read_inspections` does."""
     here, of_others = of_this_plot(rows.value, grid, called, options)
-    inspections, more = look_up(here, grid, options)
+    n_others = len(rows.value) - len(here)
+    inspections, more = look_up(here, grid, options, n_others)
     return rows.having(inspections, (*of_others, *more))
 
 
@@ -135,9 +136,12 @@ def dated(read: Imported[Inspections]) -> Imported[Inspections]:
 
 
 def look_up(
-    rows: InspectionRows, grid: PlantGrid, options: InspectionOptions
+    rows: InspectionRows, grid: PlantGrid, options: InspectionOptions, n_others: int = 0
 ) -> tuple[Inspections, tuple[ImportMessage, ...]]:
-    """Return what a file says with its plants, and what was left out or guessed on the way."""
+    """Return what a file says with its plants, and what was left out or guessed on the way.
+
+    `n_others` of its records were left out before, as they are of other plots.
+    """
     placed = placed_on_plot(rows, grid, options)
     rows, plant = placed.rows, placed.plant
     taken = plant >= 0
@@ -151,22 +155,32 @@ def look_up(
     said += [*of_leaves, *_about_contradictions(whole, grid, plant, records)]
     said += about_repeats(len(inspections) - len(once))
     if len(rows) > 1 and not taken.all():
-        said.append(_what_became(len(rows), plant[taken]))
+        said.append(_what_became(plant[taken], n_others + int((~taken).sum()), rows.n_silent))
     return once, tuple(said)
 
 
-def _what_became(n_records: int, plant: NDArray[np.int64]) -> ImportMessage:
-    """Return how many records of a file were taken, of the plants ``(k,)`` of these."""
-    n_out = n_records - len(plant)
+def _what_became(plant: NDArray[np.int64], n_out: int, n_silent: int) -> ImportMessage:
+    """Return what became of all records of a file: those taken are of the plants ``(k,)``."""
+    numbers = {
+        "total": len(plant) + n_out + n_silent,
+        "taken": len(plant),
+        "plants": len(np.unique(plant)),
+        "out": n_out,
+        "silent": n_silent,
+    }
     said = worded(
         "Of {total} {total:record|records} {taken} {taken:was|were} taken, of {plants} "
         "{plants:plant|plants}; {out} {out:was|were} left out.",
-        total=n_records,
-        taken=len(plant),
-        plants=len(np.unique(plant)),
-        out=n_out,
+        **numbers,
     )
-    return doubtful(said) if 2 * n_out > n_records else seen(said)
+    if n_silent:
+        said = worded(
+            "Of {total} {total:record|records} {taken} {taken:was|were} taken, of {plants} "
+            "{plants:plant|plants}; {out} {out:was|were} left out, and {silent} "
+            "{silent:says|say} no result.",
+            **numbers,
+        )
+    return doubtful(said) if n_out > len(plant) else seen(said)
 
 
 def _about_contradictions(

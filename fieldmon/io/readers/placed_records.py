@@ -31,6 +31,7 @@ from fieldmon.io.readers.inspection_places import (
     from_zero,
     misplaced,
 )
+from fieldmon.io.readers.lost_zeros import lost_zeros
 from fieldmon.io.readers.nearby import doubt_of_order
 
 if TYPE_CHECKING:
@@ -91,7 +92,7 @@ def placed_on_plot(
     plant = np.where(snapped.plant >= 0, snapped.plant, plant)
     problems |= snapped.problems
     doubts = doubts | from_zero(rows, grid, labelled.plant) | snapped.doubts | own_doubts(rows)
-    doubts |= amid_past(rows.day)
+    doubts |= lost_zeros(rows, grid, labelled.plant) | amid_past(rows.day)
     problems |= _unknown_faces(rows, grid, plant)
     below = below_first(rows, grid)
     for i in np.flatnonzero(plant < 0).tolist():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fieldmon.compute.wording import worded
+from fieldmon.compute.wording import joined, worded
 from fieldmon.errors import ChoiceNeeded, FileProblem
 from fieldmon.io.formats.signatures import READABLE, FileKind, kind_of, workbook_kind
 from fieldmon.io.options import Source, source_name
@@ -12,18 +12,22 @@ from fieldmon.io.sandbox.archives import expand
 from fieldmon.io.sandbox.file_entries import FILES_BESIDE, TASK_FILE, Member, entries_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from fieldmon.io.sandbox.file_entries import FileEntry
     from fieldmon.io.sandbox.workroom import Workroom
+
+# files of which it is said why they cannot be read
+_NAMED = 10
 
 
 def members(source: Source, workroom: Workroom) -> tuple[Member, ...]:
     """Return the data sets that a source holds; raise `FileProblem` where there is none."""
-    entries = list(expand(entries_of(source), workroom, depth=0))
-    found, problems = _group(entries)
+    found, problems = _sorted_out(source, workroom)
     if found:
         return tuple(found)
-    if len(problems) == 1:
-        raise problems[0]
+    if problems and (len(problems) == 1 or is_of_several(source)):
+        raise of_all(problems)
     raise FileProblem(
         worded(
             "{source_name} must hold {readable}, but nothing of the kind is "
@@ -32,6 +36,41 @@ def members(source: Source, workroom: Workroom) -> tuple[Member, ...]:
             readable=READABLE,
         )
     )
+
+
+def is_of_several(source: Source) -> bool:
+    """Return whether several files were brought at once."""
+    return isinstance(source, tuple) and len(source) > 1
+
+
+def unread(source: Source, workroom: Workroom) -> list[FileProblem]:
+    """Return why files that were brought with others cannot be read, by their first bytes."""
+    return _sorted_out(source, workroom)[1] if is_of_several(source) else []
+
+
+def of_all(problems: Sequence[FileProblem]) -> FileProblem:
+    """Return one problem of several files, which says what is wrong with each."""
+    if len(problems) == 1:
+        return problems[0]
+    said = [problem.args[0] for problem in problems[:_NAMED]]
+    if (more := len(problems) - _NAMED) > 0:
+        said.append(worded("{n} more {n:file|files} cannot be read.", n=more))
+    return FileProblem(joined(" ", said))
+
+
+def _sorted_out(source: Source, workroom: Workroom) -> tuple[list[Member], list[FileProblem]]:
+    """Return the data sets of a source, and why other files of it cannot be read."""
+    if not is_of_several(source):
+        return _group(list(expand(entries_of(source), workroom, depth=0)))
+    entries: list[FileEntry] = []
+    damaged: list[FileProblem] = []
+    for entry in entries_of(source):
+        try:
+            entries += expand([entry], workroom, depth=0)
+        except FileProblem as problem:
+            damaged.append(problem)
+    found, problems = _group(entries)
+    return found, [*damaged, *problems]
 
 
 def choose_member(found: tuple[Member, ...], wanted: str | None, name: str) -> Member:

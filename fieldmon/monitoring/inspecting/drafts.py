@@ -190,7 +190,7 @@ def _inspection(said: dict[str, Any], grid: PlantGrid) -> Inspections:
     return _looked_up(rows, grid)
 
 
-def _looked_up(rows: dict[str, np.ndarray], grid: PlantGrid) -> Inspections:
+def _looked_up(rows: dict[str, Any], grid: PlantGrid) -> Inspections:
     """Return what one row says of its plant; raise with the reason where it has none."""
     # readers take a tenth of a second to import, and drafts are few
     from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows  # noqa: PLC0415

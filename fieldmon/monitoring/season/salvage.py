@@ -91,6 +91,7 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
                         damaged=damaged,
                     )
                 )
+            _take_wishes(db, new)
             season_log.go_on_saved(new)
             for table in _WORKED_OUT:
                 _taken(db, new, table)
@@ -104,6 +105,13 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
     except FieldmonError as problem:
         why = str(problem)
     return Salvaged(rows, tuple(lost), not why, why)
+
+
+def _take_wishes(db: sqlite3.Connection, new: sqlite3.Connection) -> None:
+    """Copy what is wanted of days besides, if it can be read: routes keep their numbers."""
+    with suppress(sqlite3.Error):
+        kept = db.execute("SELECT key, value FROM fieldmon WHERE key LIKE 'wishes %'").fetchall()
+        new.executemany("INSERT OR REPLACE INTO fieldmon (key, value) VALUES (?, ?)", kept)
 
 
 def _padded_copy(source: Path, folder: Path) -> Path:

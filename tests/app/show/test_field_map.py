@@ -14,7 +14,7 @@ from tests.app.driving import go, layer, map_of, plants
 
 def test_the_map_says_what_is_on_it(app):
     said = re.fullmatch(
-        r"Map of plot Gate: (\d+) plants, (\d+) stops on the route, (\d+) plants found\.",
+        r"Map of plot Gate\. Plants: (\d+); stops on the route: (\d+); found: (\d+)\.",
         map_of(app)["alt"].replace("\u2068", "").replace("\u2069", ""),
     )
     n, stops, finds = map(int, said.groups())
@@ -22,7 +22,7 @@ def test_the_map_says_what_is_on_it(app):
     assert stops == len(map_of(app)["play"]["stops"]) > 3
     assert finds == len(layer(app, "found")["data"])
     go(app, "plot")
-    assert "0 stops on the route" in map_of(app)["alt"]
+    assert "stops on the route: 0;" in map_of(app)["alt"]
 
 
 @pytest.mark.usefixtures("session")

@@ -150,3 +150,31 @@ def test_a_plot_is_called_as_its_file_without_the_ending(room):
     layer = open_layer(Upload("foo.geojson", json.dumps(data).encode()), NOTHING, room)
     (plot,) = plots_of(layer, PlotOptions()).value
     assert plot.name == "foo"
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        {"a.docx": b"PK\x03\x04junk", "b.pdf": b"%PDF-1.4", "c.csv": b""},
+        {"a.geojson": b"{", "b.geojson": b"[", "c.pdf": b"%PDF-1.4"},
+        {"a.geojson": b"{", "b.pdf": b"%PDF-1.4"},
+    ],
+)
+def test_of_several_bad_files_brought_at_once_all_are_named(room, bad):
+    with pytest.raises(FileProblem) as refused:
+        open_layer(tuple(Upload(*one) for one in bad.items()), NOTHING, room)
+    said = str(refused.value)
+    assert [name for name in bad if said.count(f"{name} ") == 1] == [*bad]
+
+
+def test_of_many_bad_files_the_first_ten_are_named_and_the_rest_counted(room):
+    bad = tuple(Upload(f"{n}.pdf", b"%PDF-1.4") for n in range(12))
+    with pytest.raises(FileProblem, match="2 more files cannot be read"):
+        open_layer(bad, NOTHING, room)
+
+
+def test_a_bad_file_beside_several_good_ones_leaves_them_a_question(room):
+    good = POINTS.to_json().encode()
+    files = (Upload("a.geojson", b"{"), Upload("b.geojson", good), Upload("c.geojson", good))
+    with pytest.raises(ChoiceNeeded, match="holds 3 files"):
+        open_layer(files, NOTHING, room)

@@ -348,6 +348,14 @@ def test_a_file_that_contradicts_itself_says_with_which_records_and_what_became_
     assert "It is not used: each record counts in full as its result says." in said
 
 
+def test_what_became_of_all_records_adds_up_to_the_rows_of_the_file():
+    lines = ["1,1,no,P", "1,2,no,P", "1,3,no,P", "1,4,,P", "1,5,,P", "99,1,no,P", "1,7,no,Q"]
+    text = "\n".join(["row,plant,found,plot", *lines])
+    told = read_inspections(upload(text), GRID, InspectionOptions(), ("P",))
+    (said,) = [one.sentence for one in told.messages if one.sentence.startswith("Of ")]
+    assert said == "Of 7 records 3 were taken, of 3 plants; 2 were left out, and 2 say no result."
+
+
 @pytest.mark.parametrize("elsewhere", [7, 8])
 def test_several_species_are_a_question(elsewhere):
     text = "plant,date,species,count\n7,2026-11-18,mite,3\n{},2026-11-18,thrips,1\n"

@@ -12,11 +12,13 @@ import pytest
 from fieldmon.errors import FieldmonError, FileProblem
 from fieldmon.infestation.inspections import Inspections
 from fieldmon.monitoring import Season
+from fieldmon.monitoring.days.kept_wishes import keep_wishes, wishes_kept
 from fieldmon.monitoring.estimates.history import History
 from fieldmon.monitoring.estimates.verifying import check_against_log
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.season import salvage as saving
 from fieldmon.monitoring.season.salvage import salvage
+from fieldmon.planning.wishes import Wishes
 from tests.monitoring.seasons import BEGINS, a_season, a_small_plot, some_results, state
 from tests.monitoring.test_seasons_of_old import FOLDER
 from tests.thorough import seeds
@@ -151,6 +153,13 @@ def long_season(tmp_path_factory):
 def weeks(long_season, tmp_path):
     """Return a season of two weeks."""
     return shutil.copy(long_season, tmp_path / "season.gpkg")
+
+
+def test_what_is_wanted_of_a_day_is_saved(path, tmp_path):
+    wishes = Wishes(wanted=(3,), unwanted=(7,))
+    keep_wishes(Season(path), BEGINS, wishes)
+    salvage(path, tmp_path / "rescued.gpkg")
+    assert wishes_kept(Season(tmp_path / "rescued.gpkg"), BEGINS) == wishes
 
 
 def test_mornings_that_follow_from_what_was_saved_are_not_worked_out_again(

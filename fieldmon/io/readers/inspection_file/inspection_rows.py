@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -89,6 +89,8 @@ class InspectionRows:
         What stands where a season's file has its digest, as the file has it. None: all empty.
     lacks
         Which columns of a season's inspections the file does not have, between commas.
+    n_silent
+        How many records besides the file has, which say no result.
     """
 
     plant: NDArray[np.int64]
@@ -118,6 +120,7 @@ class InspectionRows:
     mark: NDArray[np.str_] | None = None
     mark_called: NDArray[np.str_] | None = None
     lacks: NDArray[np.str_] | None = None
+    n_silent: int = 0
 
     @property
     def exported(self) -> NDArray[np.bool_]:
@@ -131,4 +134,5 @@ class InspectionRows:
     def take(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Self:
         """Return those records."""
         columns = vars(self).items()
-        return replace(self, **{name: c[which] for name, c in columns if c is not None})
+        taken: dict[str, Any] = {k: c[which] for k, c in columns if isinstance(c, np.ndarray)}
+        return replace(self, **taken)

@@ -34,6 +34,7 @@ from fieldmon.io.parse.values import (
     number,
     presence,
 )
+from fieldmon.io.readers.inspection_file.columns import names_in
 from fieldmon.io.readers.inspection_file.plants import PLANT_IN_NAME
 from fieldmon.io.readers.other_counts import about_other_counts
 
@@ -49,6 +50,7 @@ _LOOKED_AT = 200
 # what stands for no value where a number is asked for, and for a result says something
 _SAYS_SOMETHING = MAYBE_GONE | {"?"}
 _PLUS = re.compile(r"^\+\s*(\d*)$")
+_COUNT_BEHIND = re.compile(r"\s+\+\d+\s*$")
 
 
 class SeenResults(NamedTuple):
@@ -84,7 +86,8 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
     """Return what was seen at each plant of a layer."""
     if columns.marks is not None:
         said = results_in_names(layer, columns.marks, options)
-        return _put_together(said, [_SILENT] * len(said), [])
+        seen_so = _put_together(said, [_SILENT] * len(said), [])
+        return seen_so._replace(doubt=_doubt_of_names(layer, columns.marks, options, seen_so))
     by_result, of_results = _by_result(layer, columns.result, options)
     by_count, of_counts = _by_count(layer, columns.number_found, options)
     taken = (columns.result, columns.number_found, *options.named_columns)
@@ -95,7 +98,8 @@ def results_in(layer: Layer, columns: InspectionColumns, options: InspectionOpti
     doubt = np.where(doubt == "", _doubt_of_codes(seen_so.how_many), doubt)
     seen_so = seen_so._replace(doubt=doubt, messages=[*seen_so.messages, *others.messages])
     if columns.result is None:
-        return seen_so
+        against = _doubt_of_names(layer, names_in(layer), options, seen_so)
+        return seen_so._replace(doubt=np.where(seen_so.doubt == "", against, seen_so.doubt))
     column = layer.column(columns.result)
     gone = np.array([is_gone(text(v), options.gone) for v in column], np.bool_)
     return seen_so._replace(gone=gone & (seen_so.result == UNKNOWN))
@@ -117,6 +121,32 @@ def _doubt_of_codes(counts: NDArray[np.float64]) -> NDArray[np.str_]:
         ],
         np.str_,
     )
+
+
+def _doubt_of_names(
+    layer: Layer, name: str | None, options: InspectionOptions, seen_so: SeenResults
+) -> NDArray[np.str_]:
+    """Return why rows are doubted ``(n,)`` whose names say in a word what their counts do not."""
+    if name is None:
+        return np.full(len(layer), "", np.str_)
+    words = ResultWords(["+"], options)
+    said = [_of_mark(_COUNT_BEHIND.sub("", text(v)), words) for v in layer.column(name)]
+    in_words = np.array([one.result for one in said], np.int8)
+    spoken = seen_so.said & np.array([one.is_said for one in said], np.bool_)
+    return np.where(_against(spoken, in_words, seen_so.result), _contradicts(), "")
+
+
+def _against(
+    spoken: NDArray[np.bool_], result: NDArray[np.int8], by_count: NDArray[np.int8]
+) -> NDArray[np.bool_]:
+    """Return in which rows ``(n,)`` a result that is said and a count contradict each other."""
+    against: NDArray[np.bool_] = spoken & (by_count != UNKNOWN) & (result != by_count)
+    against &= (result != UNKNOWN) | (by_count == PRESENT)
+    return against
+
+
+def _contradicts() -> str:
+    return worded("its result and its count contradict each other")
 
 
 def _by_result(
@@ -202,11 +232,10 @@ def _put_together(
     counted_too = np.array([s.is_said for s in by_count], dtype=bool)
     own = np.array([s.how_many for s in by_result], dtype=np.float64)
     zero_found = (first == PRESENT) & (second == ABSENT) & np.isnan(own)
-    against = spoken & (second != UNKNOWN) & (first != second) & ~zero_found
-    against &= (first != UNKNOWN) | (second == PRESENT)
+    against = _against(spoken, first, second) & ~zero_found
     zero_alone = ~spoken & (second == ABSENT) & spoken.any()
-    doubt = np.where(against, "its result and its count contradict each other", "")
-    doubt = np.where(zero_alone, "its count is 0, but its result is empty", doubt)
+    doubt = np.where(against, _contradicts(), "")
+    doubt = np.where(zero_alone, worded("its count is 0, but its result is empty"), doubt)
     result = np.where(against, PRESENT, np.where(spoken, first, second)).astype(np.int8)
     count = np.array([s.how_many for s in by_count], dtype=np.float64)
     how_many = np.where(np.isnan(count), own, count)

@@ -130,6 +130,7 @@ def rows_in(layer: Layer, options: InspectionOptions, file: str = "") -> Importe
         lacks=np.full(len(layer), _lacking(layer, columns)),
     )
     kept = whole.take(_in_order(layer, times.when, times.day, said))
+    kept = replace(kept, n_silent=len(whole) - len(kept))
     pests = texts_in(layer, columns.species)[said].tolist()
     spelt = one_pest(columns.species, pests)[1] if columns.species else []
     every = (*layer.messages, *messages, *results.messages, *named.messages, *more)

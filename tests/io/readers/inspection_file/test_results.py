@@ -156,6 +156,21 @@ def test_the_name_of_a_waypoint_need_not_be_one(name):
     assert not read(name=[name]).said[0]
 
 
+@pytest.mark.parametrize("word", ["clean", "not found", "skipped", "0"])
+def test_a_name_that_says_clean_or_skipped_and_counts_is_a_find_in_doubt(word):
+    seen = read(name=[f"R1/1 {word} +7", "R1/2 found +3", "R1/3 clean"])
+    assert seen.result.tolist() == [PRESENT, PRESENT, ABSENT]
+    assert [bool(one) for one in seen.doubt] == [True, False, False]
+    assert "contradict each other" in seen.doubt[0]
+
+
+def test_a_name_that_says_otherwise_than_a_column_of_counts_is_doubted():
+    names = ["R1/1 clean", "R1/2 found", "R1/3", "R1/4 clean", "Gate", "R1/6 found"]
+    seen = read(name=names, count=["7", "3", "2", "0", "1", "0"])
+    doubted = [True, False, False, False, False, True]
+    assert [bool(one) for one in seen.doubt] == doubted
+
+
 def test_where_results_and_counts_were_found_is_said():
     told = sentences(read(plant=[1], found=["x"], count=["2"]))
     assert "Results are in column 'found'." in told

@@ -63,7 +63,7 @@ def show_today(choices: Choices, plan: DayPlan) -> None:
             st.caption(in_words(said))
     harvest = season.settings.harvest
     is_ahead = harvest is not None and choices.on <= harvest
-    show(choices, ("entry", "harvest") if is_ahead else ("entry",))
+    show(choices, ("lost", "entry", "harvest") if is_ahead else ("lost", "entry"))
 
 
 def are_all_closed(choices: Choices, plan: DayPlan) -> bool:

@@ -23,10 +23,13 @@ def salvage(
 
     done = save(season, output)
     for name, rows in done.rows.items():
-        note = "  (some could not be read)" if name in done.lost else ""
+        lost = "some could not be read" if rows else "what it had could not be read"
+        note = f"  ({lost})" if name in done.lost else ""
         typer.echo(f"  {rows:8d}  {name}{note}")
     if done.whole:
         again = shlex.quote(str(output))
+        if done.gone:
+            typer.echo(f"Lost, as its log and status say from now on: {', '.join(done.gone)}.")
         typer.echo(f"{output} is a season again. Compare it with: fieldmon status {again}")
     else:
         typer.echo(

@@ -30,7 +30,7 @@ def said_of_place(field: Field, *, exchanged: bool = False) -> tuple[ImportMessa
         return ()
     if abs(lon) <= 90.0 and not at_sea(lat, lon):
         said = worded(
-            "It lies in the open sea, at {lon:.4f}, {lat:.4f}. With longitude and latitude "
+            "It lies in the open sea, at latitude {lat:.4f}, longitude {lon:.4f}. With those "
             "exchanged it would lie on land: exchange them if that is right.",
             lon=lon,
             lat=lat,
@@ -43,7 +43,8 @@ def said_of_place(field: Field, *, exchanged: bool = False) -> tuple[ImportMessa
     else:
         remedy = None
         said = worded(
-            "It lies in the open sea, at {lon:.4f}, {lat:.4f}. Check the coordinate system.",
+            "It lies in the open sea, at latitude {lat:.4f}, longitude {lon:.4f}. Check the "
+            "coordinate system.",
             lon=lon,
             lat=lat,
         )

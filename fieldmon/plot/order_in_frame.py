@@ -30,13 +30,22 @@ def nearest_lines(
     """Return the nearest of the given places ``(m, 2)`` of each plant, and how far it is in metres.
 
     Of two lines in one place, a plant is that of its own face: `face` ``(m,)`` is 1 or 2, 0 where
-    nobody said.
+    nobody said. Raise `PlotError` where both are of one face: a column may say two things of it.
     """
     tree = cKDTree(grid.frame.xy_m(lonlat))
     away_m, line = tree.query(grid.xy_m, k=[1, 2])
     own = np.where(grid.twin < 0, 1, np.where(np.arange(len(grid)) < grid.twin, 1, 2))
     first, second = line[:, 0], np.minimum(line[:, 1], len(lonlat) - 1)
-    turned = (away_m[:, 1] - away_m[:, 0] < _ONE_PLACE_M) & (face[second] == own)
+    in_one = away_m[:, 1] - away_m[:, 0] < _ONE_PLACE_M
+    twice = np.flatnonzero(in_one & (away_m[:, 0] < SAME_M) & (face[first] == face[second]))
+    if len(twice):
+        one = int(twice[0])
+        raise PlotError(
+            f"Each plant must have one line in the frame, but {_called(grid, one)} has two, "
+            f"{min(first[one], second[one])} and {max(first[one], second[one])} from 0. Leave "
+            "doubles out."
+        )
+    turned = in_one & (face[second] == own)
     return np.where(turned & (face[first] != own), second, first), away_m[:, 0]
 
 

@@ -307,6 +307,8 @@ def _unsaid(records: list[_PlotRecord]) -> list[str]:
     """Return what GLOBALG.A.P. asks of each treatment, and of inspections, and nobody said."""
     said: list[str] = []
     for one in records:
+        lost = [what for entry in one.all_told for what in entry.lost]
+        said += [worded(words.CERT_ON_PLOT, plot=one.name, said=what) for what in lost]
         for treatment in one.treatments:
             missing = [
                 label

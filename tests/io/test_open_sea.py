@@ -21,7 +21,7 @@ def test_nothing_is_said_of_a_plot_on_land(place):
 
 def test_a_plot_in_the_sea_that_would_lie_on_land_may_have_its_axes_exchanged():
     (said,) = said_of_place(plot_at(30.35, 35.14))
-    assert "open sea, at 30.3505, 35.1405. With longitude and latitude exchanged" in said.sentence
+    assert "open sea, at latitude 35.1405, longitude 30.3505. With those exchanged" in said.sentence
     assert (said.feature, said.remedy.setting) == ("vines", "swap_axes=yes")
     (said,) = said_of_place(plot_at(30.35, 35.14), exchanged=True)
     assert said.remedy.setting == "swap_axes=no"

@@ -86,3 +86,11 @@ def test_a_frame_of_other_plants_is_refused():
     dense = Plot.around("p", close.lonlat())
     with pytest.raises(PlotError, match="a line of its own"):
         dense.order_in(close.lonlat()[1:])
+
+
+def test_a_plant_that_has_two_lines_is_refused_as_a_column_may_say_two_things_of_it():
+    frame = points(order=np.arange(24))
+    plot = Plot.from_geopandas(frame[["geometry"]])
+    twice = frame.iloc[[*range(24), 4]].reset_index(drop=True)
+    with pytest.raises(PlotError, match=r"plant 5 of row 1 has two, 4 and 24 from 0\. Leave"):
+        plot.order_in(twice)

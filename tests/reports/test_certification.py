@@ -1,6 +1,8 @@
 """The record for a certifier: complete, and honest about what nobody said."""
 
 import shutil
+import sqlite3
+from contextlib import closing
 from dataclasses import replace
 from datetime import time, timedelta
 
@@ -16,6 +18,7 @@ from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.io.readers.pest_file import shipped_pest
 from fieldmon.monitoring import Application, Season
 from fieldmon.monitoring.days.advised import advise
+from fieldmon.monitoring.season.salvage import salvage
 from fieldmon.reports import words
 from fieldmon.reports.certification import certification_report, times_said
 from fieldmon.reports.content import Listing, Table
@@ -324,3 +327,17 @@ def test_on_a_phone_no_table_and_no_digest_is_wider_than_the_page(
     page.close()
     assert wide == 360
     assert said.say(words.CERT_PLOT_COLUMNS[0]) in names
+
+
+def test_a_season_that_lost_inspections_is_not_said_to_be_complete(tmp_path):
+    season = a_season(tmp_path / "season.gpkg")
+    season.record(Inspections.of([1, 2], [CLEAN, CLEAN], np.datetime64(BEGINS)), "a.csv", "Ann")
+    with closing(sqlite3.connect(season.path)) as db:
+        db.execute("UPDATE fieldmon SET value = '1' WHERE key = 'open'")  # nobody notes it
+        db.execute("DELETE FROM inspections WHERE fid = 1")
+        db.execute("UPDATE fieldmon SET value = '0' WHERE key = 'open'")
+        db.commit()
+    salvage(season.path, tmp_path / "rescued.gpkg")
+    report = certification_report([Season(tmp_path / "rescued.gpkg")], Units(), BEGINS)
+    assert any("1 of 2 rows of batch" in said for said in listed(report, words.CERT_UNSAID))
+    assert words.CERT_UNSAID_NONE not in listed(report, words.CERT_UNSAID)

@@ -106,6 +106,21 @@ def come(
     return Imported(kept, (*told, dropped(said, None, TAKE)))
 
 
+def since(read: Imported[Inspections], begins: date) -> Imported[Inspections]:
+    """Leave out, and say so, inspections of before a season's first day, where others are of it."""
+    before = read.value.date < np.datetime64(begins, "D")
+    if not before.any() or before.all():
+        return read
+    said = worded(
+        "{n} {n:result|results} of before the season's first day, {begins}, {n:was|were} left out, "
+        "the first of {earliest}.",
+        n=int(before.sum()),
+        begins=begins,
+        earliest=read.value.date[before].min(),
+    )
+    return Imported(read.value.take(~before), (*read.messages, dropped(said)))
+
+
 def in_future(day: NDArray[np.datetime64], where: str | None = None) -> list[ImportMessage]:
     """Return a doubt where days ``(n,)`` have not come yet, anywhere on earth."""
     n_future = int(to_come(day).sum())

@@ -81,10 +81,16 @@ class LogEntry:
             said += f"; {added}"
         if detects := what.get("detects"):
             said += f"; told to find {', '.join(map(_percent, detects))} of what is there"
+        said += f"; lost: {'; '.join(self.lost)}" if self.lost else ""
         if self.of_copy and self.batch is not None:  # here that number is another batch's
             whose = worded("The number of the batch is the copy's.")
             said = f"{said.removesuffix('.')}. {whose}"
         return said
+
+    @property
+    def lost(self) -> tuple[str, ...]:
+        """What was lost when the file was saved from a damaged one, in words."""
+        return tuple(map(lost_in_words, self.what.get("lost", ())))
 
     @property
     def batch(self) -> int | None:
@@ -98,6 +104,16 @@ class LogEntry:
     def __str__(self) -> str:
         """Return which entry it is, for a sentence about it."""
         return f"entry {self.number} ({self.at[:16]} UTC, {self.kind})"
+
+
+def lost_in_words(gone: dict[str, Any]) -> str:
+    """Return in words what the log notes as lost: rows of a batch, or of a layer."""
+    if "layer" in gone:
+        return worded("rows of the layer {layer}", layer=gone["layer"])
+    return worded(
+        "{missing:,} of {of:,} {of:row|rows} of batch {batch} ({source})",
+        missing=gone["missing"], of=gone["of"], batch=gone["batch"], source=gone["source"] or "-",
+    )  # fmt: skip
 
 
 def _percent(chance: float) -> str:

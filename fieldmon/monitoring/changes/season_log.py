@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 from fieldmon.compute.wording import worded, written
 from fieldmon.errors import FileProblem
 from fieldmon.infestation.inspection_columns import BESIDE, InspectionColumn
-from fieldmon.monitoring.changes.log_entry import LogEntry, Numbers
+from fieldmon.monitoring.changes.log_entry import LogEntry, Numbers, lost_in_words
 from fieldmon.monitoring.changes.log_visits import LogVisit, by_visit
 from fieldmon.monitoring.file import schema
 from fieldmon.monitoring.file.geopackage import touch
@@ -50,18 +50,45 @@ def begin(db: sqlite3.Connection, why: str) -> None:
     append(db, "begins", states=states(db), why=why)
 
 
-def go_on_saved(db: sqlite3.Connection) -> None:
-    """Go on with a log that was saved from a damaged file; begin a new one where it has a hole."""
+def go_on_saved(db: sqlite3.Connection, unread: Sequence[str]) -> tuple[str, ...]:
+    """Go on with a log that was saved from a damaged file; begin a new one where it has a hole.
+
+    `unread` are the layers of which rows could not be read. What is known to be gone is noted, and
+    returned in words.
+    """
     rows = db.execute("SELECT fid, digest FROM log ORDER BY fid").fetchall()
     _note_head(db, *(rows[-1] if rows else (0, _NOTHING)))
+    gone = _gone_of_batches(db)
+    told = {"inspections", "treatments"} if gone and schema.BATCHES.name not in unread else {""}
+    gone += [{"layer": layer} for layer in unread if layer not in told]
+    lost = {"lost": gone} if gone else {}
     try:
         refuse_changed(db)
     except FileProblem as hole:
         db.execute("DELETE FROM log")
         _note_head(db, 0, _NOTHING)
-        begin(db, f"the one before could not be saved whole ({hole})")
+        why = f"the one before could not be saved whole ({hole})"
+        append(db, "begins", states=states(db), why=why, **lost)
     else:
-        append(db, "saved" if rows else "begins", states=states(db), why="saved from an old file")
+        why = _NONE_SAVED if schema.LOG.name in unread else "saved from an old file"
+        append(db, "saved" if rows else "begins", states=states(db), why=why, **lost)
+    return tuple(map(lost_in_words, gone))
+
+
+_NONE_SAVED = "of the one before, which was damaged, nothing could be saved"
+
+
+def _gone_of_batches(db: sqlite3.Connection) -> list[dict[str, Any]]:
+    """Return of which batches rows are missing, how many and of how many."""
+    rows = db.execute(
+        "SELECT fid, source, rows, rows - (SELECT count(*) FROM inspections WHERE batch = b.fid) "
+        "- (SELECT count(*) FROM treatments WHERE batch = b.fid) AS missing FROM batches AS b "
+        "WHERE missing > 0 ORDER BY fid"
+    )
+    return [
+        {"batch": batch, "source": source or "", "of": of, "missing": missing}
+        for batch, source, of, missing in rows
+    ]
 
 
 def append(
@@ -215,6 +242,14 @@ def numbered_anew(db: sqlite3.Connection) -> dict[int, dict[int, int | None]]:
     if db.execute(merged).fetchone() is None:
         return {}
     return {entry.number: entry.numbers for entry in _read(db) if entry.numbers}
+
+
+def saved_without(db: sqlite3.Connection) -> tuple[LogEntry, ...]:
+    """Return the entries that note what was lost when the file was saved from a damaged one."""
+    noted = "SELECT 1 FROM log WHERE entry LIKE '%\"lost\":[%'"
+    if db.execute(noted).fetchone() is None:
+        return ()
+    return tuple(entry for entry in _read(db) if entry.lost)
 
 
 def _read(db: sqlite3.Connection) -> tuple[LogEntry, ...]:

@@ -15,6 +15,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+#: the disk takes no more, though what it has is as it was
+_NOT_WRITTEN = {
+    sqlite3.SQLITE_IOERR_WRITE,
+    sqlite3.SQLITE_IOERR_FSYNC,
+    sqlite3.SQLITE_IOERR_DIR_FSYNC,
+    sqlite3.SQLITE_IOERR_TRUNCATE,
+}
+
+
 class FileHeld(FileProblem):
     """Another program holds a season's file for longer than is waited for."""
 
@@ -74,14 +83,8 @@ def _problem(error: sqlite3.Error, path: Path, patience_s: float, full: Path) ->
                 patience_s=patience_s,
             )
         )
-    if code == sqlite3.SQLITE_FULL:
-        return FileProblem(
-            worded(
-                "There must be room on the disk for {path}, but it is "
-                "full. Nothing was changed: make room and try again.",
-                path=full,
-            )
-        )
+    if (refused := _refused_by_disk(error, full)) is not None:
+        return refused
     if code in {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN}:
         return FileProblem(
             worded(
@@ -93,6 +96,28 @@ def _problem(error: sqlite3.Error, path: Path, patience_s: float, full: Path) ->
             )
         )
     return damaged(path, str(error))
+
+
+def _refused_by_disk(error: sqlite3.Error, path: Path) -> FileProblem | None:
+    """Return that the disk takes no more of a file, if that is SQLite's error."""
+    if sqlite_code(error) == sqlite3.SQLITE_FULL:
+        return FileProblem(
+            worded(
+                "There must be room on the disk for {path}, but it is "
+                "full. Nothing was changed: make room and try again.",
+                path=path,
+            )
+        )
+    if getattr(error, "sqlite_errorcode", 0) not in _NOT_WRITTEN:
+        return None
+    return FileProblem(
+        worded(
+            "The disk must take what is written to {path}, but it does not ({text}). Nothing "
+            "was changed: is there room, or a limit on the size of files?",
+            path=path,
+            text=str(error),
+        )
+    )
 
 
 def no_file(path: str | Path) -> FileProblem:

@@ -93,9 +93,10 @@ def read_brought(
     """Read a file brought to a season: a table, positions, a copy of it, or what a phone saved.
 
     Inspections without a date are left out where others have one: they get the `work_day` of the
-    options only where the whole file names none. So are those of days that have not come, unless
-    the season has not begun either or they are taken (`take_doubtful`). Of a copy, what was
-    corrected there is no new finding.
+    options only where the whole file names none. So are those of before the season's first day,
+    where others are of it, and those of days that have not come, unless the season has not begun
+    either or they are taken (`take_doubtful`). Of a copy, what was corrected there is no new
+    finding.
 
     Parameters
     ----------
@@ -173,13 +174,13 @@ def read_findings(
 def _dated_on_plot(
     season: Season, rows: Imported[InspectionRows], options: InspectionOptions
 ) -> Imported[Inspections]:
-    from fieldmon.io.readers.date_doubts import come  # noqa: PLC0415 - as above
+    from fieldmon.io.readers.date_doubts import come, since  # noqa: PLC0415 - as above
     from fieldmon.io.readers.inspections import dated, on_plot  # noqa: PLC0415 - as above
 
-    read = dated(on_plot(rows, season.plot.grid, options, own_names(season)))
-    today = local_clock(season.plot.field).today()
+    begins, today = season.settings.begins, local_clock(season.plot.field).today()
+    read = since(dated(on_plot(rows, season.plot.grid, options, own_names(season))), begins)
     # before a season begins it is a rehearsal
-    return read if season.settings.begins > today else come(read, options, today)
+    return read if begins > today else come(read, options, today)
 
 
 def _about_copy(season: Season, held: BroughtSeason, name: str) -> list[ImportMessage]:

@@ -30,6 +30,8 @@ _MOST_BYTES = 2**34
 _OLD = "damaged"
 _IS_ATTACHED = f"SELECT 1 FROM pragma_database_list WHERE name = '{_OLD}'"  # noqa: S608 - ours
 _TEXTS = {"TEXT", "DATE"}
+#: what is saved: a new file has its own revision and head of the log
+_SAVED = tuple(table for table in schema.CAUSES if table is not schema.META)
 #: what need not be worked out again as far as it follows from what was saved
 _WORKED_OUT = (schema.DAYS, schema.MORNINGS)
 
@@ -41,19 +43,22 @@ class Salvaged:
     Parameters
     ----------
     rows
-        Rows saved of each table.
+        Rows of each table that are in the new file.
     lost
-        Tables of which at least one row could not be read.
+        Tables of which at least one row could not be saved.
     whole
         Whether the new file works as a season again.
     why
         Why not, in a sentence; empty where it does.
+    gone
+        What is known to be missing, batch by batch and layer by layer, as the log notes it.
     """
 
     rows: dict[str, int]
     lost: tuple[str, ...]
     whole: bool
     why: str = ""
+    gone: tuple[str, ...] = ()
 
 
 def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
@@ -70,7 +75,6 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
                 damaged=damaged,
             )
         )
-    rows, lost = {}, []
     with working_folder() as folder:
         copy = _padded_copy(source, Path(folder))
         with closing(sqlite3.connect(copy)) as db, suppress(sqlite3.Error, ValueError):
@@ -79,10 +83,8 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
             new.execute("INSERT OR REPLACE INTO fieldmon (key, value) VALUES ('revision', '0')")
             _attach(db, new, copy)
             with _written_at_once(new):
-                for table in schema.CAUSES:
-                    if table is not schema.META:
-                        rows[table.name], complete = _taken(db, new, table)
-                        lost += [] if complete else [table.name]
+                lost = [table.name for table in _SAVED if not _taken(db, new, table)]
+            rows = {table.name: _n_rows(new, table) for table in _SAVED}
             if not any(rows.values()):
                 raise FileProblem(
                     worded(
@@ -92,7 +94,7 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
                     )
                 )
             _take_wishes(db, new)
-            season_log.go_on_saved(new)
+            gone = season_log.go_on_saved(new, lost)
             for table in _WORKED_OUT:
                 _taken(db, new, table)
             # a file without derived layers still says on which day it stands
@@ -104,7 +106,7 @@ def salvage(damaged: str | Path, to: str | Path) -> Salvaged:
         Season(to).rebuild(whole=False)
     except FieldmonError as problem:
         why = str(problem)
-    return Salvaged(rows, tuple(lost), not why, why)
+    return Salvaged(rows, tuple(lost), not why, why, gone)
 
 
 def _take_wishes(db: sqlite3.Connection, new: sqlite3.Connection) -> None:
@@ -173,21 +175,24 @@ def _columns(db: sqlite3.Connection, table: GeoPackageTable) -> tuple[str, ...]:
     return tuple(name for name in names if name in there) or names
 
 
-def _taken(
-    db: sqlite3.Connection, new: sqlite3.Connection, table: GeoPackageTable
-) -> tuple[int, bool]:
-    """Copy the rows of a table that can be read; return how many, and whether those are all."""
+def _n_rows(db: sqlite3.Connection, table: GeoPackageTable) -> int:
+    (n,) = db.execute(f"SELECT count(*) FROM {table.name}").fetchone()  # noqa: S608 - ours
+    return int(n)
+
+
+def _taken(db: sqlite3.Connection, new: sqlite3.Connection, table: GeoPackageTable) -> bool:
+    """Copy the rows of a table that can be read; return whether those are all."""
+    with suppress(sqlite3.Error):  # an earlier version had no such table
+        known = "SELECT 1 FROM sqlite_master WHERE name = ?"
+        if db.execute(known, (table.name,)).fetchone() is None:
+            return True
     names = _columns(db, table)
-    whole = _taken_whole(db, new, table, names)
-    if whole is not None:
-        return whole, True
+    if (whole := _taken_whole(db, new, table, names)) is not None:
+        return whole
     found, complete = _rows(db, table, names)
     marks = ", ".join("?" * len(names))
-    new.executemany(
-        f"INSERT OR IGNORE INTO {table.name} ({', '.join(names)}) VALUES ({marks})",  # noqa: S608 - ours
-        found,
-    )
-    return len(found), complete
+    into = f"INSERT OR IGNORE INTO {table.name} ({', '.join(names)}) VALUES ({marks})"  # noqa: S608 - ours
+    return new.executemany(into, found).rowcount == len(found) and complete
 
 
 def _attach(db: sqlite3.Connection, new: sqlite3.Connection, copy: Path) -> None:
@@ -199,8 +204,8 @@ def _attach(db: sqlite3.Connection, new: sqlite3.Connection, copy: Path) -> None
 
 def _taken_whole(
     db: sqlite3.Connection, new: sqlite3.Connection, table: GeoPackageTable, names: tuple[str, ...]
-) -> int | None:
-    """Copy a table of which every row can be read, within SQLite; return how many rows it has.
+) -> bool | None:
+    """Copy a table of which every row can be read, within SQLite; return whether each was taken.
 
     None, and nothing is copied, where some cannot: those that can are looked for one by one then.
     """
@@ -211,12 +216,11 @@ def _taken_whole(
         return None
     if elsewhere or n > _MOST_ROWS or not new.execute(_IS_ATTACHED).fetchone():
         return None
-    if n:
-        new.execute(
-            f"INSERT OR IGNORE INTO main.{table.name} ({columns}) "  # noqa: S608 - names of ours
-            f"SELECT {columns} FROM {old} ORDER BY {table.key}"
-        )
-    return int(n)
+    into = (
+        f"INSERT OR IGNORE INTO main.{table.name} ({columns}) "  # noqa: S608 - names of ours
+        f"SELECT {columns} FROM {old} ORDER BY {table.key}"
+    )
+    return n == 0 or new.execute(into).rowcount == n
 
 
 def _all_read(table: GeoPackageTable, names: tuple[str, ...]) -> str:

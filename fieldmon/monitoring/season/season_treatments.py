@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from fieldmon.compute.array_arguments import plants_marked
 from fieldmon.compute.kinds import checked
-from fieldmon.compute.wording import first_few, worded
+from fieldmon.compute.wording import first_few, joined, worded
 from fieldmon.decisions.labels import SAID_BY_HAND, label_for, plain_name, with_wait
 from fieldmon.decisions.zones import ground_m2, outline_of
 from fieldmon.errors import SettingError
@@ -23,7 +23,7 @@ from fieldmon.monitoring.season.open_season import OpenSeason
 from fieldmon.monitoring.settings.settings_log import settings_of
 from fieldmon.monitoring.treating import cautions, treatments
 from fieldmon.monitoring.treating.applications import Application
-from fieldmon.monitoring.treating.cautions import RulesToKeep
+from fieldmon.monitoring.treating.cautions import Caution, RulesToKeep
 from fieldmon.monitoring.treating.early_entries import early_entries
 from fieldmon.monitoring.treating.treatment import Treatment
 from fieldmon.monitoring.treating.treatments import KeptTreatment, TreatedPlace, by_vine
@@ -33,7 +33,7 @@ from fieldmon.plot.named_rows import place_in_words
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
     from datetime import date
 
     import numpy as np
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
     from fieldmon.compute.units import Units
     from fieldmon.decisions.labels import ProductLabel
     from fieldmon.monitoring.estimates.treatment_effect import TreatmentEffect
-    from fieldmon.monitoring.treating.cautions import Caution
 
 
 # kinds of caution that can be told of a treatment before it is done
@@ -232,7 +231,7 @@ class SeasonTreatments(OpenSeason):
     ) -> tuple[Caution, ...]:
         """Return what to beware of on a day: harvest, entry, resistance, what labels allow.
 
-        And who was where before entry was allowed.
+        And who was where before entry was allowed, and what was lost with a damaged file.
 
         Parameters
         ----------
@@ -246,12 +245,27 @@ class SeasonTreatments(OpenSeason):
         done, rules, seen = self._held_to(units)
         every, own = by_vine(done, self.plot.grid), done
         if because_of is None:
-            until, found = on, cautions.cautions(every, rules, on)
+            until, found = on, (*self._lost(rules.units), *cautions.cautions(every, rules, on))
         else:
             own = tuple(one for one in done if one.batch == because_of and one.on <= on)
             until, found = last_date(self), cautions.because_of(every, because_of, rules, on)
         early = early_entries(own, rules, seen, self.plot.grid, until)
         return cautions.by_urgency((*found, *early))
+
+    def _lost(self, units: Units) -> Iterator[Caution]:
+        """Yield what was lost when the file was saved from a damaged one."""
+        with self.store.reading() as db:
+            saved = season_log.saved_without(db)
+        for entry in saved:
+            yield Caution(
+                "lost",
+                worded(
+                    "On {day} the season was saved from a damaged file, without {lost}. Go back "
+                    "to a copy, or record again what is missing.",
+                    day=units.day(entry.at[:10]), lost=joined(", ", entry.lost),
+                ),
+                0,
+            )  # fmt: skip
 
     def cautions_if_treated(
         self, on: Day, product: str, plants: NDArray[np.bool_], units: Units | None = None

@@ -35,7 +35,9 @@ MOST_IN_A_ROW = 2
 # crops and pests of labels that a sentence names
 _MOST_LINES = 5
 # kinds of caution, the most urgent first
-_URGENT = ("entry", "entered", "harvest", "dose", "twice", "uses", "group", "waiting", "label")
+_URGENT = (
+    "lost", "entry", "entered", "harvest", "dose", "twice", "uses", "group", "waiting", "label",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -46,11 +48,11 @@ class Caution:
     ----------
     kind
         ``"harvest"``, ``"entry"``, ``"entered"``, ``"group"``, ``"dose"``, ``"twice"``,
-        ``"uses"``, ``"waiting"`` or ``"label"``.
+        ``"uses"``, ``"waiting"``, ``"label"`` or ``"lost"``.
     sentence
         What, where and from when on.
     batch
-        Of the treatment that it is about.
+        Of the treatment that it is about; 0: of none.
     """
 
     kind: str

@@ -26,6 +26,8 @@ def told(words, code):
         (told("database is locked", sqlite3.SQLITE_BUSY), "has held it for 7 seconds"),
         (told("locked", sqlite3.SQLITE_BUSY_SNAPSHOT), "has held it for 7 seconds"),
         (told("database or disk is full", sqlite3.SQLITE_FULL), "on the disk for copy.gpkg"),
+        (told("disk I/O error", sqlite3.SQLITE_IOERR_WRITE), "disk must take.*written to copy"),
+        (told("disk I/O error", sqlite3.SQLITE_IOERR_READ), "season.gpkg is damaged"),
         (told("readonly database", sqlite3.SQLITE_READONLY_DIRECTORY), "Check its permissions"),
         (told("no such file", sqlite3.SQLITE_CANTOPEN), "Check its permissions"),
         (told("interrupted", sqlite3.SQLITE_INTERRUPT), "must come to an end"),

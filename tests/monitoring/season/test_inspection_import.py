@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fieldmon.errors import ContradictionError, FileProblem, ObservationError
+from fieldmon.errors import ContradictionError, FieldmonError, FileProblem, ObservationError
 from fieldmon.infestation.inspections import CLEAN, FOUND, Inspections
 from fieldmon.io.options import Upload
 from fieldmon.io.readers.inspection_options import InspectionOptions
@@ -213,3 +213,16 @@ def test_results_of_days_to_come_are_left_out_once_the_season_has_begun_unless_t
         assert [f"it is {on(today)} on the plot" in one for one in said] == [True] * (
             len(taken) < 2
         )
+
+
+def test_results_of_before_the_first_day_are_left_out_where_others_are_of_the_season(
+    season, tmp_path
+):
+    text = f"plant,result,date\n3,found,{on(-1)}\n4,clean,{on(0)}\n"
+    read = brought(season, text, tmp_path, OPTIONS)
+    assert read.findings.plant.tolist() == [4]
+    (said,) = (one.sentence for one in read.messages if "first day" in one.sentence)
+    assert said.startswith(f"1 result of before the season's first day, {on(0)}, was left out")
+    alone = brought(season, f"plant,result,date\n3,found,{on(-1)}\n", tmp_path, OPTIONS)
+    with pytest.raises(FieldmonError, match="which began on"):
+        season.record(alone.findings, "old.csv")

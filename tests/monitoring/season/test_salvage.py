@@ -290,3 +290,68 @@ def test_a_rescued_file_has_the_indexes_and_triggers_of_a_new_one(path, tmp_path
         closing(sqlite3.connect(tmp_path / "rescued.gpkg")) as two,
     ):
         assert one.execute(made).fetchall() == two.execute(made).fetchall()
+
+
+def without(path, table):
+    """Zero the page at which a table begins."""
+    with closing(sqlite3.connect(path)) as db:
+        (size,) = db.execute("PRAGMA page_size").fetchone()
+        query = "SELECT rootpage FROM sqlite_master WHERE name = ?"
+        (root,) = db.execute(query, (table,)).fetchone()
+    data = bytearray(path.read_bytes())
+    data[(root - 1) * size : root * size] = bytes(size)
+    path.write_bytes(data)
+
+
+def test_lost_inspections_are_noted_in_the_log_and_said_from_then_on(path, tmp_path):
+    without(path, "inspections")
+    done = salvage(path, tmp_path / "rescued.gpkg")
+    gone = "12 of 12 rows of batch 1 (monday.csv)"
+    assert (done.rows["inspections"], done.lost, done.gone) == (0, ("inspections",), (gone,))
+    rescued = Season(tmp_path / "rescued.gpkg")
+    assert rescued.log()[-1].sentence() == f"saved from a damaged file; lost: {gone}"
+    (first, *_) = rescued.cautions(BEGINS)
+    assert first.kind == "lost"
+    assert f"saved from a damaged file, without {gone}. Go back" in first.sentence
+    assert check_against_log(rescued) == ()
+
+
+def test_a_log_of_which_nothing_is_left_says_that_it_is_lost_and_not_that_the_file_is_old(
+    path, tmp_path
+):
+    without(path, "log")
+    done = salvage(path, tmp_path / "rescued.gpkg")
+    assert (done.rows["log"], done.gone) == (0, ("rows of the layer log",))
+    (only,) = Season(tmp_path / "rescued.gpkg").log()
+    assert "of the one before, which was damaged, nothing could be saved" in only.sentence()
+    assert only.lost == ("rows of the layer log",)
+
+
+def test_rows_are_counted_in_the_new_file_and_those_that_it_cannot_take_are_lost(path, tmp_path):
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("PRAGMA writable_schema = ON")
+        db.execute(
+            "UPDATE sqlite_master SET sql = replace(sql, 'digest TEXT NOT NULL', 'digest TEXT') "
+            "WHERE name = 'log'"
+        )
+        db.commit()
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("UPDATE log SET digest = NULL")
+        db.commit()
+    done = salvage(path, tmp_path / "rescued.gpkg")
+    assert (done.rows["log"], "log" in done.lost) == (0, True)
+
+
+@pytest.mark.parametrize("of", ["path", "weeks"])
+def test_of_a_whole_file_nothing_is_said_to_be_lost(of, request, tmp_path):
+    done = salvage(request.getfixturevalue(of), tmp_path / "rescued.gpkg")
+    rescued = Season(tmp_path / "rescued.gpkg")
+    assert (done.lost, done.gone, rescued.log()[-1].lost) == ((), (), ())
+    assert [one for one in rescued.cautions(BEGINS) if one.kind == "lost"] == []
+
+
+@pytest.mark.parametrize("file", sorted(FOLDER.glob("*.gpkg")), ids=lambda file: file.stem)
+def test_of_a_file_of_an_earlier_version_only_what_it_had_can_be_lost(file, tmp_path):
+    old = Path(shutil.copy(file, tmp_path / "old.gpkg"))
+    done = salvage(old, tmp_path / "rescued.gpkg")
+    assert (done.lost, done.gone) == ((), ())

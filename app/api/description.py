@@ -193,7 +193,16 @@ PLOT: dict[str, Any] = {
     },
 }
 _PLAN = {"type": ["integer", "null"], "description": "Number of the plan kept of the day."}
-REST: dict[str, Any] = {"type": "object", "properties": {"route": ROUTE, "plan": _PLAN}}
+_OTHERS = {
+    "type": "array",
+    "description": "Plants in aisles that others of the team, or who share the rows, have. "
+    "As runs of first and last.",
+    "items": _LIST,
+}
+REST: dict[str, Any] = {
+    "type": "object",
+    "properties": {"route": ROUTE, "plan": _PLAN, "others": _OTHERS},
+}
 DAY: dict[str, Any] = {
     "type": "object",
     "required": ["day", "live", "route", "plot"],
@@ -201,6 +210,7 @@ DAY: dict[str, Any] = {
         "season": {"type": "string"},
         "scout": {"type": "string"},
         "rows": {"type": ["array", "null"], "description": "First and last row of one's part."},
+        "others": _OTHERS,
         "plot": {"type": "string", "description": "Changes if the plot does: fetch it anew."},
         "day": {"type": "string", "format": "date"},
         "live": {"type": "boolean", "description": "Whether it is today on the plot."},

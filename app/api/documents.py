@@ -117,6 +117,7 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "season": season.path.stem,
         "scout": scout.name,
         "rows": ahead.rows(part),
+        "others": _others(ahead, part),
         "plot": plot_document(season)[0],
         "day": on.isoformat(),
         "live": on == _today(season),
@@ -169,10 +170,18 @@ def rest_document(
     with kept_open():
         on, part = _day(season, on), WorkPart(scout.rows, scout.name)
         route = planned_again(season, on, part, seconds_left)
-        plan = DayAhead.of(season, on).plan_of(part)
+        ahead = DayAhead.of(season, on)
+        plan, others = ahead.plan_of(part), _others(ahead, part)
         told = _route(route, detection_of(season, on, scout.name))
     last_heard.note(season.path, scout.name, on, plan)
-    return _json({"day": on.isoformat(), "route": told, "plan": plan})
+    return _json({"day": on.isoformat(), "route": told, "plan": plan, "others": others})
+
+
+def _others(ahead: DayAhead, part: WorkPart) -> list[list[int]]:
+    """Return somebody's plants in aisles that others have, as runs: no find leads there."""
+    theirs = ahead.own(part) & ~ahead.in_own_aisles(part)
+    runs: list[list[int]] = run_ends(np.flatnonzero(theirs)).tolist()
+    return runs
 
 
 def _day(season: Season, on: date | None) -> date:
@@ -240,7 +249,7 @@ def _closed(season: Season, ahead: DayAhead, on: date, part: WorkPart) -> list[d
 
     With which of their plants, as runs of numbers, and how many of these are somebody's own.
     """
-    closed, line, mine = [], season.plant_numbers.line, ahead.own(part)
+    closed, line, mine = [], season.plant_numbers.line, ahead.in_own_aisles(part)
     for one in season.closed(on, ahead.works_as(part)):
         rows = np.unique(line[one.plants])
         for run in run_ends(rows).tolist():
@@ -261,7 +270,7 @@ def _left_out(
 ) -> list[dict[str, Any]]:
     """Return which plants are on no route though they are open, why, and how many are one's own."""
     on, part = of
-    mine = ahead.own(part)
+    mine = ahead.in_own_aisles(part)
     return [
         {"why": why, "plants": run_ends(plants).tolist(), "own": int(mine[plants].sum())}
         for why, plants in left_out(season.scene(on, who=ahead.works_as(part)), route).items()

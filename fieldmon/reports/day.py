@@ -170,6 +170,11 @@ class DayFacts:
     day: date | None = None
 
     @property
+    def is_idle(self) -> bool:
+        """Return whether it is of one for whom stops were planned, and nothing was recorded."""
+        return bool(self.who and self.held is not None and self.held.left and not self.results)
+
+    @property
     def on(self) -> date:
         """The day that it is about."""
         return self.begins.date() if self.day is None else self.day
@@ -242,7 +247,12 @@ class DayFacts:
                 return (whole,)
             is_over = on < default_date(season) or (today is not None and on < today)
             each = [cls.of_season(season, on, today, name, wished) for name in out.values()]
-            shown = [one for one in each if one.worked or (len(one.route) and not is_over)]
+            shows = [one.worked or (len(one.route) > 0 and not is_over) for one in each]
+            shown = [
+                one if has else replace(one, missed=True)
+                for one, has in zip(each, shows, strict=True)
+                if has or one.is_idle
+            ]
             together = [whole] if whole.worked or not shown else []
             return (*together, *shown)
 
@@ -335,6 +345,9 @@ def _leads(facts: DayFacts, units: Units) -> list[str]:
     if facts.missed:
         planned = 0 if facts.held is None else facts.held.planned
         of_plan = [worded(words.MISSED_PLAN, planned=planned)] * bool(planned)
+        if facts.is_idle and facts.held is not None:
+            held = worded(words.PLANNED_DONE, **held_in_words([facts.held]))
+            return [worded(words.MISSED_OF, who=words.isolated(facts.who)), held]
         return [worded(words.MISSED, day=day), *of_plan]
     said: list[str] = []
     if facts.inspected:
@@ -473,12 +486,17 @@ def legend_block(**signs: bool) -> Illustration:
 
 
 def _stops(facts: DayFacts) -> Table:
-    """Return the rows in the order in which they are come to, with their plants."""
+    """Return the rows in the order in which they are come to, with their plants.
+
+    Nobody came to those of several together in one order: these are by row.
+    """
     grid = facts.route.aisles.grid
     numbered = plant_numbers(grid, facts.route.plant)
     lines, first = np.unique(numbered.line, return_index=True)
     rows, flow = [], 2 if len(lines) <= _MOST_WIDE else 3
-    for line, k in sorted(zip(lines.tolist(), first.tolist(), strict=True), key=lambda one: one[1]):
+    by = 0 if facts.team else 1
+    each = zip(lines.tolist(), first.tolist(), strict=True)
+    for line, k in sorted(each, key=lambda one: one[by]):
         own = np.unique(numbered.number[numbered.line == line]).tolist()  # come to twice is one
         rows.append(
             (
@@ -489,8 +507,8 @@ def _stops(facts: DayFacts) -> Table:
             )
         )
     return Table(
-        words.STOPS, words.STOPS_COLUMNS, tuple(rows), (0.15, 0.16, 0.17, 0.52), flow=flow,
-        rest=words.STOPS_REST, left=(3,),
+        words.STOPS_BY_ROW if facts.team else words.STOPS, words.STOPS_COLUMNS, tuple(rows),
+        (0.15, 0.16, 0.17, 0.52), flow=flow, rest=words.STOPS_REST, left=(3,),
     )  # fmt: skip
 
 

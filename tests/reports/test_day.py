@@ -11,7 +11,7 @@ from fieldmon.compute.wording import estimate
 from fieldmon.infestation.inspections import CLEAN, FOUND, SKIPPED, Inspections
 from fieldmon.monitoring import PlannedAndDone
 from fieldmon.monitoring.treating.applications import Application
-from fieldmon.planning.members import TeamMember
+from fieldmon.planning.members import TeamMember, team_of
 from fieldmon.plot.grid import plant_numbers
 from fieldmon.plot.robot import Robot
 from fieldmon.reports import words
@@ -412,7 +412,9 @@ def test_a_team_s_day_names_who_worked_and_how_and_says_no_times_that_nobody_dro
     said = figures(report)
     assert (said["Team"].value, said["Team"].note) == ("2", "\u2068Ann\u2069, \u2068R1\u2069")
     assert not {"Hours", "Drive"} & {*said}
-    assert {row[1] for row in table(report, "Stops by row, in order").rows} == {"–"}
+    stops = table(report, "Stops by row").rows
+    assert {row[1] for row in stops} == {"–"}
+    assert [int(row[0]) for row in stops] == sorted(int(row[0]) for row in stops)
     assert {row[1] for row in one(report, TickList).rows} == {"–"}
     rows = {row[0]: row[1] for row in table(report, "Settings").rows}
     assert rows["\u2068R1\u2069: hours, seconds at a plant"] == "1 h, 40 s"
@@ -430,6 +432,21 @@ def test_a_team_s_day_names_who_worked_and_how_and_says_no_times_that_nobody_dro
         assert facts.held.done == facts.inspected == len(facts.results)
         assert "Hours" in figures(alone)
         assert "–" not in {row[1] for row in table(alone, "Stops by row, in order").rows}
+
+
+def test_one_of_a_team_with_a_plan_and_no_results_has_a_page_that_says_what_is_left(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", team=team_of(2))
+    first, idle = (plan.route.plant for plan in season.plan_each(BEGINS))
+    done = Inspections.of(first, np.zeros(len(first), np.int8), np.datetime64(BEGINS))
+    season.record(done, "f", "robot-1")
+    each = DayFacts.each_of_season(season, BEGINS, BEGINS + timedelta(days=1))
+    assert [facts.who for facts in each] == ["", "robot-1", "robot-2"]
+    (said,) = [
+        block.text
+        for block in day_of_each(each, Units()).sheets[2].blocks
+        if isinstance(block, Paragraph) and block.text.startswith("Stops planned")
+    ]
+    assert said == f"Stops planned: {len(idle)}; done: 0; left out: {len(idle)}; added: 0."
 
 
 def test_a_day_of_several_without_a_team_is_nobodys_drive_and_counts_a_plant_once(tmp_path):
@@ -450,7 +467,7 @@ def test_a_day_of_several_without_a_team_is_nobodys_drive_and_counts_a_plant_onc
     assert not {"Hours", "Drive"} & {*said}
     assert said["Plants inspected"].value == "6"
     assert "6 plants inspected" in paragraphs(report)[0]
-    assert sum(int(row[2]) for row in table(report, words.STOPS).rows) == 6
+    assert sum(int(row[2]) for row in table(report, words.STOPS_BY_ROW).rows) == 6
     assert facts.held.done == 6
 
 

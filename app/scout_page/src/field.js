@@ -261,8 +261,8 @@ export class Field {
     if (this.isOld()) return this.load(); // the rest of a day that is over is none of the next one
     const heard = await this.#hear((access) => fetchRest(this.ask, access, this.meant(), this.secondsLeft()));
     if (!heard) return;
-    const { route, plan } = heard;
-    this.day = { ...this.day, route, plan, newest: plan };
+    const { route, plan, others = this.day.others } = heard;
+    this.day = { ...this.day, route, plan, others, newest: plan };
     this.ahead = this.#withAsked(route.plants);
     this.last = null;
     this.draft = this.#keepDraft();
@@ -608,8 +608,8 @@ export class Field {
   /** Whether a plant is not to be inspected today, as was said in the app; a server of before says none. */
   isUnwanted(plant) { return (this.day?.unwanted ?? []).some((run) => within(plant, run)); }
 
-  /** Whether a plant is in the rows of whose phone it is; who has none has all. */
-  isOwn(plant) { return !this.day?.rows || within(rowOf(this.plot, plant), this.day.rows); }
+  /** Whether a plant is in the rows of whose phone it is (who has none has all), and in no aisle that others have; a server of before says none. */
+  isOwn(plant) { return (!this.day?.rows || within(rowOf(this.plot, plant), this.day.rows)) && !(this.day?.others ?? []).some((run) => within(plant, run)); }
 
   /** Whether a plant does not stand there any more, as the season says; a server of before says none. */
   isGone(plant) { return (this.day?.gone ?? []).includes(plant); }

@@ -85,6 +85,8 @@ test("after a find nobody is led out of the rows of their own, nor to what is no
   assert.deepEqual((await left({ rows: [2, 3] })).filter((one) => one < 5), [], "row 1 is another's");
   assert.ok((await left({ rows: [2, 3] })).includes(10));
   assert.ok(!(await left({ unwanted: [[0, 4]] })).includes(0));
+  assert.deepEqual((await left({ others: [[0, 4]] })).filter((one) => one < 5), [], "row 1 is another's of the team");
+  assert.ok((await left({ others: [[0, 4]] })).includes(6));
 });
 
 test("what the office leaves out while one is out is left out of the way, and it is said how many these are", async () => {

@@ -61,7 +61,7 @@ def go_on_saved(db: sqlite3.Connection, unread: Sequence[str]) -> tuple[str, ...
     gone = _gone_of_batches(db)
     told = {"inspections", "treatments"} if gone and schema.BATCHES.name not in unread else {""}
     gone += [{"layer": layer} for layer in unread if layer not in told]
-    lost = {"lost": gone} if gone else {}
+    lost: dict[str, Any] = {"lost": gone} if gone else {}
     try:
         refuse_changed(db)
     except FileProblem as hole:

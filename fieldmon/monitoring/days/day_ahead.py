@@ -90,6 +90,8 @@ class DayAhead:
     ----------
     plant_numbers
         Row and number of every plant.
+    aisle
+        ``(n,)`` from which aisle each is inspected.
     settings
         What is chosen.
     scouts
@@ -103,6 +105,7 @@ class DayAhead:
     """
 
     plant_numbers: PlantNumbers
+    aisle: NDArray[np.integer]
     settings: MonitoringSettings
     scouts: tuple[Scout, ...]
     last: dict[str, KeptRoute]
@@ -119,7 +122,9 @@ class DayAhead:
             plants = {who: kept_routes.plants(now.db, kept) for who, kept in last.items()}
             people, asked = scouts_in(now.db), photos_asked_in(now.db)
             wished = kept_wishes.kept_in(now.db, on, len(season.plant_numbers.line))
-        return cls(season.plant_numbers, settings, people, last, plants, asked, wished)
+        grid = season.plot.grid
+        aisle = grid.corridor[grid.row]
+        return cls(season.plant_numbers, aisle, settings, people, last, plants, asked, wished)
 
     def kept(self, who: str = "") -> Plants:
         """Return the plants of somebody's route; nobody named: of the first of the team."""
@@ -199,6 +204,20 @@ class DayAhead:
         if not self.has_route(part):
             return np.zeros(len(self.plant_numbers.line), np.bool_)
         return inside(self.plant_numbers, self.rows(part))
+
+    def in_own_aisles(self, part: WorkPart) -> NDArray[np.bool_]:
+        """Return ``(n,)`` which of somebody's plants are in no aisle that others' routes lead to.
+
+        Theirs are those of the team, and of whoever shares the rows. What one's own route leads to
+        stays one's own.
+        """
+        mine, member = self.own(part), self.member(part)
+        team = [one.name for one in self.settings.team if one is not member]
+        names = self.others(part) if member is None else team
+        theirs = np.concatenate([_NO_PLANTS, *(self.kept(one) for one in names)])
+        mine &= ~np.isin(self.aisle, self.aisle[theirs])
+        mine[self.given(part)] = True
+        return mine
 
     def is_others(self, part: WorkPart, left: Plants) -> bool:
         """Return whether a route was made for other rows, or others who share them have of it."""

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     import sqlite3
     from datetime import date
 
-    from numpy.typing import NDArray
-
     from fieldmon.monitoring.season.season_file import Season
 
     #: when it was recorded, the plant, the day, and by whom
@@ -30,8 +28,6 @@ if TYPE_CHECKING:
 
 # the last finding of each, and the last photo; the newest is the last of a person
 _LAST_SENT = "SELECT scout, max(received), sent_phone FROM tellings GROUP BY scout ORDER BY 2"
-# after any time that is written
-_NEVER = "~"
 _LAST_PHOTO = "SELECT scout, max(received) FROM photos GROUP BY scout ORDER BY 2"
 
 
@@ -48,8 +44,7 @@ class ScoutOut:
     fast
         How far the phone's clock was ahead then.
     done, ahead
-        Plants that this person recorded on the day, and those that are left: of the route, and
-        beside what was found on it.
+        Plants that this person recorded on the day, and those left of the plan given last.
     plan
         Which plan of the day was given last, see `DayAhead.plan_of`; None: none.
     shares
@@ -91,7 +86,7 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
     Of a day that is over it is who was out then.
     """
     ahead, done = DayAhead.of(season, on), season.history.inspections.on(on)
-    holding = {person_key(one.name) for one in ahead.scouts}
+    holding = {person_key(one.name): one for one in ahead.scouts}
     is_earlier, day = season.work(on).is_earlier, ahead.settings.day(on)
     with season.store.reading() as db:
         if is_earlier:  # as its plan is counted, see `Season.planned_and_done`
@@ -106,7 +101,7 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
     team = {person_key(one.name): one.name for one in ahead.settings.team}
     out = []
     for who in dict.fromkeys([*coded, *team]):
-        code = coded.get(who)
+        code = coded.get(who, holding.get(who))  # of a day that is over: one made since
         part = WorkPart(None, team[who]) if code is None else WorkPart(code.rows, code.name)
         heard = max(filter(None, (sent.get(who, ("",))[0], photos.get(who, ""))), default="")
         out.append(
@@ -115,10 +110,7 @@ def scouts_out(season: Season, on: date) -> tuple[ScoutOut, ...]:
                 None if code is None else _moment(code.made), _moment(heard),
                 _phone_ahead(*sent[who]) if who in sent else timedelta(),
                 len(np.unique(made_by(done, who).plant)),
-                _n_ahead(season, ahead, part, done.plant,
-                         [plant for at, plant, of, by in finds
-                          if at > given.get(ahead.mark(part), _NEVER) and of == day
-                          and person_key(by) == who]),
+                len(np.setdiff1d(ahead.given(part), done.plant)),
                 ahead.plan_of(part), () if ahead.member(part) else ahead.others(part),
                 ahead.has_route(part), who in holding,
                 () if code is None else tuple(one.name for one in overlapping(code, *codes)),
@@ -134,21 +126,6 @@ def _finds_since(db: sqlite3.Connection, since: str, day: int) -> list[Find]:
         "ON b.fid = batch WHERE i.undone = 0 AND result = ? AND day <= ? AND at > ?"
     )
     return db.execute(wanted, (RESULT_NAMES[FOUND], day, since)).fetchall()
-
-
-def _n_ahead(
-    season: Season, ahead: DayAhead, part: WorkPart, done: NDArray[np.int32], found: list[int]
-) -> int:
-    """Return how many plants are left of a part's route, with those beside what was `found` since.
-
-    The phone goes to these next, by itself.
-    """
-    start, second = season.plot.grid.adjacent
-    beside = [second[start[plant] : start[plant + 1]] for plant in found]
-    mine = ahead.own(part)
-    mine[list(ahead.wished.wishes.unwanted)] = False
-    near = np.unique(np.concatenate([*beside, np.empty(0, second.dtype)]))
-    return len(np.setdiff1d(np.union1d(ahead.given(part), near[mine[near]]), done))
 
 
 def _n_newer(finds: list[Find], given: str | None, who: str, day: int) -> int:

@@ -220,7 +220,7 @@ def _taken_whole(
         f"INSERT OR IGNORE INTO main.{table.name} ({columns}) "  # noqa: S608 - names of ours
         f"SELECT {columns} FROM {old} ORDER BY {table.key}"
     )
-    return n == 0 or new.execute(into).rowcount == n
+    return not n or bool(new.execute(into).rowcount == n)
 
 
 def _all_read(table: GeoPackageTable, names: tuple[str, ...]) -> str:

@@ -346,3 +346,15 @@ def test_the_evening_after_a_shift_past_midnight_has_its_own_begin_and_hours(
     assert (day["day"], day["live"], day["begun"]) == (str(next_day), True, False)
     assert datetime.fromisoformat(day["begins"]) == starts
     assert day["seconds_left"] == season.settings.robot.day_s
+
+
+def test_a_phone_of_the_team_is_told_which_plants_are_in_aisles_of_the_others(tmp_path):
+    season = a_season(tmp_path / "s.gpkg", team=team_of(2))
+    one = season.plan_each(BEGINS)[0].route.plant
+    key = scouts.let_in(season, "robot-2")
+    scout = scouts.key_owner(season, key)
+    for made in (day_document(season, scout, BEGINS), rest_document(season, scout, BEGINS, None)):
+        runs = json.loads(made)["others"]
+        theirs = {plant for low, high in runs for plant in range(low, high + 1)}
+        assert not theirs & {*json.loads(made)["route"]["plants"]}
+        assert theirs & {*one.tolist()}

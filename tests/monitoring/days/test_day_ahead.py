@@ -290,3 +290,25 @@ def test_a_route_by_the_clock_runs_from_the_start_that_the_settings_say(tmp_path
     route = fresh.plan(BEGINS).route
     told(fresh, "", route.plant[:1], 6 * 3600.0 + route.leave_s[0] + 200.0)
     assert fresh.work(BEGINS).begun_s == 6 * 3600.0
+
+
+def test_no_plant_in_an_aisle_that_another_of_the_team_has_is_ones_own(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg", team=team_of(2))
+    one, other = (day.route.plant for day in fresh.plan_each(BEGINS))
+    ahead = DayAhead.of(fresh, BEGINS)
+    aisle = fresh.plot.grid.corridor[fresh.plot.grid.row]
+    for name, mine, theirs in (("robot-1", one, other), ("robot-2", other, one)):
+        own = ahead.in_own_aisles(WorkPart(name=name))
+        assert own[mine].all()
+        assert not own[np.isin(aisle, np.setdiff1d(aisle[theirs], aisle[mine]))].any()
+        assert own[~np.isin(aisle, aisle[theirs])].all()
+
+
+def test_who_shares_rows_has_no_plant_in_an_aisle_of_the_others(tmp_path):
+    fresh = a_season(tmp_path / "fresh.gpkg")
+    for name in ("Ann", "Ben"):
+        scouts.let_in(fresh, name)
+    ann, ben = (route_ahead(fresh, BEGINS, WorkPart(name=name)).plant for name in ("Ann", "Ben"))
+    own = DayAhead.of(fresh, BEGINS).in_own_aisles(WorkPart(name="Ann"))
+    assert own[fresh.kept_route(BEGINS, "Ann")].all()
+    assert not own[np.setdiff1d(ben, ann)].any()

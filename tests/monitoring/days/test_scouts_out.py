@@ -7,7 +7,7 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
-from fieldmon.infestation.inspections import FOUND
+from fieldmon.infestation.inspections import FOUND, Inspections
 from fieldmon.monitoring import Season
 from fieldmon.monitoring.days.day_ahead import WorkPart, planned_again, route_ahead
 from fieldmon.monitoring.days.scouts_out import scouts_out
@@ -80,23 +80,19 @@ def test_which_plan_was_given_last_is_known_before_anything_is_recorded_by_it(fr
     assert of(fresh, "Ann").plan not in {alone, shared}
 
 
-def test_neighbours_of_a_find_are_ahead_as_on_the_phone_that_goes_to_them(fresh):
+def test_what_is_left_is_what_the_plan_says_though_something_was_found_beside_it(fresh):
     part = WorkPart((1, 8), "Ann")
     key = scouts.let_in(fresh, "Ann", part.rows)
     given = route_ahead(fresh, BEGINS, part).plant
     start, second = fresh.plot.grid.adjacent
-    line = fresh.plant_numbers.line
-
-    def added(plant):
-        beside = second[start[plant] : start[plant + 1]]
-        return np.setdiff1d(beside[(line[beside] >= 1) & (line[beside] <= 8)], given)
-
-    plant = next(int(one) for one in given if len(added(one)))
+    plant = next(
+        int(one) for one in given if len(np.setdiff1d(second[start[one] : start[one + 1]], given))
+    )
     take(fresh, key, [a_finding(plant, FOUND, on=BEGINS)], utc_now())
-    one = of(fresh, "Ann")
-    assert (one.done, one.ahead) == (1, len(given) - 1 + len(added(plant)))
-    planned_again(fresh, BEGINS, part, seconds_left=3000.0)
-    assert of(fresh, "Ann").ahead == len(fresh.kept_route(BEGINS, "Ann")), "a new plan has its own"
+    for _ in range(2):
+        one, kept = of(fresh, "Ann"), fresh.planned_and_done(BEGINS)
+        assert (one.done, one.ahead) == (1, kept.left)
+        planned_again(fresh, BEGINS, part, seconds_left=3000.0)
 
 
 def test_a_person_is_one_though_an_older_file_writes_the_name_in_two_ways(fresh):
@@ -157,6 +153,17 @@ def test_a_code_made_after_a_day_changes_nothing_of_its_plan_or_of_who_was_out(f
     fresh.change(replace(before, team=team_of(2)), before)
     assert [(one.name, one.has_route) for one in scouts_out(fresh, BEGINS)] == [("Ann", True)]
     assert {one.name for one in scouts_out(fresh, on(1))} >= {"Dan", "Eve", "robot-1"}
+
+
+def test_a_code_that_one_of_the_team_got_after_a_day_is_said_of_that_day_too(fresh):
+    before = fresh.settings
+    fresh.change(replace(before, team=team_of(2)), before)
+    first = fresh.plan_each(BEGINS)[0].route.plant[:1]
+    fresh.record(Inspections.of(first, np.zeros(1, np.int8), BEGINS), "f", "robot-1")
+    assert fresh.work(BEGINS).is_earlier
+    assert of(fresh, "robot-2").made is None
+    scouts.let_in(fresh, "robot-2")
+    assert abs(of(fresh, "robot-2").made - utc_now()) < timedelta(minutes=1)
 
 
 def test_rows_that_overlap_after_a_merge_are_said_there_and_of_each(fresh, tmp_path):

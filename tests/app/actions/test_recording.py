@@ -519,6 +519,25 @@ def test_what_was_not_recorded_yet_is_there_again_after_a_reload(season_app, sea
     assert said(later)[:5] == EMPTY[:5]
 
 
+def test_a_name_of_nobody_in_the_team_is_typed_in_a_box_that_is_taken_when_it_is_left(
+    season_app, season
+):
+    of_two(season)
+    go(season_app, "record")
+    box = boxed(season_app.selectbox, "who")
+    assert not box.proto.accept_new_options, "such a list loses what is left without Enter"
+    box.select("Another name ...").run()
+    boxed(season_app.number_input, "one_row").set_value(3)
+    boxed(season_app.number_input, "one_plant").set_value(4)
+    boxed(season_app.segmented_control, "one_result").set_value(CLEAN)
+    send(season_app, "one")
+    assert "Type who inspected" in season_app.error[0].value
+    boxed(season_app.text_input, "who_else").set_value(" Eva ")
+    send(season_app, "one")
+    assert season().history.inspections.who.tolist() == ["Eva"]
+    assert boxed(season_app.text_input, "who_else").value == " Eva "
+
+
 def broken_off(monkeypatch, typed=None):
     """Let the next run of Record be broken off before its buttons, as by what is typed then."""
     shown, breaks = contradicting.ask_about_contradictions, [True]

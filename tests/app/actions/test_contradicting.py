@@ -9,8 +9,8 @@ from app.state import unconfirmed
 from app.state.unconfirmed import Unconfirmed
 from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.plot.grid import plant_at
-from tests.app.actions.test_recording import send
-from tests.app.driving import boxed, go, plot_name, reloaded, texts_of
+from tests.app.actions.test_recording import reloaded, send
+from tests.app.driving import boxed, go, plot_name, texts_of
 
 
 def contradicted(app, season, n=4):

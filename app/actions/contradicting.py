@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +22,7 @@ from .recording_results import listed, recorded, said_of, warn_of_lost
 
 if TYPE_CHECKING:
     from fieldmon.monitoring.inspecting.batches import Recorded
+    from fieldmon.monitoring.inspecting.contradictions import Contradictions
 
     from ..state.choices import Choices
     from ..state.unconfirmed import Unconfirmed
@@ -33,6 +35,7 @@ def ask_about_contradictions(choices: Choices) -> None:
     """Show what waits because it contradicts what is recorded, and what can be done with it."""
     waiting = unconfirmed.of(choices.key, choices.day)
     if waiting is None:
+        _say_lost(choices)
         return
     season = choices.open_season
     against = contradictions(waiting.results, season.inspections)
@@ -47,7 +50,10 @@ def ask_about_contradictions(choices: Choices) -> None:
     new = count_new(season, others)
     source = recorded_batches.source(waiting.source)
     st.warning(texts.CONTRADICTING.format(n=len(said), source=source))
-    st.markdown("\n".join(f"- {in_words(sentence)}" for sentence in said[:_MOST]))
+    if len(said) > 1:
+        _ask_each(choices, against, said)
+    else:
+        st.markdown(f"- {in_words(said[0])}")
     if len(said) > _MOST:
         st.caption(texts.AND_MORE.format(n=len(said) - _MOST))
     with st.container(horizontal=True):
@@ -63,6 +69,38 @@ def ask_about_contradictions(choices: Choices) -> None:
         ):
             if key not in hidden:
                 st.button(label, key=key, on_click=action, args=(choices,))
+
+
+def _ask_each(choices: Choices, against: Contradictions, said: list[str]) -> None:
+    """Ask of each plant and day that contradicts which holds, beside what is asked of all."""
+    asked: set[tuple[int, np.datetime64]] = set()
+    told = zip(against.plant.tolist(), against.date, against.together, said, strict=True)
+    for plant, date, together, sentence in list(told)[:_MOST]:
+        with st.container(key=f"against_{plant}_{date}_{len(asked)}", gap=None):
+            st.markdown(in_words(sentence))
+            if (plant, date) in asked:
+                continue
+            asked.add((plant, date))
+            labels = {
+                "leave": texts.LEAVE_OUT_ONLY if together else texts.RECORDED_HOLDS,
+                "new": texts.HOLDS.format(n=1),
+                "both": texts.CONFIRM.format(n=1),
+            }
+            if together:  # neither of them is the new one
+                del labels["new"]
+            with st.container(horizontal=True):
+                for which, label in labels.items():
+                    st.button(label, key=f"{which} {plant} {date}", on_click=_settle_one,
+                              args=(choices, plant, date, which), type="tertiary",
+                              help=in_words(sentence))  # fmt: skip
+
+
+def _say_lost(choices: Choices) -> None:
+    """Say what waited before the page was loaded anew: it was not recorded."""
+    if lost := unconfirmed.lost(choices.key, choices.day):
+        n, source = lost
+        st.warning(texts.NOT_RECORDED.format(n=n, source=recorded_batches.source(source)))
+        st.button(texts.RECORD_NONE, key="record_none", on_click=_drop, args=(choices,))
 
 
 def _ask_anew(choices: Choices, waiting: Unconfirmed) -> None:
@@ -96,6 +134,27 @@ def _let_hold(choices: Choices, plant: int, result: int) -> str:
     """Take back what says otherwise of a plant on the day."""
     n = undoing.let_hold(choices.open_season, plant, choices.on, result)
     return texts.SETTLED.format(place=_place(choices, plant), n=n)
+
+
+@notices.reporting
+def _settle_one(choices: Choices, plant: int, date: np.datetime64, which: str) -> str:
+    """Let what waits of a plant and day hold or not; what else waits goes on waiting."""
+    waiting = unconfirmed.of(choices.key, choices.day)
+    if waiting is None:
+        return ""
+    here = (waiting.results.plant == plant) & (waiting.results.date == date)
+    one, rest = waiting.results.take(here), waiting.results.take(~here)
+    season, by, done = choices.open_season, (waiting.source, waiting.who), None
+    if which == "new":
+        done = season.record_instead(one, *by)
+    elif which == "both":
+        done = season_inspections.recorded(season, one, *by, confirmed=True)
+    if len(rest):
+        unconfirmed.keep(replace(waiting, results=rest))
+        said = said_of(choices, done, one)
+    else:
+        said = _end_waiting(choices, waiting, done)
+    return said if which != "leave" else texts.LEFT_OUT_CONTRADICTING.format(n=len(one))
 
 
 @notices.reporting
@@ -148,7 +207,7 @@ def _settled(choices: Choices, which: np.ndarray | slice) -> str:
     return _end_waiting(choices, waiting, done)
 
 
-def _end_waiting(choices: Choices, waiting: Unconfirmed, done: Recorded) -> str:
+def _end_waiting(choices: Choices, waiting: Unconfirmed, done: Recorded | None) -> str:
     """Let nothing wait any more; return what was done."""
     unconfirmed.drop()
     if waiting.form:

@@ -25,7 +25,7 @@ from ..show import day, plant_history
 from ..show.recorded_batches import GONE
 from ..state import brought_files, chosen_day, fresh_boxes, kept_files, notices, unconfirmed
 from ..state.fresh_boxes import FreshBoxes
-from ..words import texts
+from ..words import language, texts
 from . import acting, bringing_files, choosing, contradicting, correcting, merging, treating
 from .recording_results import as_kept, listed, recorded, said_of, warn_of_lost
 
@@ -35,8 +35,8 @@ if TYPE_CHECKING:
     from ..state.choices import Choices
 
 _SAID_OF_FILE = "said of a file of findings"
-# who inspected where nobody said so
-_NOBODY = ""
+# who inspected where nobody said so; another than those of the team: no name is a new line
+_NOBODY, _ANOTHER = "", "\n"
 #: what a season's file calls what was typed in here, whatever the page's language
 TYPED_IN, _ROUTE_TABLE = "typed in", "route table"
 # the forms
@@ -52,8 +52,9 @@ def show(choices: Choices) -> None:
     moved = st.container()
     contradicting.ask_about_contradictions(choices)
     one, route, file, treat = st.tabs(
-        [texts.RECORD_ONE, texts.RECORD_ROUTE, texts.RECORD_UPLOAD, texts.TREAT]
-    )
+        [texts.RECORD_ONE, texts.RECORD_ROUTE, texts.RECORD_UPLOAD, texts.TREAT],
+        key=f"record_tabs {language.current()}", on_change="rerun",
+    )  # fmt: skip
     with one:
         _show_one(choices)
     with route:
@@ -284,7 +285,7 @@ def _file_recorded(choices: Choices, *, confirmed: bool) -> str:
     brought = boxes.said("findings_file")
     if brought is None:  # taken out again
         return ""
-    name, data = brought.name, brought.getvalue()
+    name, data, who = brought.name, brought.getvalue(), _signed(boxes)
     options = InspectionOptions(
         work_day=np.datetime64(choices.day), take_doubtful=bool(boxes.said("take_doubtful"))
     ).on(choices.plot.field)
@@ -300,10 +301,10 @@ def _file_recorded(choices: Choices, *, confirmed: bool) -> str:
     if read.saved is None:
         # what was said of a file may be answered: it stays to be read again
         form = "" if messages else _FILE
-        done = recorded(choices, read.findings, name, form, read.messages, _signed(boxes))
+        done = recorded(choices, read.findings, name, form, read.messages, who)
         said = said_of(choices, done, read.findings)
     else:
-        done, more = record_saved(season, read.saved, _signed(boxes))
+        done, more = record_saved(season, read.saved, who)
         said, messages = said_of(choices, done), [*messages, *more]
         if more:
             notices.warn()
@@ -330,14 +331,27 @@ def _ask_who(boxes: FreshBoxes, help_: str | None = None, *, stays: bool = False
 
     Who `stays` inspected what is recorded next, too: the box says so.
     """
-    if team := boxes.choices.team_that_day:
-        boxes.show(
-            st.selectbox, texts.INSPECTED_BY, [_NOBODY, *team], box="who", stays=stays,
-            default=_NOBODY, help=help_, accept_new_options=True,
-            format_func=lambda who: who or texts.NOBODY_SAID,
-        )  # fmt: skip
+    team = boxes.choices.team_that_day
+    if not team:
+        return
+    named = {_NOBODY: texts.NOBODY_SAID, _ANOTHER: texts.INSPECTED_BY_ANOTHER}
+    said = boxes.said("who") or _NOBODY
+    others = [said] if said not in {*named, *team} else []  # of a team before
+    # a list that takes new names loses one that is left without Enter
+    who = boxes.show(
+        st.selectbox, texts.INSPECTED_BY, [_NOBODY, *team, *others, _ANOTHER], box="who",
+        stays=stays, default=_NOBODY, help=help_, format_func=lambda who: named.get(who, who),
+    )  # fmt: skip
+    if who == _ANOTHER:
+        boxes.show(st.text_input, texts.INSPECTED_BY_NAME, box="who_else", stays=stays, default="")
 
 
 def _signed(boxes: FreshBoxes) -> str:
     """Return who is said to have inspected; empty: nobody is."""
-    return str(boxes.said("who") or _NOBODY).strip()
+    who = boxes.said("who") or _NOBODY
+    if who != _ANOTHER:
+        return str(who).strip()
+    named = str(boxes.said("who_else") or "").strip()
+    if not named:
+        raise SettingError(texts.INSPECTED_BY_UNSAID)
+    return named

@@ -32,6 +32,7 @@ from . import (
     plot_edits,
     strategy_boxes,
     told_team,
+    unconfirmed,
     widget_memory,
     wishes,
 )
@@ -48,6 +49,7 @@ _MANIFEST = "files.json"
 # what was said and is not used or recorded yet
 _UNUSED: dict[str, Any] = {
     "unfinished": fresh_boxes, "wishes": wishes, "strategy": strategy_boxes, "team": told_team,
+    "waiting": unconfirmed,
 }  # fmt: skip
 #: boxes that say how files are read and plants are laid
 _BOXES = frozenset(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import streamlit as st
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from fieldmon.io.import_report import ImportMessage
 
 _KEY, _CORRECTIONS = "unconfirmed results", "unconfirmed corrections"
+_LOST = "unconfirmed results of before a reload"
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +39,7 @@ class Unconfirmed:
 
 def keep(waiting: Unconfirmed) -> None:
     """Let results wait; those that waited before are dropped."""
+    st.session_state.pop(_LOST, None)
     st.session_state[_KEY] = waiting
 
 
@@ -51,6 +53,30 @@ def of(season: str, day: str) -> Unconfirmed | None:
 def drop() -> None:
     """Let nothing wait any more."""
     st.session_state.pop(_KEY, None)
+    st.session_state.pop(_LOST, None)
+
+
+def said() -> dict[str, Any]:
+    """Return of what waits the season, the day, the source and how many, as JSON can hold it."""
+    waiting: Unconfirmed | None = st.session_state.get(_KEY)
+    if waiting is None:
+        return dict(st.session_state.get(_LOST, {}))
+    season, day, source = waiting.season, waiting.day, waiting.source
+    return {"season": season, "day": day, "source": source, "n": len(waiting.results)}
+
+
+def take(said: dict[str, Any]) -> None:
+    """Keep in mind what waited before a reload, as `said` returned it: it was not recorded."""
+    if said:
+        st.session_state[_LOST] = said
+
+
+def lost(season: str, day: str) -> tuple[int, str] | None:
+    """Return how many results waited on this day of a season before a reload, and from where."""
+    was = st.session_state.get(_LOST, {})
+    return (
+        (was["n"], was["source"]) if (was.get("season"), was.get("day")) == (season, day) else None
+    )
 
 
 def refused(corrections: tuple[object, ...]) -> bool:

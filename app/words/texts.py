@@ -948,6 +948,11 @@ FOUND_AGAIN = (
 )
 RECORD, RECORD_NOTE = "Record what was found", "Each recording is kept at once and can be undone."
 INSPECTED_BY, NOBODY_SAID = "Who inspected", "Nobody said"
+INSPECTED_BY_ANOTHER, INSPECTED_BY_NAME = "Another name ...", "Name of who inspected"
+INSPECTED_BY_UNSAID = (
+    "Another name must be typed where one is chosen, but the box is empty. Type who inspected, or "
+    "choose somebody."
+)
 INSPECTED_BY_HELP = "Of inspections of which the file itself does not say who made them."
 CORRECTED_BY = "Who corrected"
 CORRECTED_BY_HELP = (
@@ -1056,6 +1061,13 @@ CONTRADICTING_NO_MORE = Plural(
     "{n} result from {source} is not recorded yet, and contradicts nothing any more.",
     "{n} results from {source} are not recorded yet, and contradict nothing any more.",
 )
+NOT_RECORDED = Plural(
+    "{n} result from {source} was not recorded: it contradicted what is recorded, and the page was "
+    "loaded anew before it was said what holds. Bring it again.",
+    "{n} results from {source} were not recorded: some contradicted what is recorded, and the page "
+    "was loaded anew before it was said what holds. Bring them again.",
+)
+RECORDED_HOLDS = "The recorded one holds"
 RECORD_THESE = Plural("Record this", "Record these {n}")
 AND_MORE = "... and {n} more."
 LEAVE_OUT = Plural("Leave these out, record the other one", "Leave these out, record {n} others")

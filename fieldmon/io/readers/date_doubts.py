@@ -116,7 +116,7 @@ def since(read: Imported[Inspections], begins: date) -> Imported[Inspections]:
         "the first of {earliest}.",
         n=int(before.sum()),
         begins=begins,
-        earliest=read.value.date[before].min(),
+        earliest=read.value.date[before].min().item(),
     )
     return Imported(read.value.take(~before), (*read.messages, dropped(said)))
 

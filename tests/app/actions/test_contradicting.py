@@ -9,7 +9,7 @@ from app.state import unconfirmed
 from app.state.unconfirmed import Unconfirmed
 from fieldmon.infestation.inspections import CLEAN, Inspections
 from fieldmon.plot.grid import plant_at
-from tests.app.actions.test_recording import send
+from tests.app.actions.test_recording import reloaded, send
 from tests.app.driving import boxed, go, plot_name, texts_of
 
 
@@ -148,3 +148,34 @@ def test_a_file_that_says_both_of_a_plant_leaves_out_both_and_neither_is_the_new
     assert season().inspections.plant.tolist() == [plant_at(season().plot.grid, 7, 1)]
     said = [one.value for one in (*season_app.success, *season_app.warning)]
     assert any("2 contradicting results left out." in one for one in said)
+
+
+def test_each_plant_that_contradicts_is_answered_by_itself_and_the_rest_waits_on(
+    season_app, season
+):
+    contradicted(season_app, season)
+    plants = season().kept_route(date(2026, 11, 16))[:5].tolist()
+    for which, plant in zip(("new", "both", "leave"), plants, strict=False):
+        season_app.button(key=f"{which} {plant} 2026-11-16").click().run()
+        assert not season_app.exception
+    held = season().history.inspections
+    said = {plant: sorted(held.result[held.plant == plant].tolist()) for plant in plants}
+    assert said == dict(zip(plants, ([0], [0, 1], [1], [1], []), strict=True))
+    (asked,) = (one.value for one in season_app.warning)
+    assert "1 result from route table contradicts" in asked
+    season_app.button(key="leave_out").click().run()
+    held = season().history.inspections
+    assert held.result[held.plant == plants[3]].tolist() == [1]
+    assert held.result[held.plant == plants[4]].tolist() == [0]
+
+
+def test_what_waited_when_the_page_was_loaded_anew_is_said_not_to_be_recorded(season_app, season):
+    contradicted(season_app, season)
+    again = reloaded(season_app, season="Gate 2026")
+    for _ in range(2):  # until somebody reads it
+        go(again, "record")
+        (said,) = (one.value for one in again.warning)
+        assert "5 results from route table were not recorded" in said
+        again = reloaded(again, season="Gate 2026")
+    go(again, "record").button(key="record_none").click().run()
+    assert not again.warning

@@ -194,8 +194,8 @@ def test_what_fits_of_a_file_is_recorded_once_and_what_does_not_is_a_sentence_th
         (b"a,b\n1,2\n", "found.csv"),
         (b"row,number,found\n999,1,yes\n", "0 recorded"),
         (b"\x00\x01", "found.csv"),
-        (b"row,number,found,date\n1,1,yes,2026-11-16\n2,3,no,2026-11-15\n",
-         "Row 2, plant 3: The day must be of this season"),
+        (b"row,number,found,date\n1,1,yes,2026-11-14\n2,3,no,2026-11-15\n",
+         "Row 1, plant 1: The day must be of this season"),
     ):  # fmt: skip
         assert says in file_recorded(season_app, data)
         assert not season_app.success
@@ -517,6 +517,25 @@ def test_what_was_not_recorded_yet_is_there_again_after_a_reload(season_app, sea
     assert said(go(go(again, "season"), "record"))[:4] == filled[:4], "and on another page"
     later = reloaded(again, season="Gate 2026", day="2026-11-17")
     assert said(later)[:5] == EMPTY[:5]
+
+
+def test_a_name_of_nobody_in_the_team_is_typed_in_a_box_that_is_taken_when_it_is_left(
+    season_app, season
+):
+    of_two(season)
+    go(season_app, "record")
+    box = boxed(season_app.selectbox, "who")
+    assert not box.proto.accept_new_options, "such a list loses what is left without Enter"
+    box.select("Another name ...").run()
+    boxed(season_app.number_input, "one_row").set_value(3)
+    boxed(season_app.number_input, "one_plant").set_value(4)
+    boxed(season_app.segmented_control, "one_result").set_value(CLEAN)
+    send(season_app, "one")
+    assert "Type who inspected" in season_app.error[0].value
+    boxed(season_app.text_input, "who_else").set_value(" Eva ")
+    send(season_app, "one")
+    assert season().history.inspections.who.tolist() == ["Eva"]
+    assert boxed(season_app.text_input, "who_else").value == " Eva "
 
 
 def broken_off(monkeypatch, typed=None):

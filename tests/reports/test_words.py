@@ -29,7 +29,10 @@ def test_how_often_intervals_hold_is_said_without_a_number_that_ages():
 
 
 # what is said of an estimate ("1.0 plants"), of two or more, and of three or more
-NEVER_ONE = {words.STANDS, words.FOUND_TWICE, words.HOT_MEANS, words.OF_INFESTED, words.OF_HIDDEN}
+NEVER_ONE = {
+    *(words.STANDS, words.FOUND_TWICE, words.HOT_MEANS, words.OF_INFESTED, words.OF_HIDDEN),
+    words.MISSED_OF,  # a name
+}
 SAYS = r"\b1 (?!(?:is|stands|counts|antes|inspeccionadas)\b)"
 
 

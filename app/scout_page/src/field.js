@@ -302,7 +302,7 @@ export class Field {
   /** Plants of one's own rows, or that one told of, that are said to be both clean and found today, as far as this phone did not take it back since: `{plant, said}` each. */
   contradictions() {
     const all = this.day?.contradicting ?? [], plants = [...new Set(all.map((one) => one.plant))];
-    const told = plants.filter((plant) => this.isOwn(plant) || this.own.has(plant)).map((plant) => ({ plant, said: this.#stand(all, plant) }));
+    const told = plants.filter((plant) => this.inRows(plant) || this.own.has(plant)).map((plant) => ({ plant, said: this.#stand(all, plant) }));
     return told.filter(({ said }) => new Set(said.map((one) => one.result)).size > 1);
   }
 
@@ -608,8 +608,11 @@ export class Field {
   /** Whether a plant is not to be inspected today, as was said in the app; a server of before says none. */
   isUnwanted(plant) { return (this.day?.unwanted ?? []).some((run) => within(plant, run)); }
 
-  /** Whether a plant is in the rows of whose phone it is (who has none has all), and in no aisle that others have; a server of before says none. */
-  isOwn(plant) { return (!this.day?.rows || within(rowOf(this.plot, plant), this.day.rows)) && !(this.day?.others ?? []).some((run) => within(plant, run)); }
+  /** Whether a plant is in the rows of whose phone it is; who has none has all. */
+  inRows(plant) { return !this.day?.rows || within(rowOf(this.plot, plant), this.day.rows); }
+
+  /** Whether it is there and in no aisle that others have; a server of before says none. */
+  isOwn(plant) { return this.inRows(plant) && !(this.day?.others ?? []).some((run) => within(plant, run)); }
 
   /** Whether a plant does not stand there any more, as the season says; a server of before says none. */
   isGone(plant) { return (this.day?.gone ?? []).includes(plant); }

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from fieldmon.compute.day_arguments import Day
     from fieldmon.compute.units import Units
     from fieldmon.decisions.labels import ProductLabel
+    from fieldmon.monitoring.changes.log_entry import LogEntry
     from fieldmon.monitoring.estimates.treatment_effect import TreatmentEffect
 
 
@@ -242,30 +243,16 @@ class SeasonTreatments(OpenSeason):
         because_of
             Only because of this batch of a treatment, later uses among it; None: of all.
         """
-        done, rules, seen = self._held_to(units)
+        done, rules, seen, saved = self._held_to(units)
         every, own = by_vine(done, self.plot.grid), done
         if because_of is None:
-            until, found = on, (*self._lost(rules.units), *cautions.cautions(every, rules, on))
+            until, found = on, cautions.cautions(every, rules, on)
+            found = (*_lost(saved, rules.units), *found)
         else:
             own = tuple(one for one in done if one.batch == because_of and one.on <= on)
             until, found = last_date(self), cautions.because_of(every, because_of, rules, on)
         early = early_entries(own, rules, seen, self.plot.grid, until)
         return cautions.by_urgency((*found, *early))
-
-    def _lost(self, units: Units) -> Iterator[Caution]:
-        """Yield what was lost when the file was saved from a damaged one."""
-        with self.store.reading() as db:
-            saved = season_log.saved_without(db)
-        for entry in saved:
-            yield Caution(
-                "lost",
-                worded(
-                    "On {day} the season was saved from a damaged file, without {lost}. Go back "
-                    "to a copy, or record again what is missing.",
-                    day=units.day(entry.at[:10]), lost=joined(", ", entry.lost),
-                ),
-                0,
-            )  # fmt: skip
 
     def cautions_if_treated(
         self, on: Day, product: str, plants: NDArray[np.bool_], units: Units | None = None
@@ -305,11 +292,15 @@ class SeasonTreatments(OpenSeason):
 
     def _held_to(
         self, units: Units | None
-    ) -> tuple[tuple[KeptTreatment, ...], RulesToKeep, Inspections]:
-        """Return the treatments that count, what they are held to, and what was inspected."""
+    ) -> tuple[tuple[KeptTreatment, ...], RulesToKeep, Inspections, tuple[LogEntry, ...]]:
+        """Return the treatments that count, what they are held to, and what was inspected.
+
+        And the entries of the log that note what was lost.
+        """
         with self._lock, self.store.reading() as db:  # all of one moment
             done, rules = self._done_and_rules(db, units)
-            return done, rules, self._inspections(db) if done else Inspections.none()
+            seen = self._inspections(db) if done else Inspections.none()
+            return done, rules, seen, season_log.saved_without(db)
 
     def _done_and_rules(
         self, db: sqlite3.Connection, units: Units | None
@@ -353,3 +344,17 @@ class SeasonTreatments(OpenSeason):
             now = self._read(db)
         day = now.settings.day(on)
         return treatment_effect.effects(done, now.history, day, units)
+
+
+def _lost(saved: Iterable[LogEntry], units: Units) -> Iterator[Caution]:
+    """Yield what was lost when the file was saved from a damaged one."""
+    for entry in saved:
+        yield Caution(
+            "lost",
+            worded(
+                "On {day} the season was saved from a damaged file, without {lost}. Go back "
+                "to a copy, or record again what is missing.",
+                day=units.day(entry.at[:10]), lost=joined(", ", entry.lost),
+            ),
+            0,
+        )  # fmt: skip

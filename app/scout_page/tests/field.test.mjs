@@ -132,7 +132,7 @@ test("a plant that two say otherwise of is named, until this phone takes its own
 
 test("who has rows of their own is told of plants there and of their own records, not of what others settle", async () => {
   const both = [0, 12].flatMap((plant) => [{ plant, result: "found", who: "Cem" }, { plant, result: "clean", who: "Ben" }]);
-  const season = new ASeason(aDay([0, 1], { rows: [1, 1], today: both, contradicting: both }));
+  const season = new ASeason(aDay([0, 1], { rows: [1, 1], others: [[0, 4]], today: both, contradicting: both }));
   const { field } = await aField(season);
   assert.deepEqual(field.contradictions().map(({ plant }) => plant), [0]);
   await field.goTo(12);

@@ -127,7 +127,8 @@ def test_where_every_plant_is_known_and_flagged_the_day_is_not_called_too_short(
         "plan", season, "--no-bound", "--date", first + timedelta(days=1), "-o", "r.csv"
     )
     assert code == 2
-    said = f"Every plant is known: all {len(plants):,} were found and only flagged. Nothing is left"
+    told = f"{len(plants):,} plants were found and only flagged"
+    said = f"Every plant is known: {told}. Nothing is left"
     assert said in " ".join(err.split())
     assert "long enough" not in err
 

@@ -153,7 +153,8 @@ def test_where_every_plant_is_flagged_today_says_so_and_not_that_hours_are_too_s
     tomorrow = in_season(season, BEGINS + timedelta(days=1))
     day.say_of_day(tomorrow, season.plan(tomorrow.on, keep=False))
     ((_, said),) = shown
-    assert said.startswith(f"Every plant is known: all {len(every)} were found and only flagged.")
+    told = f"{len(every)} plants were found and only flagged."
+    assert said.startswith(f"Every plant is known: {told}")
 
 
 def test_today_tells_how_many_plants_are_left_out_as_nobody_could_inspect_them(shown, tmp_path):

@@ -43,12 +43,15 @@ from ..state import last_heard
 if TYPE_CHECKING:
     from datetime import date
 
+    from numpy.typing import NDArray
+
     from fieldmon.infestation.inspections import Inspections
     from fieldmon.monitoring import Season
     from fieldmon.monitoring.phones.scouts import Scout
     from fieldmon.planning.route import Route
     from fieldmon.plot.grid import PlantGrid
     from fieldmon.plot.robot import Robot
+    from fieldmon.samplers.base import Scene
 
 # seven digits of a degree are a centimetre
 _DIGITS = 7
@@ -113,11 +116,12 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
     robot = settings.robot if member is None else member.robot
     hours = work_hours(season, on, part)
     known, recorded = shown_apart(history, settings.day(on))
+    mine = ahead.in_own_aisles(part)
     return {
         "season": season.path.stem,
         "scout": scout.name,
         "rows": ahead.rows(part),
-        "others": _others(ahead, part),
+        "others": _others(ahead.own(part), mine),
         "plot": plot_document(season)[0],
         "day": on.isoformat(),
         "live": on == _today(season),
@@ -146,8 +150,8 @@ def _day_told(season: Season, scout: Scout, on: date, has: int | None) -> dict[s
         "hot_spots": _hot_spots(season, on),
         "photos": [photo._asdict() for photo in photos_of(season)],
         "photos_asked": [one._asdict() for one in ahead.asked_of(part)],
-        "closed": _closed(season, ahead, on, part),
-        "left_out": _left_out(season, ahead, (on, part), route),
+        "closed": _closed(season, on, ahead.works_as(part), mine),
+        "left_out": _left_out(season.scene(on, who=ahead.works_as(part)), route, mine),
         "unwanted": run_ends(np.unique(np.array(ahead.wished.wishes.unwanted, int))).tolist(),
     }
 
@@ -171,16 +175,15 @@ def rest_document(
         on, part = _day(season, on), WorkPart(scout.rows, scout.name)
         route = planned_again(season, on, part, seconds_left)
         ahead = DayAhead.of(season, on)
-        plan, others = ahead.plan_of(part), _others(ahead, part)
+        plan, others = ahead.plan_of(part), _others(ahead.own(part), ahead.in_own_aisles(part))
         told = _route(route, detection_of(season, on, scout.name))
     last_heard.note(season.path, scout.name, on, plan)
     return _json({"day": on.isoformat(), "route": told, "plan": plan, "others": others})
 
 
-def _others(ahead: DayAhead, part: WorkPart) -> list[list[int]]:
-    """Return somebody's plants in aisles that others have, as runs: no find leads there."""
-    theirs = ahead.own(part) & ~ahead.in_own_aisles(part)
-    runs: list[list[int]] = run_ends(np.flatnonzero(theirs)).tolist()
+def _others(own: NDArray[np.bool_], mine: NDArray[np.bool_]) -> list[list[int]]:
+    """Return somebody's `own` plants in aisles that others have, as runs: no find leads there."""
+    runs: list[list[int]] = run_ends(np.flatnonzero(own & ~mine)).tolist()
     return runs
 
 
@@ -244,13 +247,15 @@ def _said(inspections: Inspections) -> list[dict[str, Any]]:
     ]
 
 
-def _closed(season: Season, ahead: DayAhead, on: date, part: WorkPart) -> list[dict[str, Any]]:
+def _closed(
+    season: Season, on: date, works_as: str, mine: NDArray[np.bool_]
+) -> list[dict[str, Any]]:
     """Return rows with plants that nobody may come to after a treatment, and until when.
 
     With which of their plants, as runs of numbers, and how many of these are somebody's own.
     """
-    closed, line, mine = [], season.plant_numbers.line, ahead.in_own_aisles(part)
-    for one in season.closed(on, ahead.works_as(part)):
+    closed, line = [], season.plant_numbers.line
+    for one in season.closed(on, works_as):
         rows = np.unique(line[one.plants])
         for run in run_ends(rows).tolist():
             plants = np.flatnonzero(one.plants & (line >= run[0]) & (line <= run[1]))
@@ -265,15 +270,11 @@ def _closed(season: Season, ahead: DayAhead, on: date, part: WorkPart) -> list[d
     return closed
 
 
-def _left_out(
-    season: Season, ahead: DayAhead, of: tuple[date, WorkPart], route: Route
-) -> list[dict[str, Any]]:
+def _left_out(scene: Scene, route: Route, mine: NDArray[np.bool_]) -> list[dict[str, Any]]:
     """Return which plants are on no route though they are open, why, and how many are one's own."""
-    on, part = of
-    mine = ahead.in_own_aisles(part)
     return [
         {"why": why, "plants": run_ends(plants).tolist(), "own": int(mine[plants].sum())}
-        for why, plants in left_out(season.scene(on, who=ahead.works_as(part)), route).items()
+        for why, plants in left_out(scene, route).items()
         if len(plants)
     ]
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fieldmon.io.readers.inspection_file.inspection_rows import InspectionRows
-    from fieldmon.plot.grid import PlantGrid
+    from fieldmon.plot.grid import PlantGrid, PlantNumbers
 
 _DECIMAL = re.compile(r"\d+[.,](\d+)")
 _EXPECTED = 3.0  # by chance one file in twenty has none of so many
@@ -55,7 +55,7 @@ def lost_zeros(
     ten = np.isin(line << 31 | number * 10, every.line << 31 | every.number)
     open_yet = ten & ~np.isfinite(rows.lonlat[which]).all(axis=1)
     told = _Decimals([*cells], [found[1] for found in cells.values()], line, number, open_yet)
-    if not open_yet.any() or not _shows_it(told, rows, grid):
+    if not open_yet.any() or not _shows_it(told, rows, every):
         return {}
     return {
         told.record[k]: worded(
@@ -71,19 +71,18 @@ def lost_zeros(
     }
 
 
-def _expected(grid: PlantGrid, line: NDArray[np.int64]) -> float:
+def _expected(every: PlantNumbers, line: NDArray[np.int64]) -> float:
     """Return how many labels of these lines ``(k,)`` would end in a zero, of plants at random."""
-    every = plant_numbers(grid)
     lines, of = np.unique(every.line, return_inverse=True)
     share = np.bincount(of, every.number % 10 == 0) / np.bincount(of)
     return float(share[np.searchsorted(lines, line)].sum())
 
 
-def _shows_it(told: _Decimals, rows: InspectionRows, grid: PlantGrid) -> bool:
+def _shows_it(told: _Decimals, rows: InspectionRows, every: PlantNumbers) -> bool:
     """Return whether anything shows that zeros were lost."""
     if any(written.startswith("0") for written in told.written):
         return True
-    if _expected(grid, told.line) >= _EXPECTED:
+    if _expected(every, told.line) >= _EXPECTED:
         return True
     return _next_to_ten(told) or _is_there_twice(told, rows)
 

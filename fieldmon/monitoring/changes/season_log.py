@@ -38,6 +38,9 @@ _NOTHING = "0" * 64
 _BATCH = "batch "
 #: what a log does not hold but is held to: by name, and how it is read
 _PLOT = ("arrays", "plots", "places", "observations")
+#: layers whose rows are of batches, which say how many each has
+_OF_BATCHES = (schema.INSPECTIONS.name, schema.TREATMENTS.name)
+_NONE_SAVED = "of the one before, which was damaged, nothing could be saved"
 # what is done by settings, which the entry names: see `settings_log.marks`
 _BY_SETTINGS = ("planned", "seen")
 
@@ -59,8 +62,8 @@ def go_on_saved(db: sqlite3.Connection, unread: Sequence[str]) -> tuple[str, ...
     rows = db.execute("SELECT fid, digest FROM log ORDER BY fid").fetchall()
     _note_head(db, *(rows[-1] if rows else (0, _NOTHING)))
     gone = _gone_of_batches(db)
-    told = {"inspections", "treatments"} if gone and schema.BATCHES.name not in unread else {""}
-    gone += [{"layer": layer} for layer in unread if layer not in told]
+    are_counted = bool(gone) and schema.BATCHES.name not in unread
+    gone += [{"layer": one} for one in unread if not (are_counted and one in _OF_BATCHES)]
     lost: dict[str, Any] = {"lost": gone} if gone else {}
     try:
         refuse_changed(db)
@@ -73,9 +76,6 @@ def go_on_saved(db: sqlite3.Connection, unread: Sequence[str]) -> tuple[str, ...
         why = _NONE_SAVED if schema.LOG.name in unread else "saved from an old file"
         append(db, "saved" if rows else "begins", states=states(db), why=why, **lost)
     return tuple(map(lost_in_words, gone))
-
-
-_NONE_SAVED = "of the one before, which was damaged, nothing could be saved"
 
 
 def _gone_of_batches(db: sqlite3.Connection) -> list[dict[str, Any]]:
